@@ -55,13 +55,22 @@ contains
          & - blocks)//trim(merge(" fixed springings", " fixed           ", arch)))
       call tell(screen, "joints", joints_text(scene))
       call tell(screen, "strength", merge("cohesion or tension, until a joint breaks", &
-         & "none: friction only                      ", any(scene%contacts%springs%shift > 0.0) &
-         & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
+         & "none: friction only                      ", has_strength(scene)))
       call tell(screen, "points", points_text(scene%settings%boundary))
       call print_parts(screen, first, plan, blocks)
       call tell(screen, "other output", tables_text(first))
       if (.not. arch) call print_blocks(screen, scene)
    end procedure print_plan
+
+   !> Whether a joint holds by more than friction; tension needs cohesion where friction is
+   pure logical function has_strength(scene)
+      type(scene_t), intent(in) :: scene
+
+      associate (law => scene%contacts%joint%law)
+         has_strength = any(law%cohesion > 0.0 .or. law%tension > 0.0 &
+            & .and. (law%no_slip .or. .not. law%friction > 0.0))
+      end associate
+   end function has_strength
 
    !> Print number, area and centre of each block
    subroutine print_blocks(screen, scene)

@@ -1,7 +1,7 @@
 !> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
 submodule (dda_restart) dda_restart_joints
-   use dda_contact_detection, only : set_joints, set_strength
-   use dda_contact_types, only : joint_t, place_joint, vertex_number
+   use dda_contact_detection, only : set_joints
+   use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
    use dda_outline, only : outline_of, outline_t
    implicit none
 
@@ -40,8 +40,7 @@ contains
       if (contacts%searched .and. settings%current) then
          allocate (joint(size(whole, 2)))
          call make_joints(system, contacts, whole, number, joint, sound)
-         if (sound) call set_joints(system, system%motion, joint, settings%penalty_ratio, &
-            & settings%n_dof, contacts)
+         if (sound) call set_joints(joint, contacts)
       else
          sound = size(contacts%joint) == size(whole, 2)
          if (sound) call pack_joints(system, contacts, given, ignored)
@@ -58,7 +57,7 @@ contains
          contacts%increment(:, j) = number(20:22, j)
          contacts%intact(:, j) = number(23:24, j)
       end do
-      call set_strength(contacts)
+      contacts%springs = joint_springs_t()
    end procedure unpack_joints
 
    !> Joints that a search had found, where the blocks are

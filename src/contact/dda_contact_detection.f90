@@ -6,25 +6,23 @@ module dda_contact_detection
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
+   use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: find_contacts, follow_contacts, keep_contacts, set_joints, set_strength
+   public :: find_contacts, follow_contacts, keep_contacts, raise_springs, set_joints
+   public :: set_strength
 
 contains
 
    !> Joints of the pairs of edges that lie together in the reference shape, closed and free of
    !> force
-   pure subroutine find_contacts(system, edge_pair, law, penalty_ratio, n_dof, contacts)
+   pure subroutine find_contacts(system, edge_pair, law, contacts)
       type(block_system_t), intent(in) :: system
       !> Block and edge, block and edge of each joint: (4, n_joint)
       integer, intent(in) :: edge_pair(:, :)
       !> Law of each joint: (n_joint)
       type(joint_law_t), intent(in) :: law(:)
-      !> Contact stiffness over the stiffness of the block across the joint
-      real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
       type(contacts_t), intent(out) :: contacts
       type(joint_t), allocatable :: joint(:)
       integer :: j
@@ -33,18 +31,13 @@ contains
       do j = 1, size(joint)
          joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
-      call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(joint, contacts)
    end subroutine find_contacts
 
-   !> Take these joints, closed, whole and free of force
-   pure subroutine set_joints(system, motion, joint, penalty_ratio, n_dof, contacts)
-      type(block_system_t), intent(in) :: system
-      !> How they have moved where the joints are placed: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
+   !> Take these joints, closed, whole and free of force, without springs
+   pure subroutine set_joints(joint, contacts)
       !> The joints, placed: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
-      real(wp), intent(in) :: penalty_ratio
-      integer, intent(in) :: n_dof
       !> The contacts; their search is kept
       type(contacts_t), intent(inout) :: contacts
       integer :: n
@@ -59,16 +52,27 @@ contains
       allocate (contacts%trial(3, n), source=0.0_wp)
       allocate (contacts%force, contacts%gap, contacts%increment, source=contacts%trial)
       contacts%past_slip = 0.0_wp
-      call new_joint_springs(system, motion, contacts%joint, penalty_ratio, n_dof, contacts%springs)
+      contacts%springs = joint_springs_t()
    end subroutine set_joints
 
-   !> Keep some of the joints with what they carry; blocks may have other numbers in the equations
-   pure subroutine keep_contacts(system, kept, penalty_ratio, n_dof, contacts)
+   !> Springs of contacts that have none yet, as strong as what is left of the joints: in reference
+   !> geometry where the blocks were at the beginning, in current geometry where they are
+   pure subroutine raise_springs(settings, system, contacts)
+      type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(inout) :: contacts
+
+      if (allocated(contacts%springs%row)) return
+      call new_joint_springs(system, merge(1.0_wp, 0.0_wp, settings%current)*system%motion, &
+         & contacts%joint, settings%penalty_ratio, settings%n_dof, contacts%springs)
+      call set_strength(contacts)
+   end subroutine raise_springs
+
+   !> Keep some of the joints with what they carry, without springs: blocks may have other numbers
+   !> in the equations
+   pure subroutine keep_contacts(kept, contacts)
       !> Which: (n_joint)
       logical, intent(in) :: kept(:)
-      real(wp), intent(in) :: penalty_ratio
-      integer, intent(in) :: n_dof
       type(contacts_t), intent(inout) :: contacts
       type(contacts_t) :: old
       type(joint_t), allocatable :: joint(:)
@@ -80,7 +84,7 @@ contains
       do j = 1, size(k)
          joint(j) = old%joint(k(j))
       end do
-      call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(joint, contacts)
       contacts%face = old%face(k)
       contacts%trial = old%trial(:, k)
       contacts%force = old%force(:, k)
@@ -88,8 +92,6 @@ contains
       contacts%increment = old%increment(:, k)
       contacts%past_slip = old%past_slip(k)
       contacts%intact = old%intact(:, k)
-      contacts%springs%cone = old%springs%cone(k)
-      contacts%springs%shift = old%springs%shift(:, k)
    end subroutine keep_contacts
 
    !> Bounds of the forces by what is left of the joints' strength
@@ -107,7 +109,9 @@ contains
    !> before as multipliers, so that the springs only carry what changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
       type(block_system_t), intent(in) :: system
+      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts; what they carry is kept
       type(contacts_t), intent(inout) :: contacts

@@ -5,7 +5,8 @@ module dda_contact_transfer
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : set_joints, set_strength
    use dda_contact_search, only : look_around, near_joints, touching_joints
-   use dda_contact_types, only : contact_t, joint_t, place_joint, slip_at, vertex_number
+   use dda_contact_types, only : contact_t, joint_t, new_joint_springs, place_joint, &
+      & slip_at, vertex_number
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_sort, only : rising_order
@@ -66,12 +67,8 @@ module dda_contact_transfer
 contains
 
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
-   pure subroutine search_contacts(system, penalty_ratio, n_dof, contacts)
+   pure subroutine search_contacts(system, contacts)
       type(block_system_t), intent(in) :: system
-      !> Contact stiffness over the stiffness of the block across the joint
-      real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
       !> The contacts; their search is set
       type(contacts_t), intent(inout) :: contacts
       type(joint_t), allocatable :: joint(:)
@@ -84,7 +81,7 @@ contains
          call place_joint(system, system%vertex, joint(j), gap)
          joint(j)%contact%closed_at = gap(1:2)
       end do
-      call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(joint, contacts)
       do j = 1, size(contacts%joint)
          contacts%face(j)%open(2) = contacts%joint(j)%n_contact == 1
       end do
@@ -97,7 +94,9 @@ contains
       real(wp), intent(in) :: travel(:, :)
       !> Most that the corners of each block may move in the step: (n_block) [m]
       real(wp), intent(in) :: reach(:)
+      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts of the step before in, those of the next out
       type(contacts_t), intent(inout) :: contacts
@@ -121,7 +120,9 @@ contains
       end do
       call move_alloc(contacts%face, before%face)
       call move_alloc(contacts%intact, before%intact)
-      call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(joint, contacts)
+      call new_joint_springs(system, system%motion, contacts%joint, penalty_ratio, n_dof, &
+         & contacts%springs)
       do j = 1, size(contacts%joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &

@@ -16,8 +16,8 @@ module dda_contact_types
    private
 
    public :: contact_t, joint_t, edge_to_edge_joint, place_joint, same_joint, slip_at
-   public :: vertex_number, joint_springs_t, new_joint_springs, place_rows, mohr_coulomb
-   public :: unbounded
+   public :: vertex_number, joint_springs_t, rows_of_joint, new_joint_springs, place_rows
+   public :: mohr_coulomb, unbounded
 
    !> A vertex of one block against an edge of another
    type :: contact_t
@@ -235,7 +235,7 @@ contains
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
       springs%give = any(joint%found)
-      call place_rows(system, motion, joint, springs)
+      call place_rows(system, motion, joint, springs%row)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
@@ -246,27 +246,27 @@ contains
    end subroutine new_joint_springs
 
    !> Rows of the springs of joints that have been placed
-   pure subroutine place_rows(system, motion, joint, springs)
+   pure subroutine place_rows(system, motion, joint, row)
       type(block_system_t), intent(in) :: system
       !> How the blocks have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(joint_t), intent(in) :: joint(:)
-      !> The springs; their rows are set
-      type(joint_springs_t), intent(inout) :: springs
+      !> The rows: (n_dof, 3, 2, n_joint)
+      real(wp), intent(out) :: row(:, :, :, :)
       integer :: j, side
 
       do j = 1, size(joint)
          do side = 1, 2
             associate (b => joint(j)%block(side))
-               springs%row(:, :, side, j) = real(2*side - 3, wp)*joint_rows(joint(j), side, &
-                  & system%centroid(:, b) + motion(1:2, b), motion(:, b), size(springs%row, 1))
+               row(:, :, side, j) = rows_of_joint(joint(j), side, system%centroid(:, b) &
+                  & + motion(1:2, b), motion(:, b), size(row, 1))
             end associate
          end do
       end do
    end subroutine place_rows
 
    !> What the joint sees of one block's unknowns
-   pure function joint_rows(joint, side, centroid, motion, n_dof) result(row)
+   pure function rows_of_joint(joint, side, centroid, motion, n_dof) result(row)
       type(joint_t), intent(in) :: joint
       !> 1 or 2, which of the joint's blocks
       integer, intent(in) :: side
@@ -275,7 +275,7 @@ contains
       !> How the block has moved: (6)
       real(wp), intent(in) :: motion(6)
       integer, intent(in) :: n_dof
-      !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
+      !> Opening at both contacts, slip: (n_dof, 3)
       real(wp) :: row(n_dof, 3)
       real(wp) :: t(2, 6)
       integer :: k
@@ -290,7 +290,8 @@ contains
       end do
       t = tangent_matrix(joint%middle(:, side), centroid, motion)
       row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
-   end function joint_rows
+      row = real(2*side - 3, wp)*row
+   end function rows_of_joint
 
    !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's
    !> size across it, t that along it; of given edges t is their length, of found ones l is twice

@@ -46,8 +46,7 @@ contains
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
       if (deck%arch%springing%word == "no-slip") law([1, n])%no_slip = .true.
-      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
-         & scene%settings%n_dof, scene%contacts)
+      call find_contacts(scene%system, edge_pair, law, scene%contacts)
       allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine arch_scene
 

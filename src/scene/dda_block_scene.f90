@@ -257,8 +257,7 @@ contains
          if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law)
-         call search_contacts(system, scene%settings%penalty_ratio, scene%settings%n_dof, &
-            & scene%contacts)
+         call search_contacts(system, scene%contacts)
       end associate
       allocate (scene%joint_angle_deg(0))
    end subroutine block_scene

@@ -68,8 +68,7 @@ contains
          law(j) = law_of_joint(deck, split%pair(j)%joint)
          edge_pair(:, j) = split%pair(j)%side
       end do
-      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
-         & scene%settings%n_dof, scene%contacts)
+      call find_contacts(scene%system, edge_pair, law, scene%contacts)
       scene%settings%boundary = deck%plan%boundary
       if (size(split%bolt) == 0) return
       scene%settings%boundary%bar = bars_of(deck, split)

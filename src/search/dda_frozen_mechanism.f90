@@ -27,12 +27,8 @@ contains
       if (.not. usable) return
       settings = scene%settings
       settings%n_dof = 3
-      if (scene%settings%n_dof == settings%n_dof) then
-         springs = scene%contacts%springs
-      else
-         call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
-            & settings%penalty_ratio, settings%n_dof, springs)
-      end if
+      call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
+         & settings%penalty_ratio, settings%n_dof, springs)
       call new_equations(scene%system, springs, settings, equations)
       allocate (motion, source=mechanism%motion)
       call assemble_blocks(scene%system, settings, mechanism%dt, equations)

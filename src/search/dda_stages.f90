@@ -239,7 +239,7 @@ contains
       do j = 1, size(kept)
          kept(j) = all(present(contacts%joint(j)%block))
       end do
-      call keep_contacts(system, kept, settings%penalty_ratio, settings%n_dof, contacts)
+      call keep_contacts(kept, contacts)
    end subroutine enter_stage
 
    !> The state that the next stage begins with: joints of blocks that stay keep what they carry;

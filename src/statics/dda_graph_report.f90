@@ -3,6 +3,7 @@ module dda_graph_report
    use dda_bar_joints, only : keep_bar_forces
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
+   use dda_contact_types, only : rows_of_joint
    use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : face
    use dda_deformation, only : displacement_matrix
@@ -56,7 +57,7 @@ contains
          contacts%face(j)%open = rate(1:2, j) - dilatancy > max(least, share*contacts%force(1:2, j))
          if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
             & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
-         if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.
+         if (contacts%joint(j)%n_contact == 1) contacts%face(j)%open(2) = .true.
          contacts%face(j)%slip = 0
          if (abs(rate(3, j)) > least .and. .not. all(contacts%face(j)%open)) &
             & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
@@ -112,10 +113,10 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> Forces of the held points of blocks that can move, in their order: (3, n_pin) [N/m]
       real(wp), intent(in) :: pin_force(:, :)
-      !> The contacts, with rows of six unknowns
       type(contacts_t), intent(in) :: contacts
       !> The blocks; their strains and stresses are set
       type(block_system_t), intent(inout) :: system
+      real(wp), parameter :: no_motion(6) = 0.0_wp
       real(wp) :: moment(6, size(system%equation)), d(3, 3), stress(3)
       integer :: b, i, j, side
 
@@ -123,7 +124,8 @@ contains
       do j = 1, size(force, 2)
          do side = 1, 2
             b = contacts%joint(j)%block(side)
-            moment(:, b) = moment(:, b) + matmul(contacts%springs%row(:, :, side, j), force(:, j))
+            moment(:, b) = moment(:, b) + matmul(rows_of_joint(contacts%joint(j), side, &
+               & system%centroid(:, b), no_motion, 6), force(:, j))
          end do
       end do
       if (allocated(settings%boundary%loaded)) then

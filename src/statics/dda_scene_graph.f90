@@ -3,7 +3,7 @@ module dda_scene_graph
    use dda_bar_joints, only : add_bar_joints, add_nodes, n_bar_joints
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_contact_types, only : joint_t
+   use dda_contact_types, only : joint_t, place_rows
    use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t
    use dda_deformation, only : displacement_matrix
@@ -86,18 +86,18 @@ contains
       call add_nodes(settings, graph)
       call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
          & graph)
+      call place_rows(system, 0.0_wp*system%motion, contacts%joint, graph%row(:, :, :, :n))
       do j = 1, n
-         associate (cone => contacts%springs%cone(j), law => contacts%joint(j)%law)
-            graph%block(:, j) = contacts%springs%equation(:, j)
-            graph%row(:, :, :, j) = contacts%springs%row(:n_rigid, :, :, j)
+         associate (single => contacts%joint(j)%n_contact == 1, law => contacts%joint(j)%law)
+            graph%block(:, j) = system%equation(contacts%joint(j)%block)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
             if (law%strength < huge(1.0_wp)) graph%crush(j) = law%strength*contacts%joint(j)%length
             graph%compliance(:, j) = block_compliance(system, contacts%joint(j))
             if (law%no_slip) then
-               graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, cone%single)
+               graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, single)
             else
-               graph%kind(j) = merge(joint_kind%corner, joint_kind%contact, cone%single)
+               graph%kind(j) = merge(joint_kind%corner, joint_kind%contact, single)
             end if
          end associate
          do k = 1, 2

@@ -113,7 +113,8 @@ contains
       do j = 1, size(joint)
          joint(j) = half_way(contacts%joint(j), step%joint(j))
       end do
-      call place_rows(system, (system%motion + step%after%motion)/2.0_wp, joint, contacts%springs)
+      call place_rows(system, (system%motion + step%after%motion)/2.0_wp, joint, &
+         & contacts%springs%row)
       do j = 1, size(joint)
          do side = 1, 2
             e = contacts%springs%equation(side, j)

@@ -3,6 +3,7 @@ module dda_forward
    use dda_assembly, only : new_equations
    use dda_block_factor, only : factored_condition
    use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : raise_springs
    use dda_contacts, only : contacts_t
    use dda_energy, only : keep_energy
    use dda_error, only : error_t
@@ -166,6 +167,7 @@ contains
          return
       end if
       allocate (neighbours, source=neighbours_of(contacts%joint))
+      call raise_springs(settings, system, contacts)
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) call go_on(settings, system, onward, march, equations)

@@ -48,7 +48,7 @@ contains
       integer :: try
 
       springs = contacts%springs
-      call place_rows(system, step%after%motion, step%joint, springs)
+      call place_rows(system, step%after%motion, step%joint, springs%row)
       closed = closed_contacts(system, contacts, step)
       steady = 2.0_wp/step%dt*step%state%motion &
          & - packed_velocity(system, size(step%state%motion, 1))

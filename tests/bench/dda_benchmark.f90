@@ -14,7 +14,7 @@ module dda_benchmark
    use dda_chain_unfold, only : unfold
    use dda_contacts, only : contacts_t
    use dda_kinds, only : pi, wp
-   use dda_contact_detection, only : find_contacts
+   use dda_contact_detection, only : find_contacts, raise_springs
    use dda_critical, only : find_critical
    use dda_decision, only : decide
    use dda_error, only : error_t
@@ -195,8 +195,8 @@ contains
       scene%system%unit_weight = unit_weight
       scene%settings%n_dof = family%unknowns
       law = numbers%law
-      call find_contacts(scene%system, edge_pair, law, numbers%penalty_ratio, family%unknowns, &
-         & scene%contacts)
+      scene%settings%penalty_ratio = numbers%penalty_ratio
+      call find_contacts(scene%system, edge_pair, law, scene%contacts)
    end subroutine build_arch
 
    !> Make the arch of one thickness ratio as a chain
@@ -363,6 +363,7 @@ contains
 
       job%system = job%scene%system
       job%contacts = job%scene%contacts
+      call raise_springs(job%scene%settings, job%system, job%contacts)
       call new_equations(job%system, job%contacts%springs, job%scene%settings, job%equations)
    end subroutine run_setup
 

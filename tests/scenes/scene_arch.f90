@@ -1,7 +1,7 @@
 !> A circular arch of equal voussoirs under its own weight, whose thickness or push is varied
 module scene_arch
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
-   use dda_contact_detection, only : find_contacts
+   use dda_contact_detection, only : find_contacts, raise_springs
    use dda_error, only : error_t
    use dda_kinds, only : degree, pi, wp
    use dda_material, only : joint_law_t, material_t
@@ -73,8 +73,8 @@ contains
       scene%system%unit_weight = family%unit_weight
       scene%settings = family%settings
       allocate (law(size(edge_pair, 2)), source=family%law)
-      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
-         & scene%settings%n_dof, scene%contacts)
+      call find_contacts(scene%system, edge_pair, law, scene%contacts)
+      call raise_springs(scene%settings, scene%system, scene%contacts)
       scene%joint_angle_deg = [(family%half_angle/degree &
          & *real(2*j - family%voussoirs, wp)/real(family%voussoirs, wp), j=0, family%voussoirs)]
       if (allocated(error)) deallocate (error)

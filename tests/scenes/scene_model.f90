@@ -1,7 +1,7 @@
 !> Blocks and joints put together one by one, and the scene that they make
 module scene_model
    use dda_block_system, only : new_block_system
-   use dda_contact_detection, only : find_contacts
+   use dda_contact_detection, only : find_contacts, raise_springs
    use dda_contact_search, only : new_joint_search
    use dda_contact_transfer, only : search_contacts
    use dda_kinds, only : wp
@@ -89,8 +89,8 @@ contains
       scene%system%unit_weight = model%unit_weight
       scene%contacts%searched = .true.
       scene%contacts%search = new_joint_search(scene%system, reshape([law], [1, 1]))
-      call search_contacts(scene%system, scene%settings%penalty_ratio, scene%settings%n_dof, &
-         & scene%contacts)
+      call search_contacts(scene%system, scene%contacts)
+      call raise_springs(scene%settings, scene%system, scene%contacts)
    end function searched_scene
 
    !> The scene of a model
@@ -103,8 +103,8 @@ contains
       scene%settings = model%settings
       scene%system = new_block_system(model%first_vertex, model%vertex, model%fixed, model%material)
       scene%system%unit_weight = model%unit_weight
-      call find_contacts(scene%system, model%edge_pair, model%law, scene%settings%penalty_ratio, &
-         & scene%settings%n_dof, scene%contacts)
+      call find_contacts(scene%system, model%edge_pair, model%law, scene%contacts)
+      call raise_springs(scene%settings, scene%system, scene%contacts)
    end function scene_of
 
    !> A rectangle whose edges 1 to 4 are bottom, right, top and left
