@@ -132,7 +132,7 @@ contains
       found = worst(point) < accepted
       n_factorisation = springs%n_factorisation
       call keep_velocities(rays, point%v, motion)
-      call forces_of_rays(rays, point%x, unit_of_force(load), force)
+      call forces_of_rays(graph, point%x, unit_of_force(load), force)
    end subroutine find_first_motion
 
    !> Springs of equal stiffness beside the masses; forces and rates are then pushed inside

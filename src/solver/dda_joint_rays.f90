@@ -25,8 +25,6 @@ module dda_joint_rays
       !> Force and moment of each ray on the first block, then on the second:
       !> (n_side, 6, n_joint)
       real(wp), allocatable :: arm(:, :, :)
-      !> N1, N2, T of each ray: (3, n_side, n_joint)
-      real(wp), allocatable :: force(:, :, :)
       !> One for rays whose factor may not be negative, zero for free and for empty ones:
       !> (n_side, n_joint)
       real(wp), allocatable :: bounded(:, :)
@@ -44,18 +42,18 @@ contains
    pure subroutine set_rays(graph, rays)
       type(joint_graph_t), intent(in) :: graph
       type(joint_rays_t), intent(out) :: rays
+      real(wp) :: force(3, n_side)
       integer :: i, j, k, n, side
 
       n = size(graph%kind)
       rays%n_block = graph%n_block
       rays%block = graph%block
       rays%length = unit_of_length(graph)
-      allocate (rays%force(3, n_side, n), source=0.0_wp)
       allocate (rays%arm(n_side, 6, n), source=0.0_wp)
-      allocate (rays%bounded(n_side, n), rays%free(n_side, n), source=0.0_wp)
+      allocate (rays%bounded(n_side, n), rays%free(n_side, n))
       do j = 1, n
-         call span_joint(graph%kind(j), graph%friction(j), rays%force(:, :, j), &
-            & rays%bounded(:, j), rays%free(:, j))
+         call span_joint(graph%kind(j), graph%friction(j), force, rays%bounded(:, j), &
+            & rays%free(:, j))
          ! a block that touches itself has one arm, the sum of both
          if (rays%block(1, j) == rays%block(2, j)) rays%block(2, j) = 0
          do side = 1, 2
@@ -63,7 +61,7 @@ contains
             k = merge(3, 0, side == 2 .and. rays%block(2, j) /= 0)
             do i = 1, n_side
                rays%arm(i, k + 1:k + 3, j) = rays%arm(i, k + 1:k + 3, j) &
-                  & + matmul(graph%row(1:3, :, side, j), rays%force(:, i, j)) &
+                  & + matmul(graph%row(1:3, :, side, j), force(:, i)) &
                   & /[1.0_wp, 1.0_wp, rays%length]
             end do
          end do
@@ -78,16 +76,19 @@ contains
       !> Coefficient of friction
       real(wp), intent(in) :: friction
       !> N1, N2, T of each ray: (3, n_side)
-      real(wp), intent(inout) :: force(:, :)
+      real(wp), intent(out) :: force(:, :)
       !> One where the factor may not be negative: (n_side)
-      real(wp), intent(inout) :: bounded(:)
+      real(wp), intent(out) :: bounded(:)
       !> One where it may have any sign: (n_side)
-      real(wp), intent(inout) :: free(:)
+      real(wp), intent(out) :: free(:)
       real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
       real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
       real(wp) :: long
 
+      force = 0.0_wp
+      bounded = 0.0_wp
+      free = 0.0_wp
       select case (kind)
       case (joint_kind%contact, joint_kind%corner)
          ! rays of joints with much friction are as long as the others
@@ -182,17 +183,19 @@ contains
    end subroutine add_ray_forces
 
    !> Forces of the joints from the factors of their rays
-   pure subroutine forces_of_rays(rays, x, unit, force)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine forces_of_rays(graph, x, unit, force)
+      type(joint_graph_t), intent(in) :: graph
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in) :: x(:, :)
       real(wp), intent(in) :: unit
       !> N1, N2, T: (3, n_joint) [N/m]
       real(wp), intent(out) :: force(:, :)
+      real(wp) :: ray(3, n_side), bounded(n_side), free(n_side)
       integer :: j
 
       do j = 1, size(x, 2)
-         force(:, j) = unit*matmul(rays%force(:, :, j), x(:, j))
+         call span_joint(graph%kind(j), graph%friction(j), ray, bounded, free)
+         force(:, j) = unit*matmul(ray, x(:, j))
       end do
    end subroutine forces_of_rays
 end module dda_joint_rays

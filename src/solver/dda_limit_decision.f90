@@ -146,7 +146,7 @@ contains
       call plan_matrix(rays, springs)
       call go_to_load(rays, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
-      call forces_of_rays(rays, point%x, unit_of_force(load), decision%force)
+      call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
       call keep_velocities(rays, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
@@ -178,7 +178,7 @@ contains
       if (state_at_end(point) == load_state%stands) then
          call scale_load(rays, load, unit_of_force(load), finish)
          call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=.true.)
-         call forces_of_rays(rays, point%x, unit_of_force(load), decision%force)
+         call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
          call keep_velocities(rays, point%v, decision%velocity)
          call conclude(graph, load, point, decision)
       end if

@@ -261,7 +261,7 @@ contains
       end if
       allocate (limit%force(3, size(graph%kind)))
       allocate (limit%velocity(graph%n_dof, graph%n_block))
-      call forces_of_rays(rays, point%x, unit, limit%force)
+      call forces_of_rays(graph, point%x, unit, limit%force)
       call keep_velocities(rays, point%v, limit%velocity)
       call certify(graph, dead, live, limit)
       limit%n_factorisation = springs%n_factorisation
