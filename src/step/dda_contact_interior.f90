@@ -16,6 +16,8 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    real(wp), parameter :: lift = 1.0e-4_wp, highest = 1.0e-1_wp
    !> Forces across gaps, and by openings, that are left, over the size of a force
    real(wp), parameter :: tolerance = 3.0e-7_wp
+   !> How much smaller than usual faces can leave forces before these are rounding
+   real(wp), parameter :: finest = 1.0e-4_wp
    !> A step shorter than this share of the whole is stuck at a bound
    real(wp), parameter :: stuck = 0.2_wp
    !> Most iterations
@@ -70,6 +72,7 @@ contains
 
       call pose(equations, springs, view, joint, before, moved, p)
       call begin(springs, view, before, moved, lift, p, x)
+      p%fineness = max(finest, fineness)
       if (many) then
          call settle_many_faces(equations, springs, view, p, hasty, x, passes, agreed, near)
       else

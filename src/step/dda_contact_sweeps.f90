@@ -60,9 +60,8 @@ submodule (dda_settle_in_time) dda_contact_sweeps
 
       !> Forces of some joints if these keep nearly to the faces that they had: of all forces that
       !> stop the blocks those nearest to the ones before
-      pure module subroutine keep_to_faces(equations, springs, view, joint, many, hasty, before, &
-         & moved, &
-         & force, passes, agreed)
+      pure module subroutine keep_to_faces(equations, springs, view, joint, many, hasty, &
+         & fineness, before, moved, force, passes, agreed)
          type(equations_t), intent(in) :: equations
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
@@ -71,6 +70,8 @@ submodule (dda_settle_in_time) dda_contact_sweeps
          !> Whether they are many, and whether sweeps rather go on where they are so many that faces
          !> take as long
          logical, intent(in) :: many, hasty
+         !> How much smaller than usual forces must be that faces leave
+         real(wp), intent(in) :: fineness
          !> Forces of all joints in the step before: (3, n_joint) [N/m]
          real(wp), intent(in) :: before(:, :)
          !> Motion of all blocks by these: (n_dof, n_equation) [m]
@@ -203,7 +204,7 @@ contains
       if (settled) return
       if (asks_faces(view, springs, joint, state)) then
          call keep_to_faces(equations, springs, view, joint, size(joint) > many, hasty, &
-            & state%multiplier, moved, force, state%passes, settled)
+            & state%fineness, state%multiplier, moved, force, state%passes, settled)
          if (settled .or. hasty) call move_group(equations, springs, view, joint, force, motion)
          if (settled) return
          state%swept = hasty

@@ -64,7 +64,7 @@ contains
          held = changes == 0
          if (held) then
             rest = maxval(p%soft/p%unit*abs(x%force - p%before), .not. p%follows)/p%size
-            agreed = rest <= merge(tolerance, remains, rest > falling*last_rest)
+            agreed = rest <= p%fineness*merge(tolerance, remains, rest > falling*last_rest)
             if (agreed) return
             last_rest = rest
             where (.not. p%follows) p%before = x%force
@@ -216,7 +216,7 @@ contains
       integer :: i, k
 
       changes = 0
-      least = tolerance*p%size
+      least = p%fineness*tolerance*p%size
       do i = 1, size(face)
          force = x%force(:, i) + springs%shift(:, p%joint(i))
          ! of open contacts and sliding joints, over what the blocks give; others have none

@@ -58,6 +58,8 @@ module dda_settle_in_time
       real(wp), allocatable :: before(:, :)
       !> Size of a force [N/m]
       real(wp) :: size = 0.0_wp
+      !> How much smaller than usual forces must be that faces leave
+      real(wp) :: fineness = 1.0_wp
       !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
       real(wp), allocatable :: yield(:, :)
       !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)

@@ -42,7 +42,7 @@ def run(folder: Path, blocks: str, friction_deg: float, duration: float) -> tupl
         return list(csv.DictReader(table)), passes
 
 
-@pytest.mark.parametrize("columns", [5, 13])  # fewer and more than 300 joints
+@pytest.mark.parametrize("columns", [5, 13, 100])  # fewer and more than 300 and 2000 joints
 def test_a_wall_that_has_settled_stands_still(tmp_path: Path, columns: int) -> None:
     """After 40 steps nothing is left to be found: no passes, and not a bit of any place changes."""
     measured = wall(columns) + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n"
