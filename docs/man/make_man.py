@@ -54,8 +54,7 @@ def page(name: str, version: str, summary: str, parts: list[tuple[str, str]], ot
     str
         The page in roff.
     """
-    lines = [f'.TH {name.upper()} 1 "" "voussoir {version}" "User Commands"',
-             ".SH NAME", f"{name} \\- {summary}"]
+    lines = [f'.TH {name.upper()} 1 "" "voussoir {version}" "User Commands"', ".SH NAME", f"{name} \\- {summary}"]
     for title, text in parts:
         lines += [f".SS {name} {title}" if title.islower() else f".SH {title}", roff(text)]
     return "\n".join([*lines, ".SH SEE ALSO", f".BR {other} (1)", ""])

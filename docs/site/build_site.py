@@ -44,11 +44,7 @@ CHAPTERS = {
         "fortran/index.html": "Fortran interfaces",
     },
     "Theory and method": {
-        "theory.md": "Theory",
-        "method.md": "Method",
-        "limits.md": "Limits",
-        "shi.md": "Shi's routines",
-    },
+        "theory.md": "Theory", "method.md": "Method", "limits.md": "Limits", "shi.md": "Shi's routines"},
     "Evidence": {
         "paper.md": "The paper",
         "validation.md": "Validation",
@@ -63,12 +59,8 @@ CHAPTERS = {
 LONG = 30
 #: Modules of the names that scripts import: those of the package itself, or all of a module
 PUBLIC = {
-    "deck/run": ("run", "Deck"),
-    "deck/arch": ("Arch",),
-    "deck/blocks": ("Blocks",),
-    "results/__init__": (),
-    "theory/__init__": (),
-}
+    "deck/run": ("run", "Deck"), "deck/arch": ("Arch",), "deck/blocks": ("Blocks",), "results/__init__": (),
+    "theory/__init__": ()}
 #: Packages that build the site
 PACKAGES = ("mkdocs", "ford", "latex2mathml")
 #: What the theme lacks: room for tables, which wrap, and names that break where they must

@@ -45,9 +45,7 @@ uses it, so that reason and use are read together; this page is the overview.
 It is written by `python3 docs/site/source_pages.py`.
 """
 #: A named number at the beginning of a module, with the comment before it
-CONSTANT = re.compile(
-    r"((?: *!> ?.*\n)+) {3}(?:real\(wp\)|integer), parameter :: (\w+) = (\S.*)\n"
-)
+CONSTANT = re.compile(r"((?: *!> ?.*\n)+) {3}(?:real\(wp\)|integer), parameter :: (\w+) = (\S.*)\n")
 #: Constants that are no thresholds: numbers of mathematics and of tables
 NO_THRESHOLD = re.compile(r"^(n_\w+|pi|degree|quarter|wp|unit_angle\w*|heyman_limit)$")
 

@@ -20,24 +20,11 @@ class DdaError(Exception):
 
 
 def find_dda(named: Path | None = None) -> Path:
-    """Find the program `dda`.
+    """Find the program `dda`; DdaError if there is none.
 
-    Parameters
-    ----------
-    named : Path, optional
-        The program that a user has named; no other one will do then.
-
-    Returns
-    -------
-    Path
-        The one named, else what the environment variable VOUSSOIR_DDA names (the command `voussoir`
-        of a build or an installation sets it), else the `dda` of the build that this package
-        belongs to, else the one beside the interpreter, else the first on the path.
-
-    Raises
-    ------
-    DdaError
-        If there is none.
+    The one named, else what the environment variable VOUSSOIR_DDA names (the command `voussoir` of a build or an
+    installation sets it), else the `dda` of the build that this package belongs to, else the one beside the
+    interpreter, else the first on the path.
     """
     wish = str(named or os.environ.get("VOUSSOIR_DDA", ""))
     build = Path(__file__).absolute().parents[2] / "bin"
@@ -50,18 +37,10 @@ def find_dda(named: Path | None = None) -> Path:
 
 
 def find_input(name: str) -> Path:
-    """Find a folder of decks that belongs to this package.
+    """Find a folder of decks that belongs to this package; DdaError if there is none.
 
-    Returns
-    -------
-    Path
-        The folder in the package (`pip install`), in the prefix (`cmake --install`), or in the
-        source (a build's package is made of links to it).
-
-    Raises
-    ------
-    DdaError
-        If it is in none of these.
+    It is in the package (`pip install`), in the prefix (`cmake --install`), or in the source (a build's package is made
+    of links to it).
     """
     here = Path(__file__)
     roots = [here.absolute().parent, *(up / "share/voussoir" for up in here.absolute().parents)]
@@ -72,13 +51,7 @@ def find_input(name: str) -> Path:
 
 
 def version_of(dda: Path) -> str:
-    """What `dda --version` prints.
-
-    Returns
-    -------
-    str
-        Such as "dda 0.1.0".
-    """
+    """What `dda --version` prints, such as "dda 0.1.0"."""
     return subprocess.run([dda, "--version"], capture_output=True, text=True).stdout.strip()
 
 
@@ -95,13 +68,7 @@ class Asked:
 
 
 def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:
-    """Check a deck.
-
-    Raises
-    ------
-    DdaError
-        If the deck is bad input: with the program's own message.
-    """
+    """Check a deck; DdaError has the program's own message if it is bad input."""
     words = [str(dda), "check", path_word(deck), "--record", *set_options(settings)]
     done = subprocess.run(words, capture_output=True, text=True, errors="surrogateescape")
     plan, _, rest = done.stdout.partition("\ntables:\n")
@@ -114,28 +81,11 @@ def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:
 
 
 def path_word(path: Path) -> str:
-    """A path as a word of a command line that no program takes for an option.
-
-    Parameters
-    ----------
-    path : Path
-        Such as -dash.nml, as pathlib writes ./-dash.nml.
-
-    Returns
-    -------
-    str
-        The path, with "./" before a dash.
-    """
+    """A path as a word of a command line that no program takes for an option: "./" before a dash."""
     word = str(path)
     return os.path.join(os.curdir, word) if word.startswith("-") else word
 
 
 def set_options(settings: list[str]) -> list[str]:
-    """Values of --set as words of a command line.
-
-    Parameters
-    ----------
-    settings : list of str
-        Such as "arch%radius=5.0".
-    """
+    """Values of --set, such as "arch%radius=5.0", as words of a command line."""
     return [word for setting in settings for word in ("--set", setting)]

@@ -27,11 +27,8 @@ class MissingPackage(ImportError):
 def advice(package: str) -> str:
     """How to install a package for this interpreter.
 
-    Returns
-    -------
-    str
-        With pip in a virtual environment or where the system leaves its Python to pip; else with
-        the system's package, and an environment where it has none.
+    With pip in a virtual environment or where the system leaves its Python to pip; else with the system's package, and
+    an environment where it has none.
     """
     if not _is_managed():
         return f"install it: {Path(sys.executable).name} -m pip install {package}"
@@ -48,18 +45,7 @@ def _is_managed() -> bool:
 
 
 def load(package: str, purpose: str) -> ModuleType:
-    """Import a package.
-
-    Parameters
-    ----------
-    purpose : str
-        What wants it, such as "a DXF drawing".
-
-    Raises
-    ------
-    MissingPackage
-        If it cannot be imported.
-    """
+    """Import a package for a purpose such as "a DXF drawing"; MissingPackage if it is not there."""
     try:
         return importlib.import_module(package)
     except ImportError as missing:

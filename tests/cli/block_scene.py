@@ -30,9 +30,7 @@ def bar(start: Point, end: Point, words: str) -> str:
 def on_slope(angle_deg: float, width: float = 1.0) -> str:
     """A block on a fixed slope that rises to the right."""
     base = turned([(-6.0, -3.0), (6.0, -3.0), (6.0, 0.0), (-6.0, 0.0)], angle_deg)
-    return block(base, "fixed") + block(
-        turned([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)], angle_deg)
-    )
+    return block(base, "fixed") + block(turned([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)], angle_deg))
 
 
 def rows_of(file: Path) -> list[dict[str, str]]:
@@ -44,9 +42,7 @@ def rows_of(file: Path) -> list[dict[str, str]]:
 def run_blocks(folder: Path, blocks: str, deck: str) -> dict[str, str]:
     """Run a file of blocks in the folder; its tables are in folder/out."""
     (folder / "scene.blocks").write_text(blocks)
-    (folder / "scene.nml").write_text(
-        "&scene kind='blocks' geometry='scene.blocks' /\n" + deck
-    )
+    (folder / "scene.nml").write_text("&scene kind='blocks' geometry='scene.blocks' /\n" + deck)
     done = run_dda("run", "scene.nml", "--out", "out", "--quiet", cwd=folder)
     assert done.returncode in (0, 3), done.stderr
     return rows_of(folder / "out" / "results.csv")[0]

@@ -12,10 +12,5 @@ def run_dda(
 ) -> subprocess.CompletedProcess[str]:
     """Run the program and return its status and what it printed."""
     return subprocess.run(
-        [os.environ["DDA"], *map(str, arguments)],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-        check=False,
-    )
+        [os.environ["DDA"], *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=timeout,
+        check=False)

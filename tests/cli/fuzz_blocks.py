@@ -211,10 +211,8 @@ def compute(dda: str, deck: Path, folder: Path) -> str:
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()),
-                        help="the program")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()), help="the program")
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--runs", type=int, default=2000, help="accepted decks to compute at most")
     parser.add_argument("--seed", type=int, default=1)

@@ -195,8 +195,7 @@ def run_first_case(program, deck, timeout):
 
 def main():
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--command", required=True, help="what to run, before the names of decks")
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=1)
@@ -210,8 +209,7 @@ def main():
     refused = failed = computed = 0
     with tempfile.TemporaryDirectory() as folder:
         for start in range(0, options.mutants, options.batch):
-            decks = [Path(folder) / f"mutant{i}.nml"
-                     for i in range(start, min(start + options.batch, options.mutants))]
+            decks = [Path(folder) / f"mutant{i}.nml" for i in range(start, min(start + options.batch, options.mutants))]
             for deck in decks:
                 deck.write_bytes(mutant(rng))
             trouble, count = complaint(*run(command, decks, options.timeout), decks)

@@ -216,8 +216,7 @@ def try_files(dda: str, form: str, files: list[Path], timeout: float) -> tuple[s
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dda", required=True, help="the program")
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=1)

@@ -139,10 +139,8 @@ def what_is_broken(folder: Path, status: int | None, lines: list[str], kind: str
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()),
-                        help="the program")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()), help="the program")
     parser.add_argument("--mutants", type=int, default=3000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")

@@ -225,13 +225,9 @@ def held_state(scene, share: float, rounds: int = 400) -> HeldState:
     largest = normal.max()
     below = np.abs(shear) < asked - 1e-9 * largest
     return HeldState(
-        factor=float(found.x[-1]),
-        imbalance=float(np.abs(matrix @ found.x + of.dead).max()) / largest,
-        beyond=float(np.max(np.abs(shear) - asked)) / largest,
-        change=change,
+        factor=float(found.x[-1]), imbalance=float(np.abs(matrix @ found.x + of.dead).max()) / largest,
+        beyond=float(np.max(np.abs(shear) - asked)) / largest, change=change,
         closing=float(max(-opens.min(), 0.0)) / moved,
         opening=float(np.abs(opens[normal > 1e-9 * largest]).max(initial=0.0)) / moved,
         slip=float(np.abs(slips[below]).max(initial=0.0)) / moved,
-        uphill=float(max(np.max(shear * slips, initial=0.0), 0.0)) / (moved * largest),
-        power=float(of.live @ velocity),
-    )
+        uphill=float(max(np.max(shear * slips, initial=0.0), 0.0)) / (moved * largest), power=float(of.live @ velocity))

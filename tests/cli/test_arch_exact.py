@@ -57,9 +57,7 @@ CASES = [pytest.param(case, id=case["case"]) for case in exact_cases()]
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_critical_thickness_is_that_of_limit_analysis(
-    case: dict[str, str], results: dict[str, dict[str, str]]
-) -> None:
+def test_critical_thickness_is_that_of_limit_analysis(case: dict[str, str], results: dict[str, dict[str, str]]) -> None:
     row = results[case["case"]]
     if case["status"] == "none_stable":
         assert row["verdict"] == "collapsed"
@@ -79,20 +77,14 @@ def test_critical_thickness_is_that_of_limit_analysis(
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_exact_value_beside_it_agrees_with_the_oracle(
-    case: dict[str, str], results: dict[str, dict[str, str]]
-) -> None:
+def test_exact_value_beside_it_agrees_with_the_oracle(case: dict[str, str], results: dict[str, dict[str, str]]) -> None:
     if case["status"] == "found":
         exact = float(case["eta_exact"])
         assert abs(float(results[case["case"]]["exact"]) - exact) <= 1e-12 * exact
 
 
-@pytest.mark.parametrize(
-    ("half_angle_deg", "voussoirs"), [(1.0, 18), (1.0, 20), (1.2, 16), (1.5, 27), (1.8, 100)]
-)
-def test_nearly_flat_arches_claim_no_more_than_they_know(
-    tmp_path: Path, half_angle_deg: float, voussoirs: int
-) -> None:
+@pytest.mark.parametrize(("half_angle_deg", "voussoirs"), [(1.0, 18), (1.0, 20), (1.2, 16), (1.5, 27), (1.8, 100)])
+def test_nearly_flat_arches_claim_no_more_than_they_know(tmp_path: Path, half_angle_deg: float, voussoirs: int) -> None:
     (tmp_path / "flat.nml").write_text(
         f"&arch half_angle_deg = {half_angle_deg}, voussoirs = {voussoirs} /\n"
         "&joint friction_deg = 90.0 /\n&search parameter = 'thickness_ratio' /\n"

@@ -91,16 +91,8 @@ JOINTS = {
     "not-increasing": (2, "&arch\n joints_deg = 0, 60, 50\n/\n", "increasing"),
     "twice-the-same": (2, "&arch\n joints_deg = 0, 50, 50, 90\n/\n", "increasing"),
     "with-voussoirs": (3, "&arch\n joints_deg = 0, 50, 90\n voussoirs = 4\n/\n", "voussoirs"),
-    "with-another-half-angle": (
-        3,
-        "&arch\n joints_deg = 0, 50, 90\n half_angle_deg = 80\n/\n",
-        "half_angle_deg",
-    ),
-    "after-another-half-angle": (
-        3,
-        "&arch\n half_angle_deg = 80\n joints_deg = 0, 50, 90\n/\n",
-        "half_angle_deg",
-    ),
+    "with-another-half-angle": (3, "&arch\n joints_deg = 0, 50, 90\n half_angle_deg = 80\n/\n", "half_angle_deg"),
+    "after-another-half-angle": (3, "&arch\n half_angle_deg = 80\n joints_deg = 0, 50, 90\n/\n", "half_angle_deg"),
 }
 
 SWEEPS_AND_SEARCHES = {
@@ -113,92 +105,41 @@ SWEEPS_AND_SEARCHES = {
     "search-low-negative": (2, "&search\n low = -0.1\n/\n", "-0.1"),
     "search-high-above-2": (2, "&search\n high = 2.5\n/\n", "2.5"),
     "search-of-a-missing-joint": (
-        3,
-        "&arch\n joints_deg = 0, 50, 90 /\n&search parameter='joints_deg(9)', low=1, high=5 /\n",
-        "joints_deg",
-    ),
+        3, "&arch\n joints_deg = 0, 50, 90 /\n&search parameter='joints_deg(9)', low=1, high=5 /\n", "joints_deg"),
     "sweep-without-parameter": (1, "&sweep\n values = 1, 2\n/\n", "parameter"),
     "sweep-of-nothing-known": (2, "&sweep\n parameter = 'raduis'\n values = 1\n/\n", "raduis"),
     "sweep-without-values": (1, "&sweep\n parameter = 'radius'\n/\n", "values"),
-    "sweep-with-values-and-texts": (
-        1,
-        "&sweep\n parameter = 'radius'\n values = 1\n texts = 'a'\n/\n",
-        "values",
-    ),
-    "sweep-first-without-count": (
-        1,
-        "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n/\n",
-        "count",
-    ),
-    "sweep-count-0": (
-        5,
-        "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n count = 0\n/\n",
-        "count",
-    ),
-    "sweep-value-out-of-range": (
-        3,
-        "&sweep\n parameter = 'thickness_ratio'\n values = 0.1, 2.0\n/\n",
-        "2",
-    ),
-    "sweep-fraction-for-a-count": (
-        3,
-        "&sweep\n parameter = 'voussoirs'\n values = 12, 12.5\n/\n",
-        "12.5",
-    ),
+    "sweep-with-values-and-texts": (1, "&sweep\n parameter = 'radius'\n values = 1\n texts = 'a'\n/\n", "values"),
+    "sweep-first-without-count": (1, "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n/\n", "count"),
+    "sweep-count-0": (5, "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n count = 0\n/\n", "count"),
+    "sweep-value-out-of-range": (3, "&sweep\n parameter = 'thickness_ratio'\n values = 0.1, 2.0\n/\n", "2"),
+    "sweep-fraction-for-a-count": (3, "&sweep\n parameter = 'voussoirs'\n values = 12, 12.5\n/\n", "12.5"),
     "sweep-words-for-numbers": (3, "&sweep\n parameter = 'radius'\n texts = 'a'\n/\n", "radius"),
     "sweep-numbers-for-words": (3, "&sweep\n parameter = 'springing'\n values = 1\n/\n", "texts"),
     "sweep-unknown-word": (3, "&sweep\n parameter = 'springing'\n texts = 'glued'\n/\n", "glued"),
     "sweep-same-parameter-twice": (
-        2,
-        "&sweep parameter='radius', values=1 /\n&sweep parameter='radius', values=2 /\n",
-        "radius",
-    ),
+        2, "&sweep parameter='radius', values=1 /\n&sweep parameter='radius', values=2 /\n", "radius"),
     "sweep-of-what-is-searched": (
-        2,
-        "&search /\n&sweep parameter='thickness_ratio', values=0.1, 0.2 /\n",
-        "thickness_ratio",
-    ),
+        2, "&search /\n&sweep parameter='thickness_ratio', values=0.1, 0.2 /\n", "thickness_ratio"),
     "sweep-of-a-joint-not-there": (
-        2,
-        "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(4)', values=60 /\n",
-        "joints_deg",
-    ),
+        2, "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(4)', values=60 /\n", "joints_deg"),
     "sweep-of-joints-out-of-order": (
-        2,
-        "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(2)', values=60, 95 /\n",
-        "95",
-    ),
-    "first-sweep-linked": (
-        1,
-        "&sweep parameter='radius', values=1, 2, linked=.true. /\n",
-        "linked",
-    ),
+        2, "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(2)', values=60, 95 /\n", "95"),
+    "first-sweep-linked": (1, "&sweep parameter='radius', values=1, 2, linked=.true. /\n", "linked"),
     "linked-sweep-of-another-length": (
-        2,
-        "&sweep parameter='radius', values=1, 2 /\n"
-        "&sweep parameter='young', values=1e9, linked=.true. /\n",
-        "2",
-    ),
+        2, "&sweep parameter='radius', values=1, 2 /\n" "&sweep parameter='young', values=1e9, linked=.true. /\n", "2"),
     "nine-sweeps": (
         9,
         "".join(
             f"&sweep parameter='{key}', values=0.5 /\n"
-            for key in (
-                "radius thickness_ratio facet_deg density young cohesion tension gravity time_step"
-            ).split()
+            for key in ("radius thickness_ratio facet_deg density young cohesion tension gravity time_step").split()
         ),
         "8",
     ),
     "dynamic-associated": (
-        1,
-        "&analysis mode='dynamic', flow='associated', steps=10 /\n",
-        "needs mode = 'static', got 'dynamic'",
-    ),
+        1, "&analysis mode='dynamic', flow='associated', steps=10 /\n", "needs mode = 'static', got 'dynamic'"),
     "limerick-associated": (
-        1,
-        "&analysis mode='limerick', flow='associated' /\n",
-        "needs mode = 'static', got 'limerick'",
-    ),
+        1, "&analysis mode='limerick', flow='associated' /\n", "needs mode = 'static', got 'limerick'"),
     "too-many-cases": (
         2,
         "&sweep parameter='radius', first=1, last=2, count=1000 /\n"
@@ -292,9 +233,7 @@ def test_gravity_may_be_zero_where_the_weight_is_given(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("half_angle", ["90", "90.0", "9e1"])
 def test_half_angle_may_repeat_the_last_joint(tmp_path: Path, half_angle: str) -> None:
-    (tmp_path / "deck.nml").write_text(
-        f"&arch joints_deg = 0, 50, 90, half_angle_deg = {half_angle} /\n"
-    )
+    (tmp_path / "deck.nml").write_text(f"&arch joints_deg = 0, 50, 90, half_angle_deg = {half_angle} /\n")
     assert run_dda("check", "deck.nml", cwd=tmp_path).returncode == 0
 
 
@@ -376,17 +315,12 @@ def test_second_set_is_told_from_the_first(tmp_path: Path) -> None:
     assert done.stderr.startswith("--set:2: error: ")
 
 
-@pytest.mark.parametrize(
-    "cases", ["0", "2", "1-2", "1-", "-1", "1--1", "2-1", "x", "1,,1", "1, 1", "1.0", "1-1-1"]
-)
+@pytest.mark.parametrize("cases", ["0", "2", "1-2", "1-", "-1", "1--1", "2-1", "x", "1,,1", "1, 1", "1.0", "1-1-1"])
 def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
     done = run_dda("run", "deck.nml", "--cases", cases, cwd=tmp_path)
     assert done.returncode == 2
-    assert re.fullmatch(
-        r"--cases:1: error: expected cases from 1 to 1, got '.*'; write them like 1-4,7\n",
-        done.stderr,
-    )
+    assert re.fullmatch(r"--cases:1: error: expected cases from 1 to 1, got '.*'; write them like 1-4,7\n", done.stderr)
     assert not (tmp_path / "deck").exists()
 
 

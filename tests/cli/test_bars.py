@@ -57,9 +57,7 @@ def test_a_bolt_holds_a_block_from_its_least_strength_on(
     tmp_path: Path, slope: float, friction: float, angle: float, strength: float | None
 ) -> None:
     psi, phi, beta = map(math.radians, (slope, friction, angle))
-    least = (math.sin(psi) - math.cos(psi) * math.tan(phi)) / (
-        math.cos(beta) + math.sin(beta) * math.tan(phi)
-    )
+    least = (math.sin(psi) - math.cos(psi) * math.tan(phi)) / (math.cos(beta) + math.sin(beta) * math.tan(phi))
     assert strength is None or least == pytest.approx(strength, rel=1e-12)
     start = (1.0, 0.5)
     end = (1.0 + 3.0 * math.cos(beta), 0.5 - 3.0 * math.sin(beta))
@@ -75,9 +73,7 @@ def test_a_bolt_holds_a_block_from_its_least_strength_on(
 
 @pytest.mark.parametrize("geometry", ["reference", "current"])
 @pytest.mark.parametrize("words", ["stiffness", "ea"])
-def test_three_bolts_share_a_slab_by_their_stiffness(
-    tmp_path: Path, geometry: str, words: str
-) -> None:
+def test_three_bolts_share_a_slab_by_their_stiffness(tmp_path: Path, geometry: str, words: str) -> None:
     scene = block([(-2.0, 3.0), (4.0, 3.0), (4.0, 4.0), (-2.0, 4.0)], "fixed")
     scene += block([(-1.4, 0.0), (3.6, 0.0), (3.6, 1.0), (-1.4, 1.0)])
     for x, stiffness in ((0.0, 2e7), (1.0, 1e7), (2.5, 3e7)):
@@ -110,9 +106,7 @@ def test_a_bar_that_is_too_weak_yields_and_one_that_breaks_lets_go(tmp_path: Pat
     speed = weight / k * omega * math.sin(omega * first)
     left = time - first
     for way, force in zip(ways, (0.4 * weight, weight), strict=True):
-        assert way == pytest.approx(
-            0.6 * weight / k + speed * left + 0.5 * force / mass * left**2, rel=5e-3
-        )
+        assert way == pytest.approx(0.6 * weight / k + speed * left + 0.5 * force / mass * left**2, rel=5e-3)
 
 
 def test_a_bonded_block_is_pushed_off_when_its_bond_and_its_bar_have_given_all(tmp_path: Path) -> None:
@@ -198,14 +192,7 @@ def buttressed_arch(thickness: float, n: int, height: float, width: float) -> st
     ],
 )
 def test_a_tie_holds_an_arch_within_the_range_of_its_force(
-    tmp_path: Path,
-    thickness: float,
-    n: int,
-    height: float,
-    width: float,
-    least: float,
-    greatest: float,
-) -> None:
+    tmp_path: Path, thickness: float, n: int, height: float, width: float, least: float, greatest: float) -> None:
     scene = buttressed_arch(thickness, n, height, width)
     deck = "&material unit_weight=1 young=1e9 /\n&joint friction_deg=89.95 /\n"
     row = run_blocks(tmp_path, scene, deck + "&output thrust_bar=1 /\n")

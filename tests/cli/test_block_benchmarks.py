@@ -96,9 +96,7 @@ def test_wedge_carries_weight_over_twice_sine_and_friction(geometry: str, tmp_pa
 
 @pytest.mark.parametrize("geometry", ["reference", "current"])
 @pytest.mark.parametrize("deck, verdict", [("overhang_stands", "stable"), ("overhang_falls", "collapsed")])
-def test_stack_leans_out_to_the_harmonic_limit(
-    deck: str, verdict: str, geometry: str, tmp_path: Path
-) -> None:
+def test_stack_leans_out_to_the_harmonic_limit(deck: str, verdict: str, geometry: str, tmp_path: Path) -> None:
     rows = table(run(deck, tmp_path / "out", f"analysis%geometry={geometry}"))
     assert [row["verdict"] for row in rows] == [verdict]
 

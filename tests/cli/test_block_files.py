@@ -66,9 +66,7 @@ def test_corners_may_run_either_way_and_nothing_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("share, verdict", [(0.99, "stable"), (1.01, "collapsed")])
-def test_a_load_on_a_joint_acts_on_the_block_that_is_named(
-    tmp_path: Path, share: float, verdict: str
-) -> None:
+def test_a_load_on_a_joint_acts_on_the_block_that_is_named(tmp_path: Path, share: float, verdict: str) -> None:
     """A block of weight 2 w slides under a force of 2 w tan(friction) at its foot; its base does not."""
     force = share * 2.0 * 25000.0 * math.tan(math.radians(20.0))
     groups = "&material unit_weight = 25000.0 /\n&joint friction_deg = 20 /"
@@ -106,9 +104,7 @@ def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
         (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "conflicts with the other fixed or"),
     ],
 )
-def test_bad_blocks_are_refused_with_file_and_line(
-    tmp_path: Path, blocks: str, line: int, words: str
-) -> None:
+def test_bad_blocks_are_refused_with_file_and_line(tmp_path: Path, blocks: str, line: int, words: str) -> None:
     done = run_dda("run", write(tmp_path, blocks), cwd=tmp_path)
     assert done.returncode == 2
     (message,) = done.stderr.splitlines()
@@ -123,16 +119,10 @@ def test_bad_blocks_are_refused_with_file_and_line(
         (BASE.replace("block", "block fixed\n5 5\n6 5\n6 6\nblock", 1), 1, "all blocks are fixed"),
         (BASE + BLOCK.replace("0\n", "3\n", 2).replace("2\n", "5\n"), 6, "has no support"),
         (BASE + BLOCK + "material 2 density 1\n" + "block\n1e7 0\n10000000.1 0\n1e7 0.1\n", 12, "few digits"),
-        (
-            (BASE + BLOCK).replace("1", "1000").replace("2", "2000"),
-            1,
-            "strains it by",
-        ),
+        ((BASE + BLOCK).replace("1", "1000").replace("2", "2000"), 1, "strains it by"),
     ],
 )
-def test_doubtful_blocks_are_warned_of_with_file_and_line(
-    tmp_path: Path, blocks: str, line: int, words: str
-) -> None:
+def test_doubtful_blocks_are_warned_of_with_file_and_line(tmp_path: Path, blocks: str, line: int, words: str) -> None:
     deck = write(tmp_path, blocks, "&analysis mode = 'dynamic', steps = 2, duration = 1e-6 /")
     done = run_dda("run", deck, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -182,9 +172,7 @@ def test_pictures_show_joints_that_come_and_go(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("held", ["", "fix 0 2\n", "displacement 1 2\n0 0 0\n0.5 0.1 0.05\n"])
-def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(
-    tmp_path: Path, held: str
-) -> None:
+def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(tmp_path: Path, held: str) -> None:
     groups = "&joint friction_deg = 20 /\n&load horizontal_coefficient = 0.5 /\n"
     groups += "&analysis mode = 'dynamic', time_step = 0.01, steps = {} /\n&output restart = .true. /"
     blocks = BASE + BLOCK + "measure 0.5 1\n" + held
@@ -194,9 +182,7 @@ def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(
     for deck in (whole, first, rest):
         done = run_dda("run", deck, "--quiet", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
-    assert (tmp_path / "whole/case_1.restart").read_bytes() == (
-        tmp_path / "rest/case_1.restart"
-    ).read_bytes()
+    assert (tmp_path / "whole/case_1.restart").read_bytes() == (tmp_path / "rest/case_1.restart").read_bytes()
     assert table(tmp_path / "whole/points.csv")[30:] == table(tmp_path / "rest/points.csv")
 
 

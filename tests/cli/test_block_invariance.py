@@ -117,9 +117,7 @@ def test_places_move_with_the_scene_to_four_spacings(tmp_path: Path, geometry: s
     """Blocks a tenth of a metre wide, coordinates of 1e7 m."""
     deck = "&joint friction_deg = 35.0 /\n&load horizontal_coefficient = 0.1 /\n"
     rows = joints(tmp_path / "a", scene(lambda p: (p[0] / 10, p[1] / 10)), deck, geometry)
-    far = joints(
-        tmp_path / "b", scene(lambda p: (p[0] / 10 + 1e7, p[1] / 10 + 1e7)), deck, geometry
-    )
+    far = joints(tmp_path / "b", scene(lambda p: (p[0] / 10 + 1e7, p[1] / 10 + 1e7)), deck, geometry)
     assert len(rows) == len(far) == 4
     for row, other in zip(rows, far):
         for name in ("x_intrados", "y_intrados", "x_extrados", "y_extrados"):

@@ -61,10 +61,7 @@ def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
         ("&analysis geometry = 'current' /\n", ["6 per block, 216 in all: deformable: strain moves the corners"]),
         ("&analysis mode = 'dynamic' /\n", ["6 per block", "deformable: moving blocks vibrate", "kept"]),
         ("&arch /\n", ["points none", "other output vtu", "strength none"]),
-        (
-            "&output energy = .true., vtu = .false., condition = .true. /\n",
-            ["other output energy, condition"],
-        ),
+        ("&output energy = .true., vtu = .false., condition = .true. /\n", ["other output energy, condition"]),
         ("&output vtu = .false. /\n", ["other output none"]),
         ("&joint cohesion = 1e3 /\n", ["6 per block", "which joint breaks first"]),
         ("&analysis collapse_displacement = 0.1 /\n", ["6 per block", "displacement that means"]),
@@ -114,9 +111,7 @@ def test_every_deck_is_checked(tmp_path: Path) -> None:
     assert [line.split(" ")[0] for line in lines] == ["bad.nml:2:", "missing.nml:1:"]
 
 
-@pytest.mark.parametrize(
-    ("table", "arches"), [("table1", 8), ("table2", 20), ("table3", 15), ("table4", 10)]
-)
+@pytest.mark.parametrize(("table", "arches"), [("table1", 8), ("table2", 20), ("table3", 15), ("table4", 10)])
 def test_decks_of_the_paper_are_good(tmp_path: Path, table: str, arches: int) -> None:
     done = run_dda("check", PAPER / f"{table}.nml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -136,8 +131,7 @@ RECORDED = {
 @pytest.mark.parametrize("kind", RECORDED)
 def test_record_is_what_a_run_writes_down(tmp_path: Path, kind: str) -> None:
     """Tables with their first lines, and deck.record to the last byte."""
-    (tmp_path / "x.blocks").write_text(
-        "block fixed\n0 0\n1 0\n1 1\n0 1\nblock\n0 1\n1 1\n1 2\n0 2\nmeasure 0.5 2\n")
+    (tmp_path / "x.blocks").write_text("block fixed\n0 0\n1 0\n1 1\n0 1\nblock\n0 1\n1 1\n1 2\n0 2\nmeasure 0.5 2\n")
     (tmp_path / "x.geo").write_text((INPUT / "terrace.geo").read_text())
     (tmp_path / "d.nml").write_text(RECORDED[kind])
     setting = ["--set", "joint%friction_deg=35"]

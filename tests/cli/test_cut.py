@@ -61,9 +61,7 @@ def test_a_build_without_xml_says_what_is_missing() -> None:
     + [(f"fixedlines_case{i}", [1.0], n) for i, n in ((1, 2), (2, 1), (3, 1), (4, 1), (7, 2), (8, 1))]
     + [("fixedlines_case5", [1.0, 1.0], 2), ("fixedlines_case6", [1.0, 1.0], 4)],
 )
-def test_examples_of_the_original_are_cut(
-    tmp_path: Path, name: str, areas: list[float] | None, fixed: int
-) -> None:
+def test_examples_of_the_original_are_cut(tmp_path: Path, name: str, areas: list[float] | None, fixed: int) -> None:
     path = HELD / "original" / f"{name}.geo"
     if not path.exists():
         pytest.skip(f"{path} is not here")
@@ -124,9 +122,7 @@ def test_bad_files_are_refused_with_their_line(tmp_path: Path, text: str, wanted
     done = run_dda("cut", "a.geo", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stdout == ""
-    assert [line for line in done.stderr.splitlines() if "error" in line][0].startswith(
-        f"a.geo:{wanted}"
-    )
+    assert [line for line in done.stderr.splitlines() if "error" in line][0].startswith(f"a.geo:{wanted}")
 
 
 @pytest.mark.parametrize(

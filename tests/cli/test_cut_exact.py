@@ -24,9 +24,7 @@ def cross(o: Point, a: Point, b: Point) -> Fraction:
 def holds(line: Line, p: Point) -> bool:
     """Tell whether a point lies on a segment."""
     (a, b) = line
-    return cross(a, b, p) == 0 and all(
-        min(a[i], b[i]) <= p[i] <= max(a[i], b[i]) for i in range(2)
-    )
+    return cross(a, b, p) == 0 and all(min(a[i], b[i]) <= p[i] <= max(a[i], b[i]) for i in range(2))
 
 
 def common_points(one: Line, other: Line) -> set[Point]:
@@ -113,9 +111,7 @@ def nested(rows: list[str]) -> bool:
 @pytest.mark.parametrize(("n", "grid"), [(3, 4), (8, 4), (8, 12), (25, 7), (60, 9), (60, 1000)])
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("offset", [0, 2**20])
-def test_blocks_are_those_of_exact_arithmetic(
-    tmp_path: Path, n: int, grid: int, seed: int, offset: int
-) -> None:
+def test_blocks_are_those_of_exact_arithmetic(tmp_path: Path, n: int, grid: int, seed: int, offset: int) -> None:
     lines = random_lines(random.Random(1000 * n + seed), n, grid)
     rows = [" ".join(str(int(v) + offset) for p in line for v in p) + " 1\n" for line in lines]
     (tmp_path / "a.geo").write_text(f"0\n{len(lines)} 0\n0\n0\n0\n0\n0\n0\n" + "".join(rows))

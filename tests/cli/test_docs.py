@@ -21,9 +21,7 @@ from dda_command import run_dda
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
-INSTALL = re.compile(
-    r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper "
-)
+INSTALL = re.compile(r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper ")
 COMMAND = re.compile(r"(\$ |dda |voussoir |build/bin/|&[a-z]+\b.*/|python3 |pip |PYTHONPATH=)")
 LABELS = {"", "text", "sh", "sh install", "console", "f90", "fortran", "python", "message"}
 
@@ -78,9 +76,7 @@ def shell(tmp_path: Path) -> dict[str, str]:
 
 def run_script(text: str, folder: Path, shell: dict[str, str]) -> str:
     """What a shell script prints; it must succeed."""
-    done = subprocess.run(
-        ["sh", "-e", "-c", text], cwd=folder, env=shell, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run(["sh", "-e", "-c", text], cwd=folder, env=shell, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
     return done.stdout
 

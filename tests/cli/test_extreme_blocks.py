@@ -34,9 +34,7 @@ def run(folder: Path, blocks: str, groups: str, name: str = "results") -> list[d
 
 @pytest.mark.parametrize("thickness", [1e-3, 1e-5, 1e-7])
 @pytest.mark.parametrize("geometry", ["reference", "current"])
-def test_a_sheet_carries_all_that_stands_on_it(
-    tmp_path: Path, thickness: float, geometry: str
-) -> None:
+def test_a_sheet_carries_all_that_stands_on_it(tmp_path: Path, thickness: float, geometry: str) -> None:
     blocks = BASE + rectangle(0.0, 0.0, 1.0, thickness) + rectangle(0.0, thickness, 1.0, 1.0)
     groups = f"&analysis geometry = '{geometry}' /\n&material unit_weight = 25000.0, young = 5e12 /"
     rows = [row for row in run(tmp_path, blocks, groups, "joints") if row["state"] != "open"]
@@ -87,9 +85,7 @@ def test_long_steps_let_nothing_through_the_floor(tmp_path: Path, step: float) -
     assert abs(float(last["v"])) < 1e-5
 
 
-def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(
-    tmp_path: Path,
-) -> None:
+def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(tmp_path: Path) -> None:
     """The middle of the bracket about tan(phi) is tan(phi): nothing rests there, nothing moves."""
     blocks = BASE + rectangle(-0.345, 0.0, 0.62, 0.941) + rectangle(-0.516, 0.941, 0.778, 1.047)
     groups = "&joint friction_deg = 7.61 /\n&material young = 5e13 /\n"
@@ -108,9 +104,7 @@ def quarter_period(amplitude: float, frequency: float) -> float:
 
 
 @pytest.mark.parametrize("amplitude_deg", [20.0, 60.0, 150.0])
-def test_a_pendulum_keeps_its_period_and_gains_no_energy(
-    tmp_path: Path, amplitude_deg: float
-) -> None:
+def test_a_pendulum_keeps_its_period_and_gains_no_energy(tmp_path: Path, amplitude_deg: float) -> None:
     """A bar held at the middle of its end, let go; the step is of second order."""
     amplitude, width, height = math.radians(amplitude_deg), 0.1, 1.0
     c, s = math.cos(amplitude), math.sin(amplitude)

@@ -57,9 +57,7 @@ def test_a_leaning_block_never_stands_however_soft_it_is(tmp_path: Path, young: 
 
 @pytest.mark.parametrize("shape", list(LEANING))
 @pytest.mark.parametrize("size", [0.1, 10.0])
-def test_no_leaning_block_stands_that_comes_to_lie_on_its_side(
-    tmp_path: Path, shape: str, size: float
-) -> None:
+def test_no_leaning_block_stands_that_comes_to_lie_on_its_side(tmp_path: Path, shape: str, size: float) -> None:
     """A block of another size is as soft if young goes with it."""
     blocks = BASE + block(*((size * x, size * y) for x, y in LEANING[shape]))
     for young in (2e5, 1e6):
@@ -72,9 +70,7 @@ def test_a_block_that_slides_to_a_stop_has_left_its_place(tmp_path: Path, young:
     """Down 45 degrees by more than its own size, against a wall."""
     slope = block((0, 0), (10, -10), (10, -30), (0, -30), words="fixed")
     wall = rectangle(10, -12, 2, 6, words="fixed")
-    groups = (
-        f"&analysis geometry = 'current' /\n&material young = {young!r} /\n&joint friction_deg = 10 /"
-    )
+    groups = (f"&analysis geometry = 'current' /\n&material young = {young!r} /\n&joint friction_deg = 10 /")
     blocks = slope + wall + block((4, -4), (6, -6), (6, -3), (4, -3))
     assert verdict(tmp_path, blocks, groups)[0] == "collapsed"
 
@@ -83,10 +79,7 @@ def test_a_displacement_that_means_collapse_is_waited_for(tmp_path: Path) -> Non
     """The deck's own limit counts while a block moves; what rests on its side does not stand."""
     blocks = BASE + block(*LEANING["parallelogram"])
     for limit, farthest in ((3.0, 4.0), (50.0, 50.0)):
-        groups = (
-            f"&analysis geometry = 'current', collapse_displacement = {limit!r} /\n"
-            "&material young = 1e6 /"
-        )
+        groups = (f"&analysis geometry = 'current', collapse_displacement = {limit!r} /\n" "&material young = 1e6 /")
         answer, way = verdict(tmp_path, blocks, groups)
         assert answer == "collapsed"
         assert way < farthest
@@ -98,9 +91,7 @@ def test_the_top_of_a_soft_tower_sinks_by_more_than_a_block_and_stands(tmp_path:
     height, young, weight = 2.0, 1e5, 22000.0
     plates = "".join(rectangle(0.0, i * 0.05, 1.0, 0.05) for i in range(40))
     groups = (
-        "&analysis geometry = 'current' /\n"
-        f"&material young = {young!r}, unit_weight = {weight!r}, poisson = 0 /"
-    )
+        "&analysis geometry = 'current' /\n" f"&material young = {young!r}, unit_weight = {weight!r}, poisson = 0 /")
     answer, way = verdict(tmp_path, BASE + plates, groups)
     assert answer == "stable"
     assert way > 1.9 * math.sqrt(0.05)
@@ -119,9 +110,7 @@ def test_a_block_goes_with_the_one_that_is_led(tmp_path: Path) -> None:
     """Over 3 m, three times its size."""
     led = "".join(f"displacement {x} 0.2\n0 0 0\n1 0 0\n20 3 0\n" for x in (0.2, 1.8))
     blocks = BASE + rectangle(0.0, 0.0, 2.0, 1.0) + rectangle(0.5, 1.0, 1.0, 1.0) + led
-    groups = (
-        "&analysis geometry = 'current', steps = 4000, time_step = 0.05 /\n&material young = 5e6 /"
-    )
+    groups = ("&analysis geometry = 'current', steps = 4000, time_step = 0.05 /\n&material young = 5e6 /")
     answer, way = verdict(tmp_path, blocks, groups)
     assert answer == "stable"
     assert way == pytest.approx(3.0, abs=0.05)

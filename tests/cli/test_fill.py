@@ -140,8 +140,7 @@ def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
     outer, half = inner + 0.5, math.asin(2.0 / 2.5)
     ends = [outer * math.sin(half * (2 * k / 9 - 1)) for k in range(10)]
     heights = [outer * math.cos(half * (2 * k / 9 - 1)) for k in range(10)]
-    above = sum((b - a) * (outer + 0.4 - (u + v) / 2.0) for a, b, u, v in
-                zip(ends, ends[1:], heights, heights[1:]))
+    above = sum((b - a) * (outer + 0.4 - (u + v) / 2.0) for a, b, u, v in zip(ends, ends[1:], heights, heights[1:]))
     # an odd number of voussoirs: the highest chord lies below the crown of the circle
     above -= (outer - max(heights)) * (ends[-1] - ends[0])
     arch = 9 * math.sin(2 * half / 9) * (outer**2 - inner**2) / 2.0

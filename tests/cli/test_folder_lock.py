@@ -55,12 +55,8 @@ def cases_of(table: Path) -> list[int]:
         return [int(row["case"]) for row in csv.DictReader(lines)]
 
 
-@pytest.mark.parametrize(
-    "words", [["long.nml"], ["long.nml", "--resume"], ["short.nml", "--jobs", "2"]], ids=" ".join
-)
-def test_second_run_in_a_folder_gives_4_and_leaves_the_first_whole(
-    tmp_path: Path, words: list[str]
-) -> None:
+@pytest.mark.parametrize("words", [["long.nml"], ["long.nml", "--resume"], ["short.nml", "--jobs", "2"]], ids=" ".join)
+def test_second_run_in_a_folder_gives_4_and_leaves_the_first_whole(tmp_path: Path, words: list[str]) -> None:
     write(tmp_path)
     with running(tmp_path) as first:
         done = run_dda("run", *words, "--out", "out", cwd=tmp_path, timeout=60)
@@ -76,8 +72,7 @@ def test_second_run_in_a_folder_gives_4_and_leaves_the_first_whole(
     assert run_dda("run", "long.nml", "--out", "plain", "--quiet", cwd=tmp_path).returncode == 0
     for name in ("joints.csv", "log.txt", "deck.record"):
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "plain" / name).read_bytes()
-    assert "600 of 600" in run_dda(
-        "run", "long.nml", "--out", "out", "--resume", cwd=tmp_path).stdout
+    assert "600 of 600" in run_dda("run", "long.nml", "--out", "out", "--resume", cwd=tmp_path).stdout
 
 
 def test_other_folders_are_free(tmp_path: Path) -> None:
@@ -143,9 +138,7 @@ def test_file_system_without_locks_is_told(tmp_path: Path) -> None:
     for quiet in ([], ["--quiet"]):
         done = subprocess.run(
             [os.environ["DDA"], "run", "short.nml", "--out", "out", *quiet], cwd=tmp_path,
-            env={**os.environ, "LD_PRELOAD": str(library)}, capture_output=True, text=True,
-            check=False,
-        )
+            env={**os.environ, "LD_PRELOAD": str(library)}, capture_output=True, text=True, check=False)
         assert done.returncode == 0
         told = "" if quiet else (
             "out/run.lock:1: warning: this file system knows no locks: nothing keeps another run "

@@ -34,9 +34,7 @@ PRINTING = [
 ]
 
 
-def dda(
-    folder: Path, *words: str, most: int | None = None, **streams: object
-) -> subprocess.CompletedProcess[str]:
+def dda(folder: Path, *words: str, most: int | None = None, **streams: object) -> subprocess.CompletedProcess[str]:
     """Run the program; no file may grow beyond `most` bytes."""
 
     def limit() -> None:
@@ -121,9 +119,7 @@ def test_closed_descriptors_spoil_no_table(tmp_path: Path, closed: list[int]) ->
     ],
     ids=["arch", "pictures", "restart"],
 )
-def test_file_that_may_not_grow_gives_4_and_one_line(
-    tmp_path: Path, words: list[str], files: int
-) -> None:
+def test_file_that_may_not_grow_gives_4_and_one_line(tmp_path: Path, words: list[str], files: int) -> None:
     """Each file in turn is the smallest one that does not fit, by 1 byte, by 8, and by half."""
     write(tmp_path)
     words = ["run", *words, "--out", "o", "--quiet"]
@@ -142,10 +138,8 @@ def test_file_that_may_not_grow_gives_4_and_one_line(
 
 
 @pytest.mark.parametrize(
-    "words",
-    [["export", "arch.nml"], ["cut", "t.geo", "--out", "t.csv"], ["cut", "t.geo", "--out", "t.vtu"]],
-    ids=" ".join,
-)
+    "words", [["export", "arch.nml"], ["cut", "t.geo", "--out", "t.csv"], ["cut", "t.geo", "--out", "t.vtu"]],
+    ids=" ".join)
 def test_model_that_may_not_grow_gives_4_and_one_line(tmp_path: Path, words: list[str]) -> None:
     write(tmp_path)
     (tmp_path / "t.geo").write_text((INPUT / "terrace.geo").read_text())

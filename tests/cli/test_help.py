@@ -80,8 +80,7 @@ def run_jobs(folder: Path) -> None:
 
 
 def run_set(folder: Path) -> None:
-    done = run_dda("run", "deck.nml", "--set", "arch%voussoirs=7", "--set", "joint%friction_deg=60",
-                   cwd=folder)
+    done = run_dda("run", "deck.nml", "--set", "arch%voussoirs=7", "--set", "joint%friction_deg=60", cwd=folder)
     assert done.returncode == 0
     for row in (folder / "deck" / "results.csv").read_text().splitlines()[1:]:
         assert ",7,90,0.12,60," in row
@@ -156,8 +155,7 @@ def export_set(folder: Path) -> None:
         setting = f"arch%voussoirs={count}"
         done = run_dda("export", "deck.nml", "--out", name, "--set", setting, cwd=folder)
         assert done.returncode == 0
-    few, many = (sum(file.stat().st_size for file in (folder / name).glob("*.geo"))
-                 for name in ("few", "many"))
+    few, many = (sum(file.stat().st_size for file in (folder / name).glob("*.geo")) for name in ("few", "many"))
     assert many > 2 * few
 
 
@@ -169,22 +167,11 @@ def export_quiet(folder: Path) -> None:
 
 #: Subcommand and option: what proves that the option works
 PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
-    ("run", "--out"): run_out,
-    ("run", "--jobs"): run_jobs,
-    ("run", "--set"): run_set,
-    ("run", "--cases"): run_cases,
-    ("run", "--resume"): run_resume,
-    ("run", "--tight"): run_tight,
-    ("run", "--quiet"): run_quiet,
-    ("check", "--set"): check_set,
-    ("check", "--record"): check_record,
-    ("check", "--quiet"): check_quiet,
-    ("cut", "--out"): cut_out,
-    ("cut", "--quiet"): cut_quiet,
-    ("export", "--out"): export_out,
-    ("export", "--set"): export_set,
-    ("export", "--quiet"): export_quiet,
-}
+    ("run", "--out"): run_out, ("run", "--jobs"): run_jobs, ("run", "--set"): run_set, ("run", "--cases"): run_cases,
+    ("run", "--resume"): run_resume, ("run", "--tight"): run_tight, ("run", "--quiet"): run_quiet,
+    ("check", "--set"): check_set, ("check", "--record"): check_record, ("check", "--quiet"): check_quiet,
+    ("cut", "--out"): cut_out, ("cut", "--quiet"): cut_quiet, ("export", "--out"): export_out,
+    ("export", "--set"): export_set, ("export", "--quiet"): export_quiet}
 
 
 def options_of(verb: str) -> dict[str, str]:

@@ -58,9 +58,7 @@ def arch_on_led_supports(count: int, ratio: float, half_angle_deg: float, way: s
         angle = -half + 2 * half * joint / count
         return radius * math.sin(angle), radius * math.cos(angle)
 
-    text = [
-        polygon([place(inner, i), place(outer, i), place(outer, i + 1), place(inner, i + 1)]) for i in range(count)
-    ]
+    text = [polygon([place(inner, i), place(outer, i), place(outer, i + 1), place(inner, i + 1)]) for i in range(count)]
     for side, (x, y) in zip((0, count), WAYS[way], strict=True):
         lower, upper = place(inner, side), place(outer, side)
         down = math.copysign(3.0, side - 0.5) * math.cos(half), -3.0 * math.sin(half)

@@ -127,9 +127,7 @@ def test_blocks_of_many_corners_fit_and_touch(tmp_path: Path) -> None:
 def test_many_laws_and_materials_are_read(tmp_path: Path) -> None:
     materials = "".join(f"material {m} density {1000 + m}\n" for m in range(2, 1001))
     laws = "".join(f"joint {a} {b} friction_deg {b % 60}\n" for a in range(1, 201) for b in range(a, 1001))
-    blocks = "".join(
-        f"block material {2 + b % 999}\n{b} 0\n{b + 1} 0\n{b + 1} 1\n{b} 1\n" for b in range(20000)
-    )
+    blocks = "".join(f"block material {2 + b % 999}\n{b} 0\n{b + 1} 0\n{b + 1} 1\n{b} 1\n" for b in range(20000))
     done = check(tmp_path, "block fixed\n-1 0\n0 0\n0 1\n-1 1\n" + blocks + materials + laws, "")
     assert done.returncode == 0 and done.stderr == ""
 
@@ -144,10 +142,7 @@ def test_blocks_upon_one_another_are_refused_at_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["! " + "x" * 10000000, " " * 10000000, "\n" * 3000000],
-    ids=["comment", "blanks", "empty lines"],
-)
+    "text", ["! " + "x" * 10000000, " " * 10000000, "\n" * 3000000], ids=["comment", "blanks", "empty lines"])
 def test_blanks_and_comments_of_any_length_are_skipped(tmp_path: Path, text: str) -> None:
     done = check(tmp_path, text + "\n" + row(2) + text)
     assert done.returncode == 0 and done.stderr == ""

@@ -89,9 +89,7 @@ def test_joints_of_the_standing_arch_carry_its_weight(tmp_path: Path) -> None:
 
 def test_search_finds_the_limit_of_the_original(tmp_path: Path) -> None:
     (row,) = results_of(
-        tmp_path,
-        "&arch voussoirs = 12 /\n" + MODE + "&search low = 0.1087, high = 0.10895, tolerance = 8e-4 /\n",
-    )
+        tmp_path, "&arch voussoirs = 12 /\n" + MODE + "&search low = 0.1087, high = 0.10895, tolerance = 8e-4 /\n")
     assert row["verdict"] == "found"
     assert row["collapses_at"] == "low"
     assert float(row["critical_low"]) < 0.10880 < float(row["critical_high"])
@@ -108,8 +106,7 @@ def test_less_penetration_brings_the_limit_to_the_exact_value(tmp_path: Path) ->
 
 
 def test_limit_is_linear_in_the_penetration_and_exact_without_any(tmp_path: Path) -> None:
-    done = run_dda("run", DECKS / "penetration.nml", "--out", tmp_path, "--quiet", "--set",
-                   "search%tolerance=1e-3")
+    done = run_dda("run", DECKS / "penetration.nml", "--out", tmp_path, "--quiet", "--set", "search%tolerance=1e-3")
     assert done.returncode == 0, done.stderr
     slopes = []
     for voussoirs in ("12", "36"):
@@ -126,9 +123,7 @@ def test_limit_is_linear_in_the_penetration_and_exact_without_any(tmp_path: Path
 
 
 def test_search_whose_ends_agree_ends_with_their_verdict(tmp_path: Path) -> None:
-    (row,) = results_of(
-        tmp_path, "&arch voussoirs = 12 /\n" + MODE + "&search low = 0.13, high = 0.15 /\n"
-    )
+    (row,) = results_of(tmp_path, "&arch voussoirs = 12 /\n" + MODE + "&search low = 0.13, high = 0.15 /\n")
     assert row["verdict"] == "stable"
     assert row["critical"] == ""
 
@@ -156,10 +151,7 @@ def test_steps_that_are_spent_leave_it_stable_with_a_remark(tmp_path: Path) -> N
 
 def test_dynamic_run_is_completed(tmp_path: Path) -> None:
     (row,) = results_of(
-        tmp_path,
-        "&arch voussoirs = 4 /\n&limerick dynamic = .true. /\n"
-        "&analysis mode = 'limerick', steps = 20 /\n",
-    )
+        tmp_path, "&arch voussoirs = 4 /\n&limerick dynamic = .true. /\n" "&analysis mode = 'limerick', steps = 20 /\n")
     assert row["verdict"] == "completed"
     assert row["steps"] == "20"
 
@@ -244,9 +236,7 @@ def test_block_of_a_file_stands_on_a_slope_flatter_than_its_friction(
         40 * math.cos(math.radians(20)), rel=0.001 if verdict == "stable" else 0.1
     )
     if verdict == "stable":
-        assert abs(float(joint["shear_force"])) == pytest.approx(
-            40 * math.sin(math.radians(20)), rel=0.001
-        )
+        assert abs(float(joint["shear_force"])) == pytest.approx(40 * math.sin(math.radians(20)), rel=0.001)
     else:
         assert row["collapse_mode"] == "sliding"
 

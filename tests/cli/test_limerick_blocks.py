@@ -29,8 +29,7 @@ def portal(scale: float = 1.0, x: float = 0.0, y: float = 0.0) -> str:
         corners = ((left, low), (right, low), (right, high), (left, high))
         return polygon(*((x + scale * a, y + scale * b) for a, b in corners), head=head)
 
-    return (box(-1, -0.5, 6, 0, "block fixed") + box(0, 0, 1, 3) + box(4, 0, 5, 3)
-            + box(0, 3, 5, 3.8))
+    return (box(-1, -0.5, 6, 0, "block fixed") + box(0, 0, 1, 3) + box(4, 0, 5, 3) + box(0, 3, 5, 3.8))
 
 
 def run(folder: Path, blocks: str, groups: str = MATERIAL + MODE, *options: str) -> dict[str, str]:
@@ -126,15 +125,12 @@ def test_held_line_carries_every_block_that_it_crosses(tmp_path: Path) -> None:
 
 
 def test_materials_have_their_own_weights(tmp_path: Path) -> None:
-    run(tmp_path, GROUND + BLOCK.replace("block", "block material 2")
-        + "material 2 density 500 unit_weight 7000\n")
+    run(tmp_path, GROUND + BLOCK.replace("block", "block material 2") + "material 2 density 500 unit_weight 7000\n")
     assert normal_force(tmp_path) == pytest.approx(14e3, rel=1e-3)
 
 
 @pytest.mark.parametrize("own, other, verdict", [(12.0, 60.0, "stable"), (10.0, 60.0, "collapsed")])
-def test_law_is_that_of_the_two_materials(
-    tmp_path: Path, own: float, other: float, verdict: str
-) -> None:
+def test_law_is_that_of_the_two_materials(tmp_path: Path, own: float, other: float, verdict: str) -> None:
     """A push of 0.2 needs 11.3 degrees between the two, whatever the others are."""
     blocks = GROUND + BLOCK.replace("block", "block material 2") + "material 2\n"
     laws = f"joint 1 2 friction_deg {own}\njoint 2 2 friction_deg {other}\n"
@@ -184,11 +180,9 @@ def test_stress_at_the_beginning_lets_go(tmp_path: Path) -> None:
 def test_joint_of_one_corner_tells_its_force(tmp_path: Path) -> None:
     """A roof of 1 m base and 1 m height stands on its tip between two walls' corners."""
     tip = polygon((0.5, 0), (1.0, 1.0), (0, 1.0))
-    walls = "".join(polygon((x, 0.5), (x + 1, 0.5), (x + 1, 1), (x, 1), head="block fixed")
-                    for x in (-1.0, 1.0))
+    walls = "".join(polygon((x, 0.5), (x + 1, 0.5), (x + 1, 1), (x, 1), head="block fixed") for x in (-1.0, 1.0))
     run(tmp_path, GROUND.replace("-1", "-2") + tip + walls)
-    (joint,) = (row for row in table(tmp_path / "x" / "joints.csv")
-                if {row["block_1"], row["block_2"]} == {"1", "2"})
+    (joint,) = (row for row in table(tmp_path / "x" / "joints.csv") if {row["block_1"], row["block_2"]} == {"1", "2"})
     assert float(joint["normal_force"]) == pytest.approx(10e3, rel=1e-2)
     assert joint["x_intrados"] == joint["x_extrados"]
 
@@ -214,9 +208,7 @@ def test_two_joints_between_two_blocks_share_the_weight(tmp_path: Path) -> None:
     ],
     ids=["roller", "line", "led", "led in time", "ground", "ground by velocity", "velocity"],
 )
-def test_what_the_scheme_cannot_do_is_refused(
-    tmp_path: Path, line: int, text: str, words: str
-) -> None:
+def test_what_the_scheme_cannot_do_is_refused(tmp_path: Path, line: int, text: str, words: str) -> None:
     (tmp_path / "x.blocks").write_text(GROUND + BLOCK + text)
     (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + MODE)
     for command in ("check", "run"):
@@ -243,8 +235,7 @@ def test_slope_holds_by_friction(tmp_path: Path) -> None:
     def turned(*corners: complex, head: str = "block") -> str:
         return polygon(*(((c * turn).real, (c * turn).imag) for c in corners), head=head)
 
-    blocks = (turned(-4 - 1j, 4 - 1j, 4 + 0j, -4 + 0j, head="block fixed")
-              + turned(-1 + 0j, 1 + 0j, 1 + 1j, -1 + 1j))
+    blocks = (turned(-4 - 1j, 4 - 1j, 4 + 0j, -4 + 0j, head="block fixed") + turned(-1 + 0j, 1 + 0j, 1 + 1j, -1 + 1j))
     row = run(tmp_path, blocks, MATERIAL + "&analysis mode = 'limerick', steps = 40000 /\n"
               "&search parameter = 'friction_deg', low = 10, high = 30, tolerance = 1e-2 /\n")
     assert float(row["critical"]) == pytest.approx(20.0, rel=0.01)

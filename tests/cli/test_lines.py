@@ -47,9 +47,7 @@ def row_of(folder: Path, name: str, text: str) -> dict[str, str]:
         "thickness_ratio=0.2, voussoirs=15, springing='no-slip'",
     ],
 )
-def test_an_arch_from_a_file_and_a_generated_one_agree_to_1e12(
-    tmp_path: Path, arch: str, geometry: str
-) -> None:
+def test_an_arch_from_a_file_and_a_generated_one_agree_to_1e12(tmp_path: Path, arch: str, geometry: str) -> None:
     stone = "&material unit_weight=22000, young=5e10 /\n"
     search = (
         f"&analysis geometry='{geometry}' /\n"
@@ -87,8 +85,7 @@ def test_a_deck_key_goes_before_the_file(tmp_path: Path) -> None:
     assert (low["verdict"], low["friction_deg"]) == ("collapsed", "10")
     found = row_of(tmp_path, "c", scene + "&search parameter='friction_deg' /\n")
     assert found["verdict"] == "found"
-    same = row_of(tmp_path, "d", "&arch thickness_ratio=0.12, voussoirs=12 /\n"
-                  "&search parameter='friction_deg' /\n")
+    same = row_of(tmp_path, "d", "&arch thickness_ratio=0.12, voussoirs=12 /\n" "&search parameter='friction_deg' /\n")
     assert float(found["critical"]) == pytest.approx(float(same["critical"]), rel=1e-8)
 
 
@@ -123,9 +120,7 @@ def test_check_accepts_a_deck_of_lines(tmp_path: Path) -> None:
         ("", 0, "expected coincident edges"),
     ],
 )
-def test_what_cannot_be_run_is_checked_and_refused(
-    tmp_path: Path, fixed: str, loads: int, wanted: str
-) -> None:
+def test_what_cannot_be_run_is_checked_and_refused(tmp_path: Path, fixed: str, loads: int, wanted: str) -> None:
     lines = SQUARE.replace("0\n0\n0\n0 0 1", f"0\n{loads}\n0\n0 0 1", 1).splitlines(True)
     lines[4] = f"{fixed.count(chr(10))}\n"
     (tmp_path / "a.geo").write_text("".join(lines) + fixed)

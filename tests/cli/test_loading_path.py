@@ -60,9 +60,7 @@ def test_wall_falls_at_the_first_collapse_on_its_path(
 
 @pytest.mark.parametrize("high", [0.8, 1.0, 3.0])
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-8])
-def test_the_range_of_a_search_does_not_matter(
-    tmp_path: Path, high: float, tolerance: float
-) -> None:
+def test_the_range_of_a_search_does_not_matter(tmp_path: Path, high: float, tolerance: float) -> None:
     search = f"&search parameter = 'horizontal_coefficient', high = {high}, tolerance = {tolerance} /"
     (row,) = run_wall(tmp_path, 4, 8, 0.75, search + "\n")
     assert float(row["critical"]) == pytest.approx(5 / 9, abs=1e-6)
@@ -120,9 +118,7 @@ def test_the_associated_limit_is_proven_from_both_sides(
     assert float(row["critical_low"]) < float(row["critical_high"])
 
 
-def test_a_load_that_no_forces_balance_is_proven_so_in_a_few_factorisations(
-    tmp_path: Path,
-) -> None:
+def test_a_load_that_no_forces_balance_is_proven_so_in_a_few_factorisations(tmp_path: Path) -> None:
     more = (
         "&analysis flow = 'associated' /\n&output joints = .false., blocks = .false. /\n"
         "&sweep parameter = 'horizontal_coefficient', values = 0.283, 0.51, 0.62, 0.85, 2.83 /\n"
@@ -141,10 +137,7 @@ def test_falls_beyond_the_associated_limit_are_told_by_a_few_factorisations(
     tmp_path: Path, units: int, courses: int, friction: float, limit: float, flow: str
 ) -> None:
     values = ", ".join(repr(limit * share) for share in (1.01, 1.1, 1.5, 5.0))
-    more = (
-        f"&analysis flow = '{flow}' /\n"
-        f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n"
-    )
+    more = (f"&analysis flow = '{flow}' /\n" f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n")
     rows = run_wall(tmp_path, units, courses, friction, more)
     assert [row["verdict"] for row in rows] == ["collapsed"] * 4
     assert all(row["collapse_mode"] != "none" for row in rows)
@@ -153,10 +146,7 @@ def test_falls_beyond_the_associated_limit_are_told_by_a_few_factorisations(
 
 def test_what_limit_analysis_lets_stand_is_told_by_a_few_factorisations(tmp_path: Path) -> None:
     values = ", ".join(repr(0.5383777695 * share) for share in (0.5, 0.9, 0.99))
-    more = (
-        "&analysis flow = 'associated' /\n"
-        f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n"
-    )
+    more = ("&analysis flow = 'associated' /\n" f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n")
     rows = run_wall(tmp_path, 10, 10, 0.65, more)
     assert [row["verdict"] for row in rows] == ["stable"] * 3
     assert max(int(row["factorisations"]) for row in rows) <= 15

@@ -29,9 +29,7 @@ Point = tuple[float, float]
 def rectangle(x: float, y: float, width: float, height: float, words: str = "") -> str:
     """Text of an upright block."""
     return (
-        f"block {words}\n{x!r} {y!r}\n{x + width!r} {y!r}\n"
-        f"{x + width!r} {y + height!r}\n{x!r} {y + height!r}\n"
-    )
+        f"block {words}\n{x!r} {y!r}\n{x + width!r} {y!r}\n" f"{x + width!r} {y + height!r}\n{x!r} {y + height!r}\n")
 
 
 def window() -> str:
@@ -92,9 +90,7 @@ def relative(joint: dict[str, str], corners: dict[int, list[list[float]]]) -> tu
     return opening[0], opening[1], slip
 
 
-def check_roles(
-    row: dict[str, str], joints: list[dict[str, str]], corners: dict[int, list[list[float]]]
-) -> None:
+def check_roles(row: dict[str, str], joints: list[dict[str, str]], corners: dict[int, list[list[float]]]) -> None:
     """Roles, arrows, share and mode are those of the motion of the blocks."""
     slip, opening = 0.0, 0.0
     for joint in joints:
@@ -154,9 +150,7 @@ def test_no_joint_of_a_tilted_wall_slides_that_rounding_alone_moves(tmp_path: Pa
     ],
     ids=["tips", "slides two", "tips over what slides", "slides on another", "window"],
 )
-def test_roles_are_those_of_the_motion(
-    tmp_path: Path, blocks: str, friction: float, mode: str
-) -> None:
+def test_roles_are_those_of_the_motion(tmp_path: Path, blocks: str, friction: float, mode: str) -> None:
     row, joints, corners = collapse_of(tmp_path, blocks, friction, "'horizontal_coefficient'")
     assert row["verdict"] == "found"
     if mode:

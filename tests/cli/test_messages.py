@@ -13,9 +13,7 @@ from limerick_files import HAS_XML, INPUT, SQUARE
 from test_bad_input import COMMAND_LINES, GOOD, MISTAKES, SETTINGS
 
 #: What is expected or wrong; what it got; after the semicolon, what to do, as an order
-MESSAGE = re.compile(
-    r"(?P<file>[^:\n]+):(?P<line>\d+): error: (?P<fault>[^\n]+?); (?P<advice>[^;\n]+)\n"
-)
+MESSAGE = re.compile(r"(?P<file>[^:\n]+):(?P<line>\d+): error: (?P<fault>[^\n]+?); (?P<advice>[^;\n]+)\n")
 FAULT = re.compile(
     r"(expected|must \w+|needs)\b.+\bgot\b|needs|unknown|there is no such file|is repeated"
     r"|exclude one another|, but |is no key|cannot be|is swept|is both|has no item|is a list|is not yet there"
@@ -128,9 +126,7 @@ def test_option_of_another_subcommand_is_refused(tmp_path: Path, arguments: list
     done = run_dda(verb, "deck.nml", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr == (
-        f"dda:3: error: expected an option of dda {verb}, got {options[0]}, which dda run takes; "
-        "remove it\n"
-    )
+        f"dda:3: error: expected an option of dda {verb}, got {options[0]}, which dda run takes; " "remove it\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["deck.nml"]
 
 
@@ -234,11 +230,6 @@ def test_blanks_belong_to_a_name(tmp_path: Path, name: str) -> None:
 def test_deck_may_come_through_a_pipe(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
     done = subprocess.run(
-        f"cat deck.nml | '{os.environ['DDA']}' check /dev/stdin",
-        cwd=tmp_path,
-        shell=True,
-        text=True,
-        capture_output=True,
-        check=False,
-    )
+        f"cat deck.nml | '{os.environ['DDA']}' check /dev/stdin", cwd=tmp_path, shell=True, text=True,
+        capture_output=True, check=False)
     assert done.returncode == 0, done.stderr

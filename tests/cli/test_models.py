@@ -112,9 +112,7 @@ def test_table_has_every_mode_with_every_geometry() -> None:
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_model_bears_the_weight_or_is_refused(
-    tmp_path: Path, kind: str, mode: str, geometry: str
-) -> None:
+def test_every_model_bears_the_weight_or_is_refused(tmp_path: Path, kind: str, mode: str, geometry: str) -> None:
     """The ground carries the block's 40 kN, a springing half the arch; whatever the model."""
     (row,) = (row for row in markdown(models_help())
               if (row.get("mode"), row.get("geometry")) == (f"`{mode}`", f"`{geometry}`"))
@@ -137,8 +135,7 @@ def test_every_model_bears_the_weight_or_is_refused(
     # those of the arch that move or sink lean their springings by some 1e-4
     accuracy = 1e-2 if mode == "limerick" else 1e-4
     for joint in (joints[0], joints[-1]):
-        assert float(joint["normal_force"]) == pytest.approx(
-            HALF_ARCH if kind == "arch" else 40e3, rel=accuracy)
+        assert float(joint["normal_force"]) == pytest.approx(HALF_ARCH if kind == "arch" else 40e3, rel=accuracy)
     done = run_dda("check", "m.nml", cwd=tmp_path)
     assert f"{kind}, {mode} {geometry}; available for {kind}: " in done.stdout
 
@@ -411,8 +408,7 @@ def test_everything_searched_is_right_or_refused(tmp_path: Path, kind: str, mode
             assert found[key]["verdict"] == answer.wanted, key
         elif answer.wanted != "glue":
             assert found[key]["verdict"] == "found", key
-            assert float(found[key]["critical"]) == pytest.approx(
-                answer.wanted, rel=answer.near or 1e-6), key
+            assert float(found[key]["critical"]) == pytest.approx(answer.wanted, rel=answer.near or 1e-6), key
     if kind == "arch" and mode == "static":
         # the tip of the Mohr-Coulomb law: cohesion over tan(50 degrees) is the tension that counts
         glue = {key: float(found[f"joint%{key}"]["critical"]) for key in ("tension", "cohesion")}
@@ -424,9 +420,7 @@ def test_everything_searched_is_right_or_refused(tmp_path: Path, kind: str, mode
     [("radius", 5, 40, 10.0), ("density", 1e3, 1e4, 2240.0), ("gravity", 4, 40, 9.81),
      ("unit_weight", 1e4, 1e5, 2240 * 9.81)],
 )
-def test_strength_goes_with_weight_and_size(
-    tmp_path: Path, key: str, low: float, high: float, value: float
-) -> None:
+def test_strength_goes_with_weight_and_size(tmp_path: Path, key: str, low: float, high: float, value: float) -> None:
     """An arch that is too thin hangs by its glue: what counts is strength over unit weight and radius."""
     deck = "&arch thickness_ratio = 0.1 /\n&joint cohesion = 1e8{} /\n&search parameter = '{}', low = {}, high = {} /\n"
     (tmp_path / "a.nml").write_text(deck.format("", "tension", 0, 1e6))
@@ -455,9 +449,7 @@ def test_strength_goes_with_weight_and_size(
          "blocks always move"),
     ],
 )
-def test_keys_that_a_mode_has_no_use_for_are_refused(
-    tmp_path: Path, deck: str, line: int, words: str
-) -> None:
+def test_keys_that_a_mode_has_no_use_for_are_refused(tmp_path: Path, deck: str, line: int, words: str) -> None:
     (tmp_path / "a.nml").write_text(deck + "\n")
     done = run_dda("check", "a.nml", cwd=tmp_path)
     assert done.returncode == 2

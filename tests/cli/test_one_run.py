@@ -14,29 +14,20 @@ BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
 UPPER = "block\n0.2 2\n0.8 2\n0.8 2.5\n0.2 2.5\n"
 MEASURE = "measure 1 2\nmeasure 0 2\n"
 #: The lower block is led to the right by 0.3 m, and back by half of it
-LED = "".join(
-    f"displacement {x} {y}\n0 0 0\n1 0 0\n5 0.3 0\n9 0.15 0\n" for x, y in ((0.5, 0.5), (0.5, 1.5))
-)
+LED = "".join(f"displacement {x} {y}\n0 0 0\n1 0 0\n5 0.3 0\n9 0.15 0\n" for x, y in ((0.5, 0.5), (0.5, 1.5)))
 
 SCENES = {
     "led": (BLOCK + UPPER + LED, "&analysis geometry = 'current', time_step = 0.05, steps = 4000 /"),
     "rests": (BLOCK + UPPER, "&analysis geometry = 'current' /"),
     "rests, small": (BLOCK + UPPER, ""),
     "slips and rests": (
-        BLOCK + "load 0 2\n0 4000 0\n1 4000 0\n",
-        "&analysis geometry = 'current' /\n&joint friction_deg = 5.8 /",
-    ),
+        BLOCK + "load 0 2\n0 4000 0\n1 4000 0\n", "&analysis geometry = 'current' /\n&joint friction_deg = 5.8 /"),
     "tips": (BLOCK, "&analysis geometry = 'current' /\n&load horizontal_coefficient = 0.6 /"),
     "tips over 0.5 m": (
         BLOCK,
-        "&analysis geometry = 'current', collapse_displacement = 0.5 /\n"
-        "&load horizontal_coefficient = 0.6 /",
-    ),
+        "&analysis geometry = 'current', collapse_displacement = 0.5 /\n" "&load horizontal_coefficient = 0.6 /"),
     "slides": (
-        BLOCK,
-        "&analysis geometry = 'current' /\n&load horizontal_coefficient = 0.4 /\n"
-        "&joint friction_deg = 20 /",
-    ),
+        BLOCK, "&analysis geometry = 'current' /\n&load horizontal_coefficient = 0.4 /\n" "&joint friction_deg = 20 /"),
     "step limit": (
         BLOCK,
         "&analysis geometry = 'current', steps = 3, collapse_displacement = 9 /\n"
@@ -44,9 +35,7 @@ SCENES = {
     ),
     "in time": (
         BLOCK,
-        "&analysis mode = 'dynamic', geometry = 'current', duration = 0.3 /\n"
-        "&load horizontal_coefficient = 0.6 /",
-    ),
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 0.3 /\n" "&load horizontal_coefficient = 0.6 /"),
     "in time, steps": (
         BLOCK,
         "&analysis mode = 'dynamic', geometry = 'current', time_step = 0.01, steps = 17 /\n"
@@ -124,8 +113,7 @@ def test_pictures_of_a_collapse_change_nothing_but_how_far_it_is_followed(tmp_pa
     for name in ("verdict", "collapse_mode", "sliding_share"):
         assert row[name] == other[name]
     assert row["verdict"] == "collapsed"
-    roles = [[joint["mechanism"] for joint in rows_of(folder / "joints.csv")]
-             for folder in (plain, seen)]
+    roles = [[joint["mechanism"] for joint in rows_of(folder / "joints.csv")] for folder in (plain, seen)]
     assert roles[0] == roles[1]
     tenth = 0.1 * math.sqrt(2.0)
     assert math.hypot(*corner(plain, 3)) < tenth < math.hypot(*corner(seen, 3)) < 2.0 * tenth

@@ -81,9 +81,7 @@ def assert_hinges(row: Row, exact: Row) -> None:
 
 
 @each_arch
-def test_arch_has_its_exact_thickness(
-    key: Key, exact: Row, results: dict[str, dict[Key, Row]]
-) -> None:
+def test_arch_has_its_exact_thickness(key: Key, exact: Row, results: dict[str, dict[Key, Row]]) -> None:
     row = results["reference"][key]
     eta = float(exact["eta_exact"])
     assert row["verdict"] == "found"
@@ -95,16 +93,12 @@ def test_arch_has_its_exact_thickness(
 
 
 @each_arch
-def test_arch_turns_at_its_exact_hinges(
-    key: Key, exact: Row, results: dict[str, dict[Key, Row]]
-) -> None:
+def test_arch_turns_at_its_exact_hinges(key: Key, exact: Row, results: dict[str, dict[Key, Row]]) -> None:
     assert_hinges(results["reference"][key], exact)
 
 
 @each_arch
-def test_arch_whose_blocks_move_needs_a_little_more(
-    key: Key, exact: Row, results: dict[str, dict[Key, Row]]
-) -> None:
+def test_arch_whose_blocks_move_needs_a_little_more(key: Key, exact: Row, results: dict[str, dict[Key, Row]]) -> None:
     row = results["current"].get(key)
     if row is None:
         pytest.skip("the deck has no current geometry")

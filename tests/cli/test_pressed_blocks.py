@@ -65,10 +65,8 @@ def hooke(stress: Tensor, plane: str) -> Tensor:
     if plane == "strain":
         young, poisson = YOUNG / (1.0 - POISSON**2), POISSON / (1.0 - POISSON)
     return (
-        (stress[0] - poisson * stress[1]) / young,
-        (stress[1] - poisson * stress[0]) / young,
-        2.0 * (1.0 + POISSON) / YOUNG * stress[2],
-    )
+        (stress[0] - poisson * stress[1]) / young, (stress[1] - poisson * stress[0]) / young,
+        2.0 * (1.0 + POISSON) / YOUNG * stress[2])
 
 
 def strain_of(folder: Path) -> Tensor:
@@ -80,10 +78,8 @@ def strain_of(folder: Path) -> Tensor:
     area = a * d - b * c
     du, dv = (u1 - u0, u2 - u0), (v1 - v0, v2 - v0)
     return (
-        (du[0] * d - du[1] * b) / area,
-        (dv[1] * a - dv[0] * c) / area,
-        (du[1] * a - du[0] * c + dv[0] * d - dv[1] * b) / area,
-    )
+        (du[0] * d - du[1] * b) / area, (dv[1] * a - dv[0] * c) / area,
+        (du[1] * a - du[0] * c + dv[0] * d - dv[1] * b) / area)
 
 
 def strain(
@@ -93,10 +89,7 @@ def strain(
     """Strain of a block at rest, held above its centre, and of no other block."""
     _, x, y = centre_of(shape)
     lines = ["block", *(f"{px!r} {py!r}" for px, py in shape), f"fix {x!r} {y + above!r}"]
-    lines += [
-        f"load {px!r} {py!r} {fx!r} {fy!r}"
-        for (px, py), (fx, fy) in zip(shape, corner_forces(shape, stress))
-    ]
+    lines += [f"load {px!r} {py!r} {fx!r} {fy!r}" for (px, py), (fx, fy) in zip(shape, corner_forces(shape, stress))]
     (folder / "x.blocks").write_text("\n".join(lines) + "\n")
     (folder / "x.nml").write_text(
         "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
@@ -116,9 +109,7 @@ GRAVITIES = [0.0, 1e-9, 9.81, 1e6]
 
 @pytest.mark.parametrize("gravity", GRAVITIES)
 @pytest.mark.parametrize("shape", list(SHAPES))
-def test_a_pressed_block_is_strained_as_hooke_has_it(
-    tmp_path: Path, shape: str, gravity: float
-) -> None:
+def test_a_pressed_block_is_strained_as_hooke_has_it(tmp_path: Path, shape: str, gravity: float) -> None:
     found = strain(tmp_path, SHAPES[shape], PRESSED, gravity)
     exact = (POISSON * 1.9e6 / YOUNG, -1.9e6 / YOUNG, 0.0)
     assert found == pytest.approx(exact, rel=1e-9, abs=1e-9 * max(map(abs, exact)))
@@ -138,9 +129,7 @@ def test_neither_plane_nor_time_step_nor_shear_change_that(
 
 @pytest.mark.parametrize("gravity", GRAVITIES)
 @pytest.mark.parametrize("shape", ["rectangle", "triangle", "hexagon"])
-def test_a_block_that_hangs_is_strained_by_its_weight_too(
-    tmp_path: Path, shape: str, gravity: float
-) -> None:
+def test_a_block_that_hangs_is_strained_by_its_weight_too(tmp_path: Path, shape: str, gravity: float) -> None:
     above = 0.2
     found = strain(tmp_path, SHAPES[shape], PRESSED, gravity, above=above)
     exact = hooke((0.0, PRESSED[1] + DENSITY * gravity * above, 0.0), "stress")

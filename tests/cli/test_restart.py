@@ -21,9 +21,7 @@ DECK = """&scene kind = 'blocks', geometry = 'x.blocks' /
 """
 
 
-def run(
-    folder: Path, name: str, more: str, geometry: str = "current"
-) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, name: str, more: str, geometry: str = "current") -> subprocess.CompletedProcess[str]:
     """Write a deck and run it."""
     (folder / "x.blocks").write_text(STONE)
     (folder / f"{name}.nml").write_text(DECK.format(more=more, geometry=geometry))

@@ -98,9 +98,7 @@ def test_joints_are_written_where_wanted(tmp_path: Path, joints: str) -> None:
 def test_columns_of_a_run_without_search(tmp_path: Path) -> None:
     (row,) = run_deck(
         tmp_path,
-        "&arch half_angle_deg = 80, voussoirs = 35, thickness_ratio = 0.12 /\n"
-        "&joint friction_deg = 45 /\n",
-    )
+        "&arch half_angle_deg = 80, voussoirs = 35, thickness_ratio = 0.12 /\n" "&joint friction_deg = 45 /\n")
     assert [row[name] for name in ("deck", "case", "blocks")] == ["deck", "1", "35"]
     assert numbers(row, "half_angle_deg", "thickness_ratio", "friction_deg") == [80, 0.12, 45]
     assert [row["mode"], row["geometry"]] == ["static", "reference"]
@@ -118,9 +116,7 @@ def test_columns_of_a_run_without_search(tmp_path: Path) -> None:
         ("half_angle_deg", "arch", "&search parameter = 'half_angle_deg' /\n"),
     ],
 )
-def test_searched_parameter_leaves_its_own_column_empty(
-    tmp_path: Path, name: str, group: str, text: str
-) -> None:
+def test_searched_parameter_leaves_its_own_column_empty(tmp_path: Path, name: str, group: str, text: str) -> None:
     given = {"thickness_ratio": "0.15", "friction_deg": "50", "half_angle_deg": "90"}
     (row,) = run_deck(tmp_path, f"&{group} {name} = {given[name]} /\n{text}")
     assert row["verdict"] == "found"
@@ -128,9 +124,7 @@ def test_searched_parameter_leaves_its_own_column_empty(
 
 
 def test_names_and_titles_with_commas_and_quotes_stay_one_field(tmp_path: Path) -> None:
-    (tmp_path / 'a, "b"; c.nml').write_text(
-        "&scene title = 'one, two; \"three\"' /\n&arch thickness_ratio = 0.12 /\n"
-    )
+    (tmp_path / 'a, "b"; c.nml').write_text("&scene title = 'one, two; \"three\"' /\n&arch thickness_ratio = 0.12 /\n")
     assert run_dda("run", 'a, "b"; c.nml', "--out", "out", cwd=tmp_path).returncode == 0
     columns, (row,) = read_table(tmp_path / "out" / "results.csv")
     assert columns == FIRST + LAST
@@ -151,12 +145,7 @@ def test_names_and_titles_with_commas_and_quotes_stay_one_field(tmp_path: Path) 
         ("&search /\n", "found", 0),
         ("&arch voussoirs = 3 /\n&search /\n", "stable", 0),
         ("&joint friction_deg = 17.0 /\n&search /\n", "collapsed", 0),
-        (
-            "&arch half_angle_deg = 145, voussoirs = 58 /\n"
-            "&joint friction_deg = 55 /\n&search /\n",
-            "collapsed",
-            0,
-        ),
+        ("&arch half_angle_deg = 145, voussoirs = 58 /\n" "&joint friction_deg = 55 /\n&search /\n", "collapsed", 0),
         ("&search low = 0.2, high = 0.5 /\n", "stable", 0),
         ("&search low = 0.02, high = 0.05 /\n", "collapsed", 0),
         ("&search parameter = 'friction_deg', low = 30, high = 80 /\n", "stable", 0),
@@ -221,9 +210,7 @@ def test_current_geometry_has_the_elastic_shift(tmp_path: Path) -> None:
         "joints_deg = 0, 54.5, 90, facet_deg = 0.5",
     ],
 )
-def test_bracket_is_closed_and_holds_the_truth(
-    tmp_path: Path, arch: str, tolerance: float
-) -> None:
+def test_bracket_is_closed_and_holds_the_truth(tmp_path: Path, arch: str, tolerance: float) -> None:
     text = f"&arch {arch} /\n&joint friction_deg = 90 /\n&search tolerance = {tolerance} /\n"
     (row,) = run_deck(tmp_path, text)
     low, high, critical = numbers(row, "critical_low", "critical_high", "critical")
@@ -280,12 +267,8 @@ def test_very_shallow_arch_is_found_right_or_not_at_all(tmp_path: Path) -> None:
         ),
         # thickness_ratio is the exact value of these friction and half angles in arch_exact.csv
         (
-            "&arch thickness_ratio = 0.15001749477121489 /\n"
-            "&search parameter = 'friction_deg' /\n",
-            19.37,
-            1e-6,
-            "low",
-        ),
+            "&arch thickness_ratio = 0.15001749477121489 /\n" "&search parameter = 'friction_deg' /\n", 19.37, 1e-6,
+            "low"),
         (
             "&arch thickness_ratio = 0.15800602179655778 /\n"
             "&search parameter = 'friction_deg', low = 5, high = 40 /\n",
@@ -294,12 +277,8 @@ def test_very_shallow_arch_is_found_right_or_not_at_all(tmp_path: Path) -> None:
             "low",
         ),
         (
-            "&arch thickness_ratio = 0.1074241383203705 /\n"
-            "&search parameter = 'half_angle_deg' /\n",
-            90.0,
-            1e-5,
-            "high",
-        ),
+            "&arch thickness_ratio = 0.1074241383203705 /\n" "&search parameter = 'half_angle_deg' /\n", 90.0, 1e-5,
+            "high"),
         (
             "&arch thickness_ratio = 0.1074241383203705 /\n"
             "&search parameter = 'half_angle_deg', low = 30, high = 120 /\n",
@@ -333,12 +312,8 @@ def test_search_of_another_parameter(
         ("&load gravity = 1.62 /", "&material poisson = 0.45 /"),
     ],
 )
-def test_critical_thickness_of_rigid_blocks_has_no_scale(
-    tmp_path: Path, first: str, second: str
-) -> None:
-    critical = [
-        float(run_deck(tmp_path, f"{text}\n&search /\n")[0]["critical"]) for text in (first, second)
-    ]
+def test_critical_thickness_of_rigid_blocks_has_no_scale(tmp_path: Path, first: str, second: str) -> None:
+    critical = [float(run_deck(tmp_path, f"{text}\n&search /\n")[0]["critical"]) for text in (first, second)]
     assert critical[0] == pytest.approx(critical[1], rel=1e-8)
 
 
@@ -438,9 +413,7 @@ def test_sweep_and_single_run_agree_bit_for_bit(tmp_path: Path) -> None:
         (90, 0.0, "rotational"),
     ],
 )
-def test_sliding_share_of_the_semicircle(
-    tmp_path: Path, friction: int, share: float, mode: str
-) -> None:
+def test_sliding_share_of_the_semicircle(tmp_path: Path, friction: int, share: float, mode: str) -> None:
     text = f"&arch thickness_ratio = 0.105965 /\n&joint friction_deg = {friction} /\n"
     (row,) = run_deck(tmp_path, text)
     assert row["verdict"] == "collapsed"
@@ -459,9 +432,7 @@ def test_sliding_share_of_the_semicircle(
     [(20, 54), (24, 52.5), (30, 54), (36, 55), (40, 54), (48, 56.25), (60, 54), (72, 55), (90, 54)]
     + [(120, 54), (180, 55), (360, 54.5)],
 )
-def test_intrados_hinge_below_the_critical_thickness(
-    tmp_path: Path, voussoirs: int, hinge: float
-) -> None:
+def test_intrados_hinge_below_the_critical_thickness(tmp_path: Path, voussoirs: int, hinge: float) -> None:
     text = f"&arch thickness_ratio = 0.105965, voussoirs = {voussoirs} /\n"
     (row,) = run_deck(tmp_path, text)
     assert angles(row, "intrados_hinge_deg") == [hinge]
@@ -507,9 +478,7 @@ def joint_force(joint: dict[str, float]) -> tuple[float, float, float]:
     """Force of a joint on the block at its right, and its moment about the origin."""
     angle = math.radians(joint["angle_deg"])
     along, outwards = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
-    force = [
-        joint["normal_force"] * along[i] + joint["shear_force"] * outwards[i] for i in range(2)
-    ]
+    force = [joint["normal_force"] * along[i] + joint["shear_force"] * outwards[i] for i in range(2)]
     intrados = (joint["x_intrados"], joint["y_intrados"])
     extrados = (joint["x_extrados"], joint["y_extrados"])
     ratio = joint["eccentricity_ratio"]
@@ -572,9 +541,7 @@ def test_joint_forces_balance_every_voussoir(tmp_path: Path, arch: str, load: fl
 
 @pytest.mark.parametrize("voussoirs", [36, 35])
 @pytest.mark.parametrize("search", ["", "&search /\n"], ids=["decided", "searched"])
-def test_joints_of_a_symmetric_arch_are_mirrored(
-    tmp_path: Path, voussoirs: int, search: str
-) -> None:
+def test_joints_of_a_symmetric_arch_are_mirrored(tmp_path: Path, voussoirs: int, search: str) -> None:
     text = f"&arch thickness_ratio = 0.12, voussoirs = {voussoirs} /\n{search}"
     run_deck(tmp_path, text)
     joints = read_joints(tmp_path)
@@ -609,9 +576,7 @@ def test_corners_of_joints_lie_on_two_circles(tmp_path: Path) -> None:
     ("arch", "friction"),
     [("thickness_ratio = 0.12", 50), ("thickness_ratio = 0.2", 18), ("thickness_ratio = 0.5", 30)],
 )
-def test_standing_arch_obeys_the_laws_of_its_joints(
-    tmp_path: Path, arch: str, friction: float
-) -> None:
+def test_standing_arch_obeys_the_laws_of_its_joints(tmp_path: Path, arch: str, friction: float) -> None:
     (row,) = run_deck(tmp_path, f"&arch {arch} /\n&joint friction_deg = {friction} /\n")
     assert row["verdict"] == "stable"
     for joint in read_joints(tmp_path):
@@ -666,9 +631,7 @@ def test_joints_of_every_case_are_written(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("tolerance", ["1e-2", "1e-3", "1e-4"])
 def test_coarse_tolerance_is_found_around_the_exact_value(tmp_path: Path, tolerance: str) -> None:
-    (tmp_path / "coarse.nml").write_text(
-        f"&joint friction_deg = 90 /\n&search tolerance = {tolerance} /\n"
-    )
+    (tmp_path / "coarse.nml").write_text(f"&joint friction_deg = 90 /\n&search tolerance = {tolerance} /\n")
     assert run_dda("run", "coarse.nml", "--quiet", cwd=tmp_path).returncode == 0
     with (tmp_path / "coarse" / "results.csv").open() as lines:
         (row,) = csv.DictReader(lines)

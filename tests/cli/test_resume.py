@@ -197,9 +197,7 @@ def test_changed_deck_is_computed_anew(tmp_path: Path, change) -> None:
     [("45", None), (None, "45"), ("45", "40")],
     ids=["dropped", "added", "other"],
 )
-def test_changed_set_is_computed_anew(
-    tmp_path: Path, first: str | None, second: str | None
-) -> None:
+def test_changed_set_is_computed_anew(tmp_path: Path, first: str | None, second: str | None) -> None:
     def setting(value: str | None) -> list[str]:
         return ["--set", f"joint%friction_deg={value}"] if value else []
 
@@ -259,9 +257,7 @@ def test_killed_twice_ends_as_an_unbroken_run(tmp_path: Path, signals: int) -> N
     table = out / "results.csv"
     enough = 20000
     for attempt in range(2):
-        with subprocess.Popen(
-            [os.environ["DDA"], "run", "deck.nml", "--quiet", "--resume"], cwd=tmp_path
-        ) as process:
+        with subprocess.Popen([os.environ["DDA"], "run", "deck.nml", "--quiet", "--resume"], cwd=tmp_path) as process:
             patience = time.monotonic() + 60.0
             while not table.exists() or table.stat().st_size < enough * (attempt + 1):
                 assert process.poll() is None, "the run ended before it could be killed"
@@ -289,9 +285,7 @@ def lose_power(out: Path, rows: int, joints: int) -> None:
 
 
 @pytest.mark.parametrize(("rows", "joints"), [(11, 1), (11, 3), (9, 40), (0, 1)])
-def test_after_a_loss_of_power_only_rows_on_the_disk_count(
-    tmp_path: Path, rows: int, joints: int
-) -> None:
+def test_after_a_loss_of_power_only_rows_on_the_disk_count(tmp_path: Path, rows: int, joints: int) -> None:
     out = write_deck(tmp_path)
     run(tmp_path)
     whole, times = tables(out), seconds(out)

@@ -84,16 +84,12 @@ def kill(folder: Path, case: int, table: int, share: float) -> None:
         (folder / name).write_text(text)
 
 
-COMBINATIONS = [
-    wanted for n in range(len(OUTPUTS) + 1) for wanted in itertools.combinations(OUTPUTS, n)
-]
+COMBINATIONS = [wanted for n in range(len(OUTPUTS) + 1) for wanted in itertools.combinations(OUTPUTS, n)]
 
 
 @pytest.mark.parametrize("blocks", [FLYING, FALLING], ids=["no joint", "joints come"])
 @pytest.mark.parametrize("wanted", COMBINATIONS, ids=lambda wanted: "-".join(wanted) or "none")
-def test_any_tables_are_resumed_byte_for_byte(
-    tmp_path: Path, blocks: str, wanted: tuple[str, ...]
-) -> None:
+def test_any_tables_are_resumed_byte_for_byte(tmp_path: Path, blocks: str, wanted: tuple[str, ...]) -> None:
     out = write(tmp_path, blocks, wanted)
     run(tmp_path)
     whole = {path.name: path.read_bytes() for path in out.iterdir()}

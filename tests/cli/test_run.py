@@ -318,13 +318,8 @@ def test_progress_goes_to_a_terminal_unless_quiet(tmp_path: Path, quiet: bool) -
     except OSError as problem:
         pytest.skip(f"no terminal is to be had here: {problem}")
     done = subprocess.run(
-        [os.environ["DDA"], "run", "deck.nml", *["--quiet"] * quiet],
-        cwd=tmp_path,
-        stdout=subprocess.DEVNULL,
-        stderr=theirs,
-        timeout=60.0,
-        check=False,
-    )
+        [os.environ["DDA"], "run", "deck.nml", *["--quiet"] * quiet], cwd=tmp_path, stdout=subprocess.DEVNULL,
+        stderr=theirs, timeout=60.0, check=False)
     os.write(theirs, b"end")
     shown = os.read(ours, 10000).decode()
     os.close(theirs)

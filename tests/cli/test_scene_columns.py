@@ -14,8 +14,7 @@ ARCH_COLUMNS = (
 ).split()
 RING = "&arch voussoirs = 12, thickness_ratio = 0.12 /\n"
 #: A search whose answer is no thickness, and a load under which the ring falls
-ENDS = ("&search parameter = 'horizontal_coefficient', low = 0, high = 1 /\n",
-        "&load horizontal_coefficient = 0.9 /\n")
+ENDS = ("&search parameter = 'horizontal_coefficient', low = 0, high = 1 /\n", "&load horizontal_coefficient = 0.9 /\n")
 BASE = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\n"
 BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
 #: A corner on the middle of the block's upper edge, kept upright
@@ -40,9 +39,7 @@ def run(folder: Path, text: str, status: int = 0) -> tuple[list[Row], list[Row]]
 
 @pytest.mark.parametrize("how", ["", "&analysis geometry = 'current' /\n", "&analysis mode = 'limerick' /\n"])
 @pytest.mark.parametrize("end", ENDS)
-def test_an_arch_read_from_lines_fills_no_column_of_arches(
-    tmp_path: Path, how: str, end: str
-) -> None:
+def test_an_arch_read_from_lines_fills_no_column_of_arches(tmp_path: Path, how: str, end: str) -> None:
     """The very same ring, generated, fills them."""
     (tmp_path / "ring.nml").write_text(RING)
     assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
@@ -76,9 +73,7 @@ def test_a_joint_of_one_corner_has_neither_two_openings_nor_an_eccentricity(tmp_
     """It carries the weight of the block on it, a triangle of 0.5 m2."""
     (tmp_path / "x.blocks").write_text(BASE + BLOCK + TIP)
     (_, (foot, tip)) = run(
-        tmp_path,
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 20000.0 /\n",
-    )
+        tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 20000.0 /\n")
     assert float(foot["eccentricity_ratio"]) == pytest.approx(0.0, abs=1e-9)
     assert foot["opening_extrados"] != "" and float(foot["normal_force"]) == pytest.approx(5e4)
     assert float(tip["normal_force"]) == pytest.approx(1e4)
@@ -94,9 +89,7 @@ def test_a_joint_of_one_corner_has_neither_two_openings_nor_an_eccentricity(tmp_
         ("&scene kind = 'blocks', geometry = 'x.blocks' /", "2"),
     ],
 )
-def test_an_undecided_search_tells_how_many_blocks_it_had(
-    tmp_path: Path, scene: str, blocks: str
-) -> None:
+def test_an_undecided_search_tells_how_many_blocks_it_had(tmp_path: Path, scene: str, blocks: str) -> None:
     (tmp_path / "x.blocks").write_text(BASE + BLOCK + BLOCK.replace("0\n", "2\n", 2).replace("1 2\n0 2", "1 3\n0 3"))
     search = "&search parameter = 'friction_deg' /\n&analysis geometry = 'current', steps = 1 /\n"
     ((row,), joints) = run(tmp_path, f"{scene}\n{search}", status=3)
@@ -116,9 +109,7 @@ def test_an_undecided_search_tells_how_many_blocks_it_had(
         ("joint 1 2 friction_deg 35\n", "block\n5 0\n6 0\n6 2\n5 2\n", "50"),
     ],
 )
-def test_friction_is_told_where_a_joint_may_have_it(
-    tmp_path: Path, law: str, more: str, told: str
-) -> None:
+def test_friction_is_told_where_a_joint_may_have_it(tmp_path: Path, law: str, more: str, told: str) -> None:
     """The base is of material 1, the block on it of material 2."""
     text = BASE + BLOCK.replace("block", "block material 2") + more + "material 2 young 1e9\n" + law
     (tmp_path / "x.blocks").write_text(text)

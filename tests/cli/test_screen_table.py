@@ -60,9 +60,7 @@ def on_terminal(folder: Path, text: str, columns: int, environment: dict[str, st
 
 def test_swept_values_come_first_then_what_was_found(tmp_path: Path) -> None:
     head, *rows = table_of(tmp_path, SEARCH + THREE)
-    assert head.split() == (
-        "case half_angle_deg thickness_ratio verdict exact error mode intrados hinge".split()
-    )
+    assert head.split() == ("case half_angle_deg thickness_ratio verdict exact error mode intrados hinge".split())
     with (tmp_path / "deck/results.csv").open() as lines:
         for shown, row in zip(rows, csv.DictReader(lines), strict=True):
             words = shown.split()
@@ -144,9 +142,7 @@ def test_a_resumed_run_shows_what_it_computes_in_order(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("columns", [1, 9, 20, 40, 61, 80, 101, 132, 250, 0])
 @pytest.mark.parametrize(
-    "text",
-    [SEARCH + THREE, WIDE, "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"],
-)
+    "text", [SEARCH + THREE, WIDE, "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"])
 def test_no_line_is_wider_than_the_terminal(tmp_path: Path, text: str, columns: int) -> None:
     lines = [line for line in on_terminal(tmp_path, text, columns, {"COLUMNS": ""})
              if not line.startswith("deck.nml: ")]

@@ -118,8 +118,7 @@ def test_a_block_slides_down_its_slope(tmp_path: Path) -> None:
     options = ["--out", str(tmp_path / "out"), "--quiet"]
     assert run_dda("run", BENCHMARKS / "slope.nml", *options).returncode == 0
     results = {row["case"]: row for row in rows_of(tmp_path / "out/results.csv")}
-    falls = [row for row in rows_of(tmp_path / "out/joints.csv")
-             if results[row["case"]]["verdict"] == "collapsed"]
+    falls = [row for row in rows_of(tmp_path / "out/joints.csv") if results[row["case"]]["verdict"] == "collapsed"]
     assert falls
     for row in falls:
         assert row["mechanism"] == "sliding"
@@ -141,9 +140,7 @@ def test_displacement_of_a_falling_block_is_exact(tmp_path: Path) -> None:
 
 
 def test_blocks_held_by_points_are_told(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(
-        "block\n0 0\n1 0\n1 1\n0 1\nfix 0 0\nfix 1 0\nblock\n0 1\n1 1\n1 2\n0 2\n"
-    )
+    (tmp_path / "x.blocks").write_text("block\n0 0\n1 0\n1 1\n0 1\nfix 0 0\nfix 1 0\nblock\n0 1\n1 1\n1 2\n0 2\n")
     folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
     states = {row["block"]: row["state"] for row in rows_of(folder / "blocks.csv")}
     assert states == {"1": "held", "2": "free"}
@@ -151,12 +148,9 @@ def test_blocks_held_by_points_are_told(tmp_path: Path) -> None:
 
 def test_far_blocks_are_told_in_the_coordinates_of_the_user(tmp_path: Path) -> None:
     (tmp_path / "x.blocks").write_text(
-        "block fixed\n1e6 0\n1000001 0\n1000001 1\n1e6 1\n"
-        "block\n1e6 1\n1000001 1\n1000001 2\n1e6 2\n"
-    )
+        "block fixed\n1e6 0\n1000001 0\n1000001 1\n1e6 1\n" "block\n1e6 1\n1000001 1\n1000001 2\n1e6 2\n")
     folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
-    assert [row["x"] for row in rows_of(folder / "blocks.csv")] == [
-        "1000000", "1000001", "1000001", "1000000"] * 2
+    assert [row["x"] for row in rows_of(folder / "blocks.csv")] == ["1000000", "1000001", "1000001", "1000000"] * 2
     (joint,) = rows_of(folder / "joints.csv")
     assert float(joint["x"]) == pytest.approx(1000000.5, abs=1e-6)
     assert float(joint["force_y"]) == pytest.approx(2240 * 9.81, rel=1e-6)

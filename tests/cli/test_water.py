@@ -35,14 +35,10 @@ def test_a_dam_overturns_below_its_least_base(tmp_path: Path, factor: float) -> 
     ("factor", "base", "friction"),
     [(0.0, 13.562355990018844, 42.11853327026098), (1.0, 17.6380091209447, 49.62095990058765)],
 )
-def test_a_dam_slides_below_its_least_friction(
-    tmp_path: Path, factor: float, base: float, friction: float
-) -> None:
+def test_a_dam_slides_below_its_least_friction(tmp_path: Path, factor: float, base: float, friction: float) -> None:
     row = run_blocks(
-        tmp_path,
-        dam(1.0000001 * base, factor),
-        "&material unit_weight=24000 /\n&search parameter='friction_deg' low=20 high=80 /\n",
-    )
+        tmp_path, dam(1.0000001 * base, factor),
+        "&material unit_weight=24000 /\n&search parameter='friction_deg' low=20 high=80 /\n")
     assert float(row["critical"]) == pytest.approx(friction, rel=1e-6)
 
 
@@ -63,9 +59,7 @@ def plane(water: str) -> str:
     ("level", "safety"),
     [(0.0, 1.5843310659876608), (7.0, 1.4164960580294252), (14.0, 1.2060325697984489)],
 )
-def test_a_slope_with_water_in_its_crack_has_its_safety(
-    tmp_path: Path, level: float, safety: float
-) -> None:
+def test_a_slope_with_water_in_its_crack_has_its_safety(tmp_path: Path, level: float, safety: float) -> None:
     friction = math.degrees(math.atan(math.tan(math.radians(35.0)) / safety))
     row = run_blocks(
         tmp_path,
@@ -90,9 +84,7 @@ def test_the_level_at_which_a_wall_falls_is_found(tmp_path: Path) -> None:
     level = (24000.0 * 15.0 * 1.5 / 9810.0 + 125.0 / 3.0) / 12.5
     assert level > 5.0
     water = "water -10 0 0 0 factor 0\n"
-    row = run_blocks(
-        tmp_path, wall() + water, deck + "&search parameter='water_rise' low=0 high=9 /\n"
-    )
+    row = run_blocks(tmp_path, wall() + water, deck + "&search parameter='water_rise' low=0 high=9 /\n")
     assert row["verdict"] == "found"
     assert float(row["critical"]) == pytest.approx(level, rel=1e-6)
 

@@ -183,10 +183,8 @@ def half_arch(case: Case) -> HalfArch:
         lever.append(lever[-1] + block_lever)
     arch = HalfArch(
         np.array([mp.cos(radians(a)) for a in angles], dtype=object),
-        np.array([mp.sin(radians(a)) for a in angles], dtype=object),
-        np.array(weight, dtype=object),
-        np.array(lever, dtype=object),
-    )
+        np.array([mp.sin(radians(a)) for a in angles], dtype=object), np.array(weight, dtype=object),
+        np.array(lever, dtype=object))
     return with_friction(arch, case, angles)
 
 
@@ -278,8 +276,7 @@ class Optimum:
 
 def most_room(arch: HalfArch, eta: object, tolerance: object) -> Optimum:
     """Maximise the room over the thrust by cutting planes, a finite ascent."""
-    low, high = (bound if bound is not None else none for bound, none in
-                 ((arch.low, -mp.inf), (arch.high, mp.inf)))
+    low, high = (bound if bound is not None else none for bound, none in ((arch.low, -mp.inf), (arch.high, mp.inf)))
     if low > high or low == mp.inf:
         return Optimum(-mp.inf, None, (), "empty")
     left, left_line = left_end(arch, eta)
@@ -378,9 +375,7 @@ def find_turns(arch: HalfArch, case: Case) -> Turns:
     floats = arch.to_floats()
     alpha = float(radians(Fraction(case.half_angle)))
     thinnest = min(1e-4, 1e-3 * alpha**4 / 48)
-    grid = np.concatenate(
-        [np.geomspace(thinnest, 0.02, 200), np.linspace(0.02, LARGEST_RATIO - 1e-6, 800)[1:]]
-    )
+    grid = np.concatenate([np.geomspace(thinnest, 0.02, 200), np.linspace(0.02, LARGEST_RATIO - 1e-6, 800)[1:]])
     stands = np.array([most_room(floats, eta, 1e-15).room > 0 for eta in grid])
     where = np.flatnonzero(stands[1:] != stands[:-1])
     ratios = tuple(float(grid[k + 1]) for k in where)
@@ -450,9 +445,7 @@ def describe(arch: HalfArch, optimum: Optimum, eta: mp.mpf, turns: tuple[float, 
         slips[joint] = sign * slip_rate(arch, optimum, joint, sign)
     mode = "mixed" if slips else "rotational"
     q = moment_of(arch, optimum, eta)
-    return Answer(
-        "found", mode, eta, optimum.thrust, q, opens_intrados, opens_extrados, slips, turns
-    )
+    return Answer("found", mode, eta, optimum.thrust, q, opens_intrados, opens_extrados, slips, turns)
 
 
 def slip_rate(arch: HalfArch, optimum: Optimum, joint: int, sign: int) -> mp.mpf:
@@ -537,9 +530,7 @@ def joint_wrenches(arch: PolygonArch, joint: int, block: int) -> list[tuple]:
     s, c = arch.directions[joint]
     x, y = arch.centroids[block]
     wrenches = []
-    for radius, (fx, fy) in (
-        (1 - arch.eta / 2, (c, -s)), (1 + arch.eta / 2, (c, -s)), (1, (s, c)),
-    ):
+    for radius, (fx, fy) in ((1 - arch.eta / 2, (c, -s)), (1 + arch.eta / 2, (c, -s)), (1, (s, c))):
         wrenches.append((fx, fy, (radius * s - x) * fy - (radius * c - y) * fx))
     return wrenches
 
@@ -559,8 +550,7 @@ def certify(case: Case, answer: Answer) -> mp.mpf:
     """
     arch = polygon_arch(case, chord_directions(case), answer.eta)
     forces = joint_forces(case, answer)
-    worst = max(unbalance(arch, forces), outside_cones(case, arch, forces),
-                mechanism_gap(case, arch, answer))
+    worst = max(unbalance(arch, forces), outside_cones(case, arch, forces), mechanism_gap(case, arch, answer))
     if worst > TINY:
         raise ArithmeticError(f"{case.name}: the certificate fails by {mp.nstr(worst, 5)}")
     return worst
@@ -586,9 +576,7 @@ def joint_forces(case: Case, answer: Answer) -> list[tuple]:
         normal = h * arch.cosine[half] + arch.weight[half] * arch.sine[half]
         moment = answer.moment + (1 + eta**2 / 12) * arch.lever[half]
         shear = arch.weight[half] * arch.cosine[half] - h * arch.sine[half]
-        forces.append((
-            (1 + eta / 2) * normal - moment, moment - (1 - eta / 2) * normal, -side * eta * shear,
-        ))
+        forces.append(((1 + eta / 2) * normal - moment, moment - (1 - eta / 2) * normal, -side * eta * shear))
     return forces
 
 
@@ -630,9 +618,7 @@ def joint_rates(case: Case, answer: Answer) -> list[tuple]:
         opening = friction * abs(slip)
         rates.append((
             twice * answer.eta * answer.opens_intrados.get(half, mp.mpf(0)) + opening,
-            twice * answer.eta * answer.opens_extrados.get(half, mp.mpf(0)) + opening,
-            side * slip,
-        ))
+            twice * answer.eta * answer.opens_extrados.get(half, mp.mpf(0)) + opening, side * slip))
     return rates
 
 
@@ -779,24 +765,13 @@ LARGE_FRICTION = "55 57.5 60 63 65 68 70 72 75 80 85"
 LARGE_FRICTION_ARCHES = {"130": 52, "135": 36, "137": 55, "140": 56, "143": 57, "145": 58}
 #: Friction angles about the least of the rotational mode, by half angle and voussoirs
 MIXED = {
-    ("30", 24): "0.6 0.8 1 1.2 1.3",
-    ("45", 18): "2.2 2.5 3 3.5 3.8 3.95",
-    ("60", 25): "5.3 6 7 8 8.3",
-    ("75", 30): "10.2 11 12.5 14 14.5",
-    ("110", 44): "29 30 31.5 33 33.5",
-    ("120", 37): "36.4 37 38 39.2 40",
-    ("130", 52): "44 44.5 45 45.7 46.5",
-}
+    ("30", 24): "0.6 0.8 1 1.2 1.3", ("45", 18): "2.2 2.5 3 3.5 3.8 3.95", ("60", 25): "5.3 6 7 8 8.3",
+    ("75", 30): "10.2 11 12.5 14 14.5", ("110", 44): "29 30 31.5 33 33.5", ("120", 37): "36.4 37 38 39.2 40",
+    ("130", 52): "44 44.5 45 45.7 46.5"}
 #: Friction angles of arches whose springings do not slip
 HELD = {
-    ("45", 18): "2 3",
-    ("90", 36): "10 12.5 15 18",
-    ("90", 12): "15 20",
-    ("90", 13): "15",
-    ("120", 48): "32 36",
-    ("140", 56): "45 50 53",
-    ("145", 58): "50 55 60 68",
-}
+    ("45", 18): "2 3", ("90", 36): "10 12.5 15 18", ("90", 12): "15 20", ("90", 13): "15", ("120", 48): "32 36",
+    ("140", 56): "45 50 53", ("145", 58): "50 55 60 68"}
 #: Joint angles of one half, chord limits to try and friction angles
 IRREGULAR = [
     ("0 90", ("", "1"), ("90", "20")),
@@ -835,8 +810,7 @@ LARGE = [("90", 250, "90"), ("90", 333, "90"), ("90", 500, "90"), ("90", 999, "9
          ("120", 333, "90"), ("140", 999, "90"), ("145", 1000, "65")]
 
 
-def equal_case(alpha: str, count: int, friction: str = "90", held: bool = False,
-               facet: str = "") -> Case:
+def equal_case(alpha: str, count: int, friction: str = "90", held: bool = False, facet: str = "") -> Case:
     """Arch of equal voussoirs, named after its figures."""
     name = f"a{alpha}-n{count}"
     name += f"-s{facet}" if facet else ""
@@ -971,8 +945,7 @@ def main() -> None:
             table.writerow(row_of(case, answer))
             stream.flush()
             report(case, answer, difference, time.perf_counter() - start)
-    print(f"greatest difference of the linear program: {worst[0]:.1e} ({worst[1]})",
-          file=sys.stderr)
+    print(f"greatest difference of the linear program: {worst[0]:.1e} ({worst[1]})", file=sys.stderr)
 
 
 if __name__ == "__main__":

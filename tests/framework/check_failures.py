@@ -54,8 +54,7 @@ def reported(output: str) -> list[tuple[tuple[str, int], str]]:
     """
     places = list(PLACE.finditer(output))
     ends = [place.start() for place in places[1:]] + [len(output)]
-    return [((place[1], int(place[2])), output[place.end():end].replace(",", " "))
-            for place, end in zip(places, ends)]
+    return [((place[1], int(place[2])), output[place.end():end].replace(",", " ")) for place, end in zip(places, ends)]
 
 
 def disagreements(output: str, status: int, sources: list[Path]) -> list[str]:
@@ -77,8 +76,7 @@ def disagreements(output: str, status: int, sources: list[Path]) -> list[str]:
     """
     wanted = {place: texts for path in sources for place, texts in announced(path).items()}
     found = reported(output)
-    tests = sum(line.strip().lower() == "@test"
-                for path in sources for line in path.read_text("utf-8").split("\n"))
+    tests = sum(line.strip().lower() == "@test" for path in sources for line in path.read_text("utf-8").split("\n"))
     problems = [] if status == 2 else [f"exit status 2 was wanted, found {status}"]
     times = Counter(place for place, _ in found)
     for place in sorted(wanted.keys() | times.keys()):
@@ -101,8 +99,7 @@ def main() -> None:
     parser.add_argument("executable", type=Path)
     parser.add_argument("sources", type=Path, nargs="+", help=".pf files it was made of")
     arguments = parser.parse_args()
-    run = subprocess.run([arguments.executable.resolve()], capture_output=True, text=True,
-                         check=False)
+    run = subprocess.run([arguments.executable.resolve()], capture_output=True, text=True, check=False)
     problems = disagreements(run.stdout, run.returncode, arguments.sources)
     if problems:
         sys.exit("\n".join([run.stdout, run.stderr, *problems]))

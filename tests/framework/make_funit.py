@@ -86,8 +86,7 @@ def as_list(kind: str, name: str, rank: int) -> str:
     return {0: f"[{wide}]", 1: wide, 2: f"reshape({wide}, [size({name})])"}[rank]
 
 
-def comparison(assertion: str, kinds: tuple[str, str], ranks: tuple[int, int],
-               tolerance: str = "") -> tuple[str, str]:
+def comparison(assertion: str, kinds: tuple[str, str], ranks: tuple[int, int], tolerance: str = "") -> tuple[str, str]:
     """Write an assertion on two arguments.
 
     Parameters
@@ -114,11 +113,9 @@ def comparison(assertion: str, kinds: tuple[str, str], ranks: tuple[int, int],
     if tolerance:
         names += ", tolerance"
         may_be_absent = tolerance == "double" and assertion != "RelativelyEqual"
-        declarations.append(declare(tolerance, "tolerance",
-                                    attribute=", optional" if may_be_absent else ""))
+        declarations.append(declare(tolerance, "tolerance", attribute=", optional" if may_be_absent else ""))
         judge += ", " + WIDEN.get(tolerance, "{}").format("tolerance")
-    return name, PROCEDURE.format(name=name, names=names, judge=judge + ")",
-                                  declarations="\n".join(declarations))
+    return name, PROCEDURE.format(name=name, names=names, judge=judge + ")", declarations="\n".join(declarations))
 
 
 def condition(assertion: str, rank: int) -> tuple[str, str]:

@@ -125,12 +125,10 @@ def translate_assertion(statement: str, path: Path, line: int) -> list[str]:
         if not argument:
             raise PfError(line, f"@assert{name} has an empty argument")
         if place < wanted and keyword:
-            raise PfError(line, f"the first {wanted} of @assert{name} take no keyword, "
-                                f"found '{keyword[1]}='")
+            raise PfError(line, f"the first {wanted} of @assert{name} take no keyword, " f"found '{keyword[1]}='")
         if place >= wanted and (not keyword or keyword[1].lower() not in keywords):
             allowed = " and ".join(f"{key}=" for key in sorted(keywords)) or "nothing"
-            raise PfError(line, f"after the first {wanted} @assert{name} takes {allowed}, "
-                                f"found '{argument}'")
+            raise PfError(line, f"after the first {wanted} @assert{name} takes {allowed}, " f"found '{argument}'")
     if len(arguments) < wanted:
         raise PfError(line, f"@assert{name} wants {wanted} arguments, found {len(arguments)}")
     call = f"  call assert{name}{found[2][:-1]}, &"
@@ -238,8 +236,7 @@ def suite_function(suite: Suite) -> list[str]:
              "   implicit none", "   type(TestSuite) :: suite", "   type(TestMethod) :: t", "",
              f"   suite = TestSuite('{name}')"]
     for test in suite.tests:
-        lines += [f"   t = TestMethod('{test}', &", f"      {test}{around})",
-                  "   call suite%addTest(t)"]
+        lines += [f"   t = TestMethod('{test}', &", f"      {test}{around})", "   call suite%addTest(t)"]
     return lines + [f"end function {name}"]
 
 

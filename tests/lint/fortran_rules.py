@@ -95,9 +95,7 @@ def _explained(all_of_them: list[Statement]) -> set[tuple[str, str]]:
         " ", "") for argument in _arguments(this.text)}
 
 
-def _of_statements(
-    all_of_them: list[Statement], explained: set[tuple[str, str]]
-) -> Iterator[tuple[int, str]]:
+def _of_statements(all_of_them: list[Statement], explained: set[tuple[str, str]]) -> Iterator[tuple[int, str]]:
     """Rules of statements, procedures and modules."""
     open_procedures: list[Statement] = []
     inner = 0  # lines of internal procedures, which are judged on their own

@@ -103,8 +103,7 @@ def _of_functions(tree: ast.Module) -> Iterator[tuple[int, str]]:
             yield node.lineno, f"a function has at most {FUNCTION_LINES} lines below its docstring"
         if not node.name.startswith("_") and node in _public(tree):
             arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-            bare = [item.arg for item in arguments
-                    if item.annotation is None and item.arg not in ("self", "cls")]
+            bare = [item.arg for item in arguments if item.annotation is None and item.arg not in ("self", "cls")]
             if bare:
                 yield node.lineno, f"{node.name} has no type of {', '.join(bare)}"
 

@@ -84,9 +84,7 @@ def test_no_constructor_is_left_to_what_gfortran_gets_wrong() -> None:
         ("numbers = [numbers, 1]", ""),
     ],
 )
-def test_constructors_that_gfortran_gets_wrong_are_found(
-    tmp_path: Path, statement: str, rule: str
-) -> None:
+def test_constructors_that_gfortran_gets_wrong_are_found(tmp_path: Path, statement: str, rule: str) -> None:
     (tmp_path / "a.f90").write_text(
         "type :: load_t\n real, allocatable :: time(:), force(:, :)\nend type load_t\n"
         "type :: held_t\n integer :: block = 0\n type(load_t) :: path\nend type held_t\n"

@@ -64,8 +64,7 @@ def ranges(numbers: list[int]) -> Iterator[str]:
 
 def main() -> int:
     """Count and print."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("source", type=Path)
     parser.add_argument("build", type=Path)
     parser.add_argument("--least", type=float, default=0.0, help="percent (default: 0)")
@@ -83,8 +82,7 @@ def main() -> int:
             folders[name][0] += len(lines) - len(missed)
             folders[name][1] += len(lines)
         if options.missed and missed:
-            print(f"{path.relative_to(source)}: {len(missed)} of {len(lines)}: "
-                  f"{', '.join(ranges(missed))}")
+            print(f"{path.relative_to(source)}: {len(missed)} of {len(lines)}: " f"{', '.join(ranges(missed))}")
     for name in [*(name for name in folders if name != "all of it"), "all of it"]:
         run, of = folders[name]
         print(f"{name:12} {run:6} of {of:6} lines  {100 * run / of:6.2f} %")

@@ -67,8 +67,7 @@ def check(words: list[str], folder: Path) -> bool:
 
 def main() -> int:
     """Check all and report."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dda", required=True, help="the program")
     parser.add_argument("--jobs", type=int, default=2, help="runs at the same time (default: 2)")
     parser.add_argument("programs", nargs="*", help="test programs")

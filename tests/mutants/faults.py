@@ -21,8 +21,7 @@ IDLE = re.compile(
 CONSTANT = re.compile(r"\s*(real|integer)\b.*\bparameter\b.*::.*=")
 #: A real number with its kind
 REAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?)_wp")
-COMPARISONS = {"<": ("<=", ">"), "<=": ("<", ">"), ">": (">=", "<"), ">=": (">", "<"), "==": ("/=",),
-               "/=": ("==",)}
+COMPARISONS = {"<": ("<=", ">"), "<=": ("<", ">"), ">": (">=", "<"), ">=": (">", "<"), "==": ("/=",), "/=": ("==",)}
 
 
 @dataclass(frozen=True)

@@ -197,9 +197,7 @@ def test_program_that_is_killed_is_started_again(tmp_path: Path, unbroken) -> No
 
 def test_case_that_kills_the_program_holds_up_no_other(tmp_path: Path) -> None:
     dying = tmp_path / "dda"
-    dying.write_text(
-        f"#!/bin/sh\ncase \" $* \" in *'--cases 4'*) kill -9 $$;; esac\nexec '{DDA}' \"$@\"\n"
-    )
+    dying.write_text(f"#!/bin/sh\ncase \" $* \" in *'--cases 4'*) kill -9 $$;; esac\nexec '{DDA}' \"$@\"\n")
     dying.chmod(0o755)
     part = campaign_part.Part(dying, write_deck(tmp_path), (), tmp_path / "parts", (4, 5, 6))
     assert campaign_part.run_part(part) == (0, "")
@@ -231,9 +229,7 @@ def test_rows_that_a_loss_of_power_may_have_spoiled_are_not_taken(tmp_path: Path
 
 def test_every_table_of_a_run_is_merged(tmp_path: Path) -> None:
     (tmp_path / "drop.blocks").write_text(
-        "block fixed\n-1 -1\n1 -1\n1 0\n-1 0\nblock\n-0.5 0\n0.5 0\n0.5 1\n-0.5 1\n"
-        "measure 0 0.5\n"
-    )
+        "block fixed\n-1 -1\n1 -1\n1 0\n-1 0\nblock\n-0.5 0\n0.5 0\n0.5 1\n-0.5 1\n" "measure 0 0.5\n")
     deck = tmp_path / "drop.nml"
     deck.write_text(
         "&scene kind = 'blocks', geometry = 'drop.blocks' /\n"
@@ -246,9 +242,7 @@ def test_every_table_of_a_run_is_merged(tmp_path: Path) -> None:
     assert main(["campaign", str(deck), "--out", str(out), "--workers", "2", "--quiet"]) == 0
     for name in set(TABLES) - {"results.csv", "bars.csv"}:  # it has no bars
         assert (out / name).read_text() == (tmp_path / "one" / name).read_text(), name
-    again = subprocess.run(
-        [DDA, "run", deck, "--out", out, "--resume"], check=True, capture_output=True, text=True
-    )
+    again = subprocess.run([DDA, "run", deck, "--out", out, "--resume"], check=True, capture_output=True, text=True)
     assert "3 of 3 cases are there already" in again.stdout
     assert {"points.csv", "energy.csv", "frames.csv"} <= {path.name for path in out.iterdir()}
 

@@ -92,9 +92,7 @@ def test_changed_file_makes_another_campaign(tmp_path: Path, scene, settings, ca
         (tmp_path / name).write_text(BLOCKS.format(x=0.5))
     deck = tmp_path / "deck.nml"
     deck.write_text(
-        f"&scene kind = 'blocks', {scene} /\n"
-        "&sweep parameter = 'horizontal_coefficient', values = 0.1, 0.9 /\n"
-    )
+        f"&scene kind = 'blocks', {scene} /\n" "&sweep parameter = 'horizontal_coefficient', values = 0.1, 0.9 /\n")
     words = ["campaign", str(deck), "--out", str(tmp_path / "out"), "--quiet"]
     words += [word for setting in settings for word in ("--set", setting)]
     assert main(words) == 0

@@ -63,9 +63,7 @@ def test_dxf_with_arcs_inserts_and_three_layers(tmp_path: Path, capsys) -> None:
     for x in (0, 2):
         space.add_blockref("brick", (x, 0), dxfattribs={"layer": "bricks"})
     # a half disc on the left brick: bulge 1 is a half circle
-    space.add_lwpolyline(
-        [(0, 0.5, 0), (1, 0.5, 1)], format="xyb", close=True, dxfattribs={"layer": "dome"}
-    )
+    space.add_lwpolyline([(0, 0.5, 0), (1, 0.5, 1)], format="xyb", close=True, dxfattribs={"layer": "dome"})
     space.add_line((0, 0), (1, 1), dxfattribs={"layer": "axes"})
     drawing.saveas(tmp_path / "yard.dxf")
     deck = tmp_path / "yard.nml"

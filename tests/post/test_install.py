@@ -34,9 +34,7 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def run(program: Path, *words: str) -> str:
     """What an installed program prints, without help from this test's environment."""
     environment = {"PATH": "/usr/bin:/bin", "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run(
-        [program, *words], env=environment, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([program, *words], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -142,8 +140,7 @@ def test_notes_remove_all_that_was_installed(tmp_path: Path) -> None:
     text = (Path(__file__).parents[2] / "docs/installation.md").read_text()
     notes = [line for line in text.splitlines() if line.startswith("xargs ")]
     assert len(notes) == 1
-    subprocess.run(["cmake", "--install", BUILD, "--prefix", str(tmp_path / "p")], check=True,
-                   capture_output=True)
+    subprocess.run(["cmake", "--install", BUILD, "--prefix", str(tmp_path / "p")], check=True, capture_output=True)
     assert any(path.is_file() for path in tmp_path.rglob("*"))
     command = notes[0].replace("build/", f"{BUILD}/")
     subprocess.run(command, shell=True, check=True)

@@ -44,9 +44,7 @@ def test_modes_change_from_sliding_to_turning(paper_folder: Path) -> None:
 
 def test_thresholds_of_friction_are_exact(paper_folder: Path) -> None:
     lower = results.read(paper_folder / "figure8_lower").cases
-    for blocks, angle, known in zip(
-        lower["blocks"], lower["critical"], (0.308988, 0.309053, 0.309199)
-    ):
+    for blocks, angle, known in zip(lower["blocks"], lower["critical"], (0.308988, 0.309053, 0.309199)):
         assert np.tan(np.radians(angle)) == pytest.approx(known, abs=1e-6)
         assert angle == pytest.approx(exact_threshold(int(blocks), 0.3), rel=1e-8)
     upper = results.read(paper_folder / "figure8_upper").cases

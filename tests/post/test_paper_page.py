@@ -44,9 +44,7 @@ def test_page_holds_everything_itself(paper_page: str) -> None:
 def test_links_of_the_page_lead_somewhere(paper_page: str) -> None:
     names = re.findall(r'\bid="([^"]*)"', paper_page)
     assert len(names) == len(set(names))
-    targets = re.findall(r'href="#([^"]*)"', paper_page) + re.findall(
-        r"url\(#([^)]*)\)", paper_page
-    )
+    targets = re.findall(r'href="#([^"]*)"', paper_page) + re.findall(r"url\(#([^)]*)\)", paper_page)
     assert set(targets) <= set(names)
 
 
@@ -61,20 +59,7 @@ def test_page_tells_times_of_all_parts(paper_page: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "printed",
-    [
-        "+1.27",
-        "+16.73",
-        "+18.34",
-        "+53.16",
-        "+28.20",
-        "+4.49",
-        "+124.12",
-        "+13.17",
-        "+1.29",
-        "+17.13",
-    ],
-)
+    "printed", ["+1.27", "+16.73", "+18.34", "+53.16", "+28.20", "+4.49", "+124.12", "+13.17", "+1.29", "+17.13"])
 def test_percentages_are_those_that_the_paper_prints(paper_page: str, printed: str) -> None:
     assert f"({printed})</small>" in paper_page
 
@@ -145,13 +130,7 @@ def told(request, paper_page: str, tmp_path: Path) -> Iterator[dict]:
         "document.body.append(document.querySelector('iframe').contentDocument"
         ".getElementById('told')); })</script>"
     )
-    command = [
-        program,
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--disable-background-networking",
-    ]
+    command = [program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
     command += ["--allow-file-access-from-files", f"--user-data-dir={tmp_path / 'profile'}"]
     command += ["--window-size=1400,1000", "--dump-dom", outer.as_uri()]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)

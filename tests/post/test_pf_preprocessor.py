@@ -41,8 +41,7 @@ def refusal(source: str) -> tuple[int, str]:
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
     """Run the preprocessor as CMake does."""
     script = FRAMEWORK / "pf_to_fortran.py"
-    return subprocess.run([sys.executable, script, *map(str, arguments)],
-                          capture_output=True, text=True, check=False)
+    return subprocess.run([sys.executable, script, *map(str, arguments)], capture_output=True, text=True, check=False)
 
 
 def test_assertion_becomes_a_call_a_return_and_line_marks() -> None:
@@ -142,8 +141,7 @@ def test_assertions_of_the_subset_keep_their_text(statement: str) -> None:
     ("@disable", "outside the subset"),
     ("#ifdef X", "lines for the C preprocessor are outside the subset"),
 ])
-def test_statement_outside_the_subset_is_refused_with_its_line(statement: str,
-                                                               message: str) -> None:
+def test_statement_outside_the_subset_is_refused_with_its_line(statement: str, message: str) -> None:
     line, text = refusal(with_statement(statement))
     assert line == 7
     assert message in text
@@ -157,8 +155,7 @@ def test_assertion_may_fill_the_line_but_not_more() -> None:
             text = pf_to_fortran.translate(with_statement(statement), PATH)
             assert max(map(len, text.split("\n"))) == 132
         else:
-            assert refusal(with_statement(statement)) == (
-                7, "the assertion is 1 characters too long")
+            assert refusal(with_statement(statement)) == (7, "the assertion is 1 characters too long")
 
 
 @pytest.mark.parametrize(("old", "new", "line", "message"), [
@@ -179,15 +176,13 @@ def test_assertion_may_fill_the_line_but_not_more() -> None:
     ("   @test\n", "   @after\n   subroutine a\n   end subroutine\n   @after\n   subroutine b\n", 9,
      "there is one @after"),
 ])
-def test_file_of_another_form_is_refused_with_its_line(old: str, new: str, line: int,
-                                                       message: str) -> None:
+def test_file_of_another_form_is_refused_with_its_line(old: str, new: str, line: int, message: str) -> None:
     assert old in PASSING
     found_line, text = refusal(PASSING.replace(old, new, 1))
     assert (found_line, message in text) == (line, True), text
 
 
-@pytest.mark.parametrize("path", sorted(FRAMEWORK.parent.rglob("*.pf")),
-                         ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(FRAMEWORK.parent.rglob("*.pf")), ids=lambda path: path.stem)
 def test_every_test_of_the_project_is_in_the_subset(path: Path) -> None:
     pf_to_fortran.translate(path.read_text("utf-8"), path)
 
@@ -282,12 +277,10 @@ def test_checker_is_content_with_what_was_announced(announcing: Path) -> None:
     ("1 of 1", "1 of 2", "the closing line should count"),
     (" FAILED  (1 of 1 tests)", "", "found none"),
 ])
-def test_checker_finds_what_is_wrong_in_a_report(announcing: Path, old: str, new: str,
-                                                 message: str) -> None:
+def test_checker_finds_what_is_wrong_in_a_report(announcing: Path, old: str, new: str, message: str) -> None:
     problems = check_failures.disagreements(REPORT.replace(old, new, 1), 2, [announcing])
     assert message in "\n".join(problems)
 
 
 def test_checker_wants_exit_status_two(announcing: Path) -> None:
-    assert check_failures.disagreements(REPORT, 0, [announcing]) == [
-        "exit status 2 was wanted, found 0"]
+    assert check_failures.disagreements(REPORT, 0, [announcing]) == ["exit status 2 was wanted, found 0"]

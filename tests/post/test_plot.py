@@ -91,10 +91,7 @@ def legend_of(figure) -> str:
 @pytest.mark.parametrize("case", [1, 2])
 def test_line_of_thrust_lies_inside_the_joints(arches: results.Results, case: int) -> None:
     joints = arches.joints_of(case)
-    ends = [
-        np.column_stack((joints[f"x_{side}"], joints[f"y_{side}"]))
-        for side in ("intrados", "extrados")
-    ]
+    ends = [np.column_stack((joints[f"x_{side}"], joints[f"y_{side}"])) for side in ("intrados", "extrados")]
     along = ends[1] - ends[0]
     reach = np.einsum("ij,ij->i", thrust_points(joints) - ends[0], along)
     share = reach / np.einsum("ij,ij->i", along, along)
@@ -108,10 +105,7 @@ def test_mechanism_is_drawn_with_the_displacement_that_the_legend_states(arches)
         figure = draw_case(arches, 1, magnify=0.4)
     assert "drawn with a largest displacement of 400 mm" in legend_of(figure)
     scene = scene_of(arches, 1)
-    moves = [
-        np.hypot(*(after - before).T).max()
-        for before, after in zip(scene.shapes(0.0), scene.shapes(0.4))
-    ]
+    moves = [np.hypot(*(after - before).T).max() for before, after in zip(scene.shapes(0.0), scene.shapes(0.4))]
     assert max(moves) == pytest.approx(0.4, abs=1e-12)
     drawn = figure.axes[0].collections[2].get_paths()
     for path, shape in zip(drawn, scene.shapes(0.4)):
@@ -211,9 +205,7 @@ def test_numbers_have_units_that_suit_them() -> None:
     assert [length_text(value) for value in (2e-9, 3.5e-6, 0.0123, 0.5, 2.0, 4200.0)] == [
         "2 nm", "3.5 µm", "12.3 mm", "500 mm", "2 m", "4.2 km"
     ]
-    assert [force_text(value) for value in (12.0, 368.46e3, 2e6)] == [
-        "12 N/m", "368.5 kN/m", "2 MN/m"
-    ]
+    assert [force_text(value) for value in (12.0, 368.46e3, 2e6)] == ["12 N/m", "368.5 kN/m", "2 MN/m"]
 
 
 def test_magnification_is_a_round_number() -> None:
@@ -260,9 +252,7 @@ def test_title_has_the_deck_s_own_and_the_swept_values_in_words(tmp_path: Path) 
         "&sweep parameter = 'radius', values = 5 /\n&sweep parameter = 'half_angle_deg', values = 60, 90 /\n",
     )
     lines = title_of(run.case(2), run).splitlines()
-    assert lines[:2] == [
-        "Costs \\$5", "Case 2 of 2: radius 5 m, half angle 90°, friction angle 50°, 36 blocks"
-    ]
+    assert lines[:2] == ["Costs \\$5", "Case 2 of 2: radius 5 m, half angle 90°, friction angle 50°, 36 blocks"]
     assert lines[2].startswith("Critical thickness over radius: 0.107424, exact 0.107424")
     assert axis_label("analysis%time_step") == "time step [s]" and axis_label("young") == "Young's modulus [Pa]"
 
@@ -424,9 +414,7 @@ def test_many_curves_of_one_number_are_told_apart_by_colour(tmp_path: Path) -> N
         "&sweep parameter = 'friction_deg', first = 25, last = 50, count = 9 /\n",
     )
     with house_style():
-        for column, other, curves in (
-            ("friction_deg", "half_angle_deg", 10), ("half_angle_deg", "friction_deg", 9)
-        ):
+        for column, other, curves in (("friction_deg", "half_angle_deg", 10), ("half_angle_deg", "friction_deg", 9)):
             axes, bar = draw_chart(run, column).axes
             assert len(axes.lines) == curves
             low, high = min(run.cases[other]), max(run.cases[other])
@@ -476,9 +464,7 @@ def test_too_many_curves_are_refused(tmp_path: Path) -> None:
 
 def test_cases_without_a_critical_value_are_told(tmp_path: Path) -> None:
     run = compute(
-        tmp_path,
-        "&search /\n&arch voussoirs = 8 /\n&sweep parameter = 'friction_deg', values = 5, 40, 50 /\n",
-    )
+        tmp_path, "&search /\n&arch voussoirs = 8 /\n&sweep parameter = 'friction_deg', values = 5, 40, 50 /\n")
     with house_style():
         title = draw_chart(run).axes[0].get_title()
     assert title == "1 of 3 cases have no critical value"

@@ -78,9 +78,7 @@ def test_order_of_the_rows_does_not_matter(searched: results.Results, tmp_path: 
         (tmp_path / name).write_text(text)
     shuffled = results.read(tmp_path)
     assert shuffled.cases["critical"].tolist() == searched.cases["critical"].tolist()
-    assert (
-        shuffled.joints_of(3)["x_intrados"].tolist() == searched.joints_of(3)["x_intrados"].tolist()
-    )
+    assert (shuffled.joints_of(3)["x_intrados"].tolist() == searched.joints_of(3)["x_intrados"].tolist())
 
 
 def test_where_keeps_what_is_wanted(searched: results.Results) -> None:

@@ -29,12 +29,8 @@ def test_file_text_dict_and_arch_give_the_same_critical_thickness(tmp_path: Path
 
 def test_set_keys_by_bare_name_with_group_and_as_groups() -> None:
     pushed = voussoir.run(
-        {"arch": {}},
-        load={"horizontal_coefficient": 0.1},
-        search={"parameter": "thickness_ratio", "tolerance": 1e-6},
-        friction_deg=60,
-        **{"arch%voussoirs": 12, "scene%title": "l'arche"},
-    )
+        {"arch": {}}, load={"horizontal_coefficient": 0.1}, search={"parameter": "thickness_ratio", "tolerance": 1e-6},
+        friction_deg=60, **{"arch%voussoirs": 12, "scene%title": "l'arche"})
     row = pushed.case(1)
     assert (row["blocks"], row["friction_deg"], row["verdict"]) == (12, 60.0, "found")
     assert pushed.setting("scene%title") == "l'arche"
@@ -126,8 +122,7 @@ def test_shapely_lines_and_points_are_dropped_by_name() -> None:
 
 
 def test_tables_are_mappings_and_show_themselves() -> None:
-    cases = voussoir.run(ARCH, sweep={"parameter": "friction_deg", "count": 30, "first": 40,
-                                      "last": 69}).cases
+    cases = voussoir.run(ARCH, sweep={"parameter": "friction_deg", "count": 30, "first": 40, "last": 69}).cases
     assert list(cases)[:2] == ["deck", "case"] and len(cases) == 30
     assert {**cases}.keys() == dict(cases.items()).keys() == cases.columns.keys()
     text, page = repr(cases), cases._repr_html_()

@@ -24,9 +24,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.importorskip(package, reason=f"the site wants {package}: skipped")
     out = tmp_path_factory.mktemp("site")
     script = ROOT / "docs/site/build_site.py"
-    done = subprocess.run(
-        [sys.executable, script, "--dda", DDA, "--out", out], capture_output=True, text=True
-    )
+    done = subprocess.run([sys.executable, script, "--dda", DDA, "--out", out], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return out
 
@@ -131,8 +129,6 @@ def test_search_finds_pages_that_are_opened_as_files(site: Path, tmp_path: Path,
 
 def test_missing_packages_are_told(tmp_path: Path) -> None:
     script = ROOT / "docs/site/build_site.py"
-    done = subprocess.run(
-        [sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True
-    )
+    done = subprocess.run([sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True)
     assert done.returncode == 2
     assert "expected the packages mkdocs, ford, latex2mathml" in done.stderr

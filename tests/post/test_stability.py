@@ -84,12 +84,8 @@ def test_undecided_gives_its_reason():
 @pytest.mark.parametrize(
     "left",
     [
-        Finished(1, [row()]),
-        Finished(-11, [row()]),
-        Finished(0, [row()], not_a_number=("joints.csv",)),
-        Finished(0, []),
-        Finished(2, [], message="deck.nml:1: error: young must be a number"),
-    ],
+        Finished(1, [row()]), Finished(-11, [row()]), Finished(0, [row()], not_a_number=("joints.csv",)),
+        Finished(0, []), Finished(2, [], message="deck.nml:1: error: young must be a number")],
 )
 def test_crashes_and_nan_and_lost_rows_are_wrong_whatever_they_say(left):
     assert judge(Critical(0.1), left).colour == "WRONG"
@@ -138,9 +134,7 @@ def test_catalogue_is_large_and_without_repetition():
 
 
 def test_same_seed_makes_the_same_arches():
-    one, other, third = (
-        [scene.text() for scene in random_scenes(20, seed)] for seed in (7, 7, 8)
-    )
+    one, other, third = ([scene.text() for scene in random_scenes(20, seed)] for seed in (7, 7, 8))
     assert one == other != third
 
 
@@ -203,9 +197,6 @@ def test_scenes_are_listed(capsys):
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 def test_scene_that_takes_too_long_is_undecided(tmp_path, capsys):
     words = ["--only", "voussoirs: 10000", "--random", "0"]
-    done = main(
-        ["stability", "--out", str(tmp_path), "--timeout", "0.01", "--jobs", "1", "--seed", "1"]
-        + words
-    )
+    done = main(["stability", "--out", str(tmp_path), "--timeout", "0.01", "--jobs", "1", "--seed", "1"] + words)
     assert done == 0
     assert "0 WRONG, 1 undecided" in capsys.readouterr().out

@@ -57,23 +57,14 @@ CALLS = {
     "discrete_critical frictions": lambda x: theory.discrete_critical([0.0, 0.5, 1.0], friction=x),
 }
 #: Arguments that may be None
-OPTIONAL = {name for name in CALLS if name.startswith("discrete_critical f")} | {
-    "discrete_critical alpha"
-}
+OPTIONAL = {name for name in CALLS if name.startswith("discrete_critical f")} | {"discrete_critical alpha"}
 #: Arguments that may be infinite
 UNLIMITED = {"friction_thickness mu", "discrete_critical friction", "discrete_critical frictions"}
 NONSENSE = [math.nan, -math.inf, -1.5, "abc", "1.0", None, 1j, b"x", object(), [[None]]]
 
 
 @pytest.mark.parametrize(
-    "name, value",
-    [
-        (name, value)
-        for name in CALLS
-        for value in NONSENSE
-        if value is not None or name not in OPTIONAL
-    ],
-)
+    "name, value", [(name, value) for name in CALLS for value in NONSENSE if value is not None or name not in OPTIONAL])
 def test_nonsense_is_a_value_error(name, value):
     with pytest.raises(ValueError):
         CALLS[name](value)
@@ -124,9 +115,7 @@ def test_views_and_other_orders_give_the_same_numbers():
     angles = np.linspace(0.1, 2.4, 24).reshape(4, 6)
     expected = theory.critical(angles, "milankovitch")[1]
     assert np.array_equal(theory.critical(np.asfortranarray(angles), "milankovitch")[1], expected)
-    assert np.array_equal(
-        theory.critical(angles[::-1, ::2], "milankovitch")[1], expected[::-1, ::2]
-    )
+    assert np.array_equal(theory.critical(angles[::-1, ::2], "milankovitch")[1], expected[::-1, ::2])
     assert np.array_equal(theory.critical(angles.T, "milankovitch")[1], expected.T)
     assert np.array_equal(theory.critical(angles.astype(">f8"), "milankovitch")[1], expected)
     assert np.array_equal(theory.critical(angles.tolist(), "milankovitch")[1], expected)
@@ -155,11 +144,7 @@ def test_the_message_names_the_offending_value():
 
 @pytest.mark.parametrize("name", ["couplet", "", None, 2, ("ccr",)])
 def test_unknown_theory_is_refused(name):
-    for call in (
-        lambda: theory.critical(1.0, name),
-        lambda: theory.limits(name),
-        lambda: theory.friction(name),
-    ):
+    for call in (lambda: theory.critical(1.0, name), lambda: theory.limits(name), lambda: theory.friction(name)):
         with pytest.raises(ValueError, match="theory must be one of"):
             call()
 
@@ -196,22 +181,16 @@ def test_friction_of_the_semicircle():
 
 
 def test_discrete_arches():
-    assert theory.discrete_critical(36, alpha=QUARTER) == pytest.approx(
-        0.10742413832037052, rel=1e-14
-    )
+    assert theory.discrete_critical(36, alpha=QUARTER) == pytest.approx(0.10742413832037052, rel=1e-14)
     four_blocks = np.radians([0.0, 54.5, 90.0])
     eta = theory.discrete_critical(four_blocks, facet=math.radians(0.5))
     assert eta == pytest.approx(0.10747767764933158, rel=1e-14)
     odd = math.radians(90) * np.array([1, 3, 5]) / 5
-    assert theory.discrete_critical(5, alpha=QUARTER) == pytest.approx(
-        theory.discrete_critical(odd), rel=1e-14
-    )
+    assert theory.discrete_critical(5, alpha=QUARTER) == pytest.approx(theory.discrete_critical(odd), rel=1e-14)
     assert theory.discrete_critical(3, alpha=QUARTER) == 0.0
     with pytest.raises(ValueError, match="friction .*0.2"):
         theory.discrete_critical(36, alpha=QUARTER, friction=0.2)
-    held = theory.discrete_critical(
-        36, alpha=QUARTER, friction=math.radians(21), springing_no_slip=True
-    )
+    held = theory.discrete_critical(36, alpha=QUARTER, friction=math.radians(21), springing_no_slip=True)
     assert held == pytest.approx(0.10742413832037052, rel=1e-14)
 
 
@@ -231,9 +210,7 @@ def test_discrete_solution_tells_the_hinges():
 
 
 @pytest.mark.parametrize(
-    "joints",
-    [[], [0.0], [1.0, 0.5], [0.5, 0.5], [0.0, 4.0], [-0.1, 0.5], [[0.0, 1.0]], 36, [0.0, math.nan]],
-)
+    "joints", [[], [0.0], [1.0, 0.5], [0.5, 0.5], [0.0, 4.0], [-0.1, 0.5], [[0.0, 1.0]], 36, [0.0, math.nan]])
 def test_bad_joints_are_refused(joints):
     with pytest.raises(ValueError, match="joints"):
         theory.discrete_critical(joints)

@@ -48,9 +48,7 @@ def exact_curve(beta, alpha, flag):
 
 def root(function, low, high):
     """Root between two values of opposite sign, to all digits."""
-    return mp.findroot(
-        function, (low, high), solver="anderson", tol=1e-65, maxsteps=400, verify=False
-    )
+    return mp.findroot(function, (low, high), solver="anderson", tol=1e-65, maxsteps=400, verify=False)
 
 
 def exact_critical(alpha, name):
@@ -67,9 +65,7 @@ def exact_critical(alpha, name):
     flag = 1 if name == "milankovitch" else 0
 
     def slope(b):
-        eta, arm = exact_curve(b, alpha, flag), mp.sin(b) + b * mp.cos(b) - mp.sin(
-            b
-        ) * exact_embrace(alpha)
+        eta, arm = exact_curve(b, alpha, flag), mp.sin(b) + b * mp.cos(b) - mp.sin(b) * exact_embrace(alpha)
         return -flag * mp.sin(b) * eta**3 - 3 * arm * eta**2 - 12 * mp.sin(b) * eta + 12 * arm
 
     low = alpha * mp.mpf("1e-9") if alpha > 2 else alpha * mp.mpf("0.3")
@@ -93,11 +89,7 @@ def fifty_digits():
 def half_angles() -> np.ndarray:
     """Half angles from 0.001 to 147.5 degrees: random and round ones [rad]."""
     shallow = 10.0 ** GENERATOR.uniform(-3.0, math.log10(147.5), 40)
-    return np.radians(
-        np.concatenate(
-            [shallow, GENERATOR.uniform(1.0, 147.5, 60), [0.001, 45, 90, 126, 140, 147.5]]
-        )
-    )
+    return np.radians(np.concatenate([shallow, GENERATOR.uniform(1.0, 147.5, 60), [0.001, 45, 90, 126, 140, 147.5]]))
 
 
 @pytest.mark.parametrize("name", THEORIES)
@@ -106,10 +98,7 @@ def test_critical_solution_has_all_its_digits(name):
     limit = theory.limits(name)["alpha_limit"]
     found = np.array(theory.critical(angles, name))
     for i, angle in enumerate(angles):
-        errors = [
-            relative_error(x, y)
-            for x, y in zip(found[:, i], exact_critical(mp.mpf(float(angle)), name))
-        ]
+        errors = [relative_error(x, y) for x, y in zip(found[:, i], exact_critical(mp.mpf(float(angle)), name))]
         assert np.all(errors <= ALLOWED), (name, angle, errors)
         assert limit > angle
 
@@ -130,24 +119,16 @@ def test_digits_last_up_to_the_limit(name):
 @pytest.mark.parametrize("name", ("ccr", "milankovitch"))
 def test_curve_has_all_its_digits(name):
     unit = theory.limits(name)["alpha_unit_A"]
-    shares = np.concatenate(
-        [10.0 ** GENERATOR.uniform(-6, 0, 15), 1 - 10.0 ** GENERATOR.uniform(-9, 0, 15)]
-    )
-    angles = np.concatenate(
-        [half_angles()[::8], unit + np.array([-1e-2, -1e-6, 0.0, 1e-9, 1e-5, 1e-3])]
-    )
+    shares = np.concatenate([10.0 ** GENERATOR.uniform(-6, 0, 15), 1 - 10.0 ** GENERATOR.uniform(-9, 0, 15)])
+    angles = np.concatenate([half_angles()[::8], unit + np.array([-1e-2, -1e-6, 0.0, 1e-9, 1e-5, 1e-3])])
     for angle in angles:
         for beta in shares * angle:
             found = theory.equilibrium_thickness(beta, angle, name)
-            exact = exact_curve(
-                mp.mpf(float(beta)), mp.mpf(float(angle)), 1 if name == "milankovitch" else 0
-            )
+            exact = exact_curve(mp.mpf(float(beta)), mp.mpf(float(angle)), 1 if name == "milankovitch" else 0)
             assert relative_error(found, exact) <= 1e-14, (name, angle, beta)
 
 
-@pytest.mark.parametrize(
-    "row", read_table("theory_golden.csv"), ids=lambda row: f"{row['alpha_deg']}-{row['theory']}"
-)
+@pytest.mark.parametrize("row", read_table("theory_golden.csv"), ids=lambda row: f"{row['alpha_deg']}-{row['theory']}")
 def test_golden_values(row):
     angle = math.radians(float(row["alpha_deg"]))
     limit = theory.limits(row["theory"])["alpha_limit"]

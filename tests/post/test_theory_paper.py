@@ -69,11 +69,7 @@ def dda_row(table: str, key: str) -> dict[str, str]:
         return DDA["table1", 90.0, number, 0.0]
     if table in ("2", "3"):
         return DDA["table" + table, TABLE_ANGLE[table], "4", float(number)]
-    return next(
-        row
-        for row in DDA.values()
-        if row["table"] == "table4" and float(row["alpha_deg"]) == float(number)
-    )
+    return next(row for row in DDA.values() if row["table"] == "table4" and float(row["alpha_deg"]) == float(number))
 
 
 def exact(row: dict[str, str]) -> float:
@@ -87,9 +83,7 @@ def exact(row: dict[str, str]) -> float:
     return 100.0 * (float(dda["beta_dda_deg"]) - values["beta_deg"]) / values["beta_deg"]
 
 
-@pytest.mark.parametrize(
-    "row", PRINTED, ids=lambda row: "-".join(filter(None, list(row.values())[:4]))
-)
+@pytest.mark.parametrize("row", PRINTED, ids=lambda row: "-".join(filter(None, list(row.values())[:4])))
 def test_printed_figure_is_reproduced(row):
     figure = Decimal(row["printed"])
     assert Decimal(exact(row)).quantize(figure, ROUND_HALF_UP) == figure

@@ -221,8 +221,7 @@ def test_bricks_that_all_but_meet_above_a_head_joint_have_the_joints_that_are_dr
 @pytest.mark.parametrize("foot", [0.99995, 0.99997, 1.0, 1.00001, 1.0006, 1.1, 1.3])
 def test_a_block_tips_about_its_only_corner_by_a_force_in_the_cone(tmp_path: Path, foot: float) -> None:
     """Its other foot stands on the very end of the table or beyond it."""
-    blocks = ("block fixed\n0 -1\n1 -1\n1 0\n0 0\n"
-              f"block\n0.3 0\n0.5 0.3\n0.8 0.3\n{foot} 0\n1.6 0.5\n0.1 0.5\n")
+    blocks = ("block fixed\n0 -1\n1 -1\n1 0\n0 0\n" f"block\n0.3 0\n0.5 0.3\n0.8 0.3\n{foot} 0\n1.6 0.5\n0.1 0.5\n")
     folder = run_deck(tmp_path, HEAD + "&output joints = .true., blocks = .true. /\n", blocks)
     row = rows_of(folder / "results.csv")[0]
     assert row["verdict"] == "collapsed"

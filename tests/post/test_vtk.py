@@ -79,9 +79,7 @@ def test_stress_and_rotation_are_those_of_a_falling_arch(fall: results.Results) 
     (first, _), *_, (last, _) = files_of(fall)
     for file in (first, last):
         data = grid_of(file).GetCellData()
-        assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} == {
-            "block", "rotation", "stress"
-        }
+        assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} == {"block", "rotation", "stress"}
     stress = vtk_to_numpy(grid_of(last).GetCellData().GetArray("stress"))
     assert np.all(np.isfinite(stress)) and stress[:8, :2].min() < -1e4  # compression is negative
     turn = vtk_to_numpy(grid_of(last).GetCellData().GetArray("rotation"))

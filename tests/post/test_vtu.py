@@ -20,8 +20,7 @@ pytestmark = pytest.mark.skipif(
     reason="unit_output, which writes the files, has not run in this build",
 )
 #: The triangle, square and pentagon of test_dda_write_vtu.pf.
-CORNERS = [(0, 0), (1, 0), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1), (4, 0), (6, 0), (6, 1),
-           (5, 1.5), (4, 1)]
+CORNERS = [(0, 0), (1, 0), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1), (4, 0), (6, 0), (6, 1), (5, 1.5), (4, 1)]
 CELLS = [[0, 1, 2], [3, 4, 5, 6], [7, 8, 9, 10, 11]]
 STRESS = [(-1.0e6, 2.0e5, 3.0), (-0.1, 0.2, 0.3), (0.0, -7.5, 1.0e-30)]
 STATES = [-1, 0, 2147483647]

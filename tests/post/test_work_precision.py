@@ -144,8 +144,7 @@ def test_motion_alone_converges_as_it_should(tmp_path, capsys):
 @needs_dda
 def test_small_run_writes_tables_and_figures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
-    words = ["work-precision", "--angles", "90", "--voussoirs", "6", "--repeats", "1", "--scenes",
-             "arch"]
+    words = ["work-precision", "--angles", "90", "--voussoirs", "6", "--repeats", "1", "--scenes", "arch"]
     assert main([*words, "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "work_precision.md").read_text()

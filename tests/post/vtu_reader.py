@@ -74,10 +74,8 @@ def read_column(element: ElementTree.Element, data: bytes, order: str, length: s
     width = int(element.get("NumberOfComponents", "1"))
     assert len(numbers) % width == 0
     return Column(
-        type=element.get("type", ""),
-        components=[element.get(f"ComponentName{i}", "") for i in range(width)],
-        rows=list(zip(*[iter(numbers)] * width)),
-    )
+        type=element.get("type", ""), components=[element.get(f"ComponentName{i}", "") for i in range(width)],
+        rows=list(zip(*[iter(numbers)] * width)))
 
 
 def read_vtu(path: Path) -> Grid:
@@ -110,12 +108,9 @@ def read_vtu(path: Path) -> Grid:
     offsets = [0, *map(int, cells["offsets"].numbers)]
     connectivity = list(map(int, cells["connectivity"].numbers))
     grid = Grid(
-        points=columns("Points")["Points"].rows,
-        cells=[connectivity[a:b] for a, b in zip(offsets, offsets[1:])],
-        types=list(map(int, cells["types"].numbers)),
-        point_fields=columns("PointData"),
-        cell_fields=columns("CellData"),
-    )
+        points=columns("Points")["Points"].rows, cells=[connectivity[a:b] for a, b in zip(offsets, offsets[1:])],
+        types=list(map(int, cells["types"].numbers)), point_fields=columns("PointData"),
+        cell_fields=columns("CellData"))
     assert len(grid.points) == int(piece.get("NumberOfPoints", ""))
     assert len(grid.cells) == len(grid.types) == int(piece.get("NumberOfCells", ""))
     return grid

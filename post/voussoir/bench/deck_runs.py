@@ -20,46 +20,20 @@ _NOT_A_NUMBER = re.compile(r"(?:^|,)[-+]?(?:nan|inf|infinity)(?:,|$)", re.IGNORE
 
 @dataclass(frozen=True)
 class Finished:
-    """What a run of one deck left.
+    """What a run of one deck left."""
 
-    Attributes
-    ----------
-    status
-        Exit status; negative if a signal ended it, None if it took too long.
-    rows
-        Rows of results.csv.
-    remarks
-        Remark of log.txt by number of the case.
-    message
-        What it printed as error.
-    not_a_number
-        Names of result files that hold NaN or Inf.
-    folder
-        Folder of its results.
-    """
-
-    status: int | None
-    rows: list[Row] = field(default_factory=list)
-    remarks: dict[str, str] = field(default_factory=dict)
-    message: str = ""
-    not_a_number: tuple[str, ...] = ()
-    folder: Path = Path()
+    status: int | None  #: Exit status; negative if a signal ended it, None if it took too long
+    rows: list[Row] = field(default_factory=list)  #: Rows of results.csv.
+    remarks: dict[str, str] = field(default_factory=dict)  #: Remark of log.txt by number of the case.
+    message: str = ""  #: What it printed as error
+    not_a_number: tuple[str, ...] = ()  #: Names of result files that hold NaN or Inf
+    folder: Path = Path()  #: Folder of its results
 
 
 def run_deck(
     deck: str | bytes, folder: Path, timeout: float = 600.0, jobs: int = 1, files: Mapping[str, str] | None = None
 ) -> Finished:
-    """Write a deck and the files beside it, run it, read its results.
-
-    Parameters
-    ----------
-    folder : Path
-        Where deck.nml and the folder of its results go; made if missing.
-    timeout : float, optional
-        Longest time that it may take [s].
-    files : mapping, optional
-        Names and texts of the files beside the deck.
-    """
+    """Write a deck and files (names and texts) into a folder, run it there for a time at most [s], read its results."""
     folder.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder / "out", ignore_errors=True)
     (folder / "deck.nml").write_bytes(deck if isinstance(deck, bytes) else deck.encode())

@@ -120,19 +120,13 @@ def stands_by_compact(half_angle: float, voussoirs: int, ratio: float, friction:
     zero = np.zeros_like(cos)
     rows = np.vstack(
         [
-            np.column_stack([low * cos, -one]),
-            np.column_stack([-high * cos, one]),
-            np.column_stack([sin - friction * cos, zero]),
-            np.column_stack([-sin - friction * cos, zero]),
-        ]
+            np.column_stack([low * cos, -one]), np.column_stack([-high * cos, one]),
+            np.column_stack([sin - friction * cos, zero]), np.column_stack([-sin - friction * cos, zero])]
     )
     bounds = np.concatenate(
         [
-            moment - low * carried * sin,
-            high * carried * sin - moment,
-            carried * (cos + friction * sin),
-            carried * (friction * sin - cos),
-        ]
+            moment - low * carried * sin, high * carried * sin - moment, carried * (cos + friction * sin),
+            carried * (friction * sin - cos)]
     )
     free = [(None, None), (None, None)]
     return _stands(linprog(np.zeros(2), A_ub=rows, b_ub=bounds, bounds=free, method="highs"))

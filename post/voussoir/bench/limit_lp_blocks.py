@@ -15,25 +15,14 @@ from voussoir.results import Block, Results
 
 @dataclass(frozen=True)
 class Assembly:
-    """Blocks that can move, their joints, and loads.
+    """Blocks that can move, their joints, and loads."""
 
-    Attributes
-    ----------
-    centre : ndarray
-        Centres of gravity: (blocks, 2) [m].
-    dead, live : ndarray
-        Forces and moments about the centres: (blocks, 3).
-    ends : ndarray
-        Both ends of each joint: (joints, 2, 2) [m].
-    pairs : ndarray
-        Places of its two blocks, -1 for one that is fixed: (joints, 2).
-    """
-
-    centre: np.ndarray
+    centre: np.ndarray  #: Centres of gravity: (blocks, 2) [m]
+    #: Forces and moments about the centres: (blocks, 3)
     dead: np.ndarray
     live: np.ndarray
-    ends: np.ndarray
-    pairs: np.ndarray
+    ends: np.ndarray  #: Both ends of each joint: (joints, 2, 2) [m]
+    pairs: np.ndarray  #: Places of its two blocks, -1 for one that is fixed: (joints, 2)
 
 
 def moments(block: Block) -> tuple[float, np.ndarray]:
@@ -47,15 +36,10 @@ def moments(block: Block) -> tuple[float, np.ndarray]:
 
 
 def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = None) -> Assembly:
-    """What a run says of its blocks and joints; weights are areas.
+    """What a run of one case says of its blocks and joints; weights are areas.
 
-    Parameters
-    ----------
-    run : Results
-        Of one case, with its blocks and joints.
-    push : (int, ndarray, ndarray), optional
-        Block, point and force of a live load over the weight per area; without it the weights
-        act towards +x as well.
+    `push` is the block, point and force of a live load over the weight per area; without it the weights act towards +x,
+    too.
     """
     blocks, joints = run.blocks_of(1), run.joints_of(1)
     free = [block for block in blocks if block.state != "fixed"]
@@ -85,17 +69,7 @@ def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = 
 def limit_factor(assembly: Assembly, friction: float, method: str, tolerance: float) -> float:
     """The factor of the live loads at which the blocks fall by the associated rule.
 
-    Parameters
-    ----------
-    method : str
-        "highs-ds" (simplex) or "highs-ipm" (interior points).
-    tolerance : float
-        By how much HiGHS may violate rows.
-
-    Raises
-    ------
-    RuntimeError
-        If HiGHS gives no answer.
+    `method` is "highs-ds" (simplex) or "highs-ipm" (interior points); RuntimeError if it gives no answer.
     """
     from scipy.optimize import linprog
     from scipy.sparse import coo_array

@@ -23,18 +23,7 @@ _SEARCH: dict[str, Any] = {"search": {"parameter": "thickness_ratio"}}
 
 
 def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float | None:
-    """Critical thickness ratio of an arch by limit analysis of the same polygons.
-
-    Parameters
-    ----------
-    friction_deg : float, optional
-        Friction angle of the joints [deg].
-
-    Returns
-    -------
-    float or None
-        0 where every thickness stands, None where none does.
-    """
+    """Critical thickness ratio by limit analysis of the same polygons: 0 where each stands, None where none does."""
     options = {
         "facet": math.radians(arch["facet_deg"]) if "facet_deg" in arch else None,
         "friction": None if friction_deg >= NO_SLIP_DEG else math.radians(friction_deg),
@@ -52,15 +41,7 @@ def searched(
     group: str, name: str, guard: str, arch: dict[str, Any] | None = None, friction_deg: float = 90.0,
     current: bool = False, **others: dict[str, Any]
 ) -> Scene:
-    """A search for the critical thickness: the scene with its exact answer.
-
-    Parameters
-    ----------
-    friction_deg : float, optional
-        Friction angle [deg].
-    current : bool, optional
-        Whether blocks move; the answer may then differ by what elasticity explains.
-    """
+    """A search for the critical thickness; where blocks move it may differ by what elasticity explains."""
     arch = {"voussoirs": 36, "half_angle_deg": 90.0} if arch is None else arch
     exact = exact_thickness(arch, friction_deg)
     deck = {"arch": arch, "joint": {"friction_deg": friction_deg}, **_SEARCH, **others}
@@ -237,19 +218,7 @@ def _refused() -> Iterator[Scene]:
 
 
 def random_arches(count: int, seed: int) -> Iterator[Scene]:
-    """Arches that nobody has listed.
-
-    Parameters
-    ----------
-    seed : int
-        Beginning of the random numbers; the same one makes the same arches.
-
-    Yields
-    ------
-    Scene
-        Searches: half angle, joints, chords, friction, springing and plan at random; every fifth
-        one with blocks that move.
-    """
+    """Searches with half angle, joints, friction, springing and plan at random; blocks of every fifth one move."""
     chance = np.random.default_rng(seed)
     for number in range(1, count + 1):
         half_angle = float(np.round(chance.uniform(8.0, 150.0), 3))

@@ -112,19 +112,8 @@ def _weightless() -> dict[str, dict[str, Any]]:
 def _materials() -> Iterator[Scene]:
     """Densities, moduli and joints that no material has."""
     for words in (
-        "density 0",
-        "density -1",
-        "density NaN",
-        "density Inf",
-        "young 0",
-        "young -5e9",
-        "young nan",
-        "poisson 0.5",
-        "poisson 0.7",
-        "poisson -1",
-        "unit_weight -1",
-        "mass 3",
-    ):
+        "density 0", "density -1", "density NaN", "density Inf", "young 0", "young -5e9", "young nan", "poisson 0.5",
+        "poisson 0.7", "poisson -1", "unit_weight -1", "mass 3"):
         text = BASE + written_block(_SQUARE, "material 2") + f"material 2 {words}\n"
         yield _blocks(f"material {words}", text, Refused("scene.blocks:"))
     strain = {"material": {"poisson": 0.5, "plane": "strain"}}
@@ -185,10 +174,8 @@ def _written() -> Iterator[Scene]:
         ("a sweep without values", arch + b"&sweep parameter = 'radius' /\n", "deck.nml:2"),
         ("a sweep of nothing", arch + b"&sweep parameter = 'colour', values = 1 /\n", "colour"),
         (
-            "too many cases",
-            arch + b"&sweep parameter = 'radius', first = 1, last = 2, count = 9999999 /\n",
-            "max_cases",
-        ),
+            "too many cases", arch + b"&sweep parameter = 'radius', first = 1, last = 2, count = 9999999 /\n",
+            "max_cases"),
         ("no such file", b"&scene kind = 'blocks', geometry = 'none.blocks' /\n", "none.blocks"),
         ("a folder for a file", b"&scene kind = 'blocks', geometry = 'out' /\n", "out"),
         ("no file named", b"&scene kind = 'blocks' /\n", "geometry"),

@@ -13,24 +13,12 @@ RIGHT, UNDECIDED, WRONG = "right", "undecided", "WRONG"
 
 @dataclass(frozen=True)
 class Judgement:
-    """Judgement of one scene.
+    """Judgement of one scene."""
 
-    Attributes
-    ----------
-    colour
-        "right", "undecided" or "WRONG".
-    found
-        What the program answered.
-    error
-        Its deviation, or the invariant that was looked at.
-    reason
-        Why it is undecided or WRONG; empty if right.
-    """
-
-    colour: str
-    found: str
-    error: str = ""
-    reason: str = ""
+    colour: str  #: "right", "undecided" or "WRONG"
+    found: str  #: What the program answered
+    error: str = ""  #: Its deviation, or the invariant that was looked at
+    reason: str = ""  #: Why it is undecided or WRONG; empty if right
 
 
 class Expectation(Protocol):
@@ -45,15 +33,9 @@ class Expectation(Protocol):
 
 @dataclass(frozen=True)
 class Critical:
-    """A search whose bracket holds the exact value, or that says that there is none.
+    """A search whose bracket holds the exact value, or that says that there is none."""
 
-    Attributes
-    ----------
-    exact
-        Critical value by limit analysis; 0 where everything stands, None where nothing does.
-    """
-
-    exact: float | None
+    exact: float | None  #: Critical value by limit analysis; 0 where everything stands, None where nothing does
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -77,18 +59,10 @@ class Critical:
 
 @dataclass(frozen=True)
 class Shifted:
-    """A search whose bracket differs from the exact value of rigid blocks by elasticity at most.
+    """A search whose bracket differs from the exact value of rigid blocks by elasticity at most."""
 
-    Attributes
-    ----------
-    exact
-        Critical value of rigid blocks; None where there is none.
-    bound
-        Largest deviation.
-    """
-
-    exact: float | None
-    bound: float
+    exact: float | None  #: Critical value of rigid blocks; None where there is none
+    bound: float  #: Largest deviation
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -113,15 +87,9 @@ class Shifted:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A decision.
+    """A decision."""
 
-    Attributes
-    ----------
-    word
-        "stable" or "collapsed".
-    """
-
-    word: str
+    word: str  #: "stable" or "collapsed"
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -137,15 +105,9 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Same:
-    """Critical values of all cases agree.
+    """Critical values of all cases agree."""
 
-    Attributes
-    ----------
-    tolerance
-        Largest relative difference.
-    """
-
-    tolerance: float
+    tolerance: float  #: Largest relative difference
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -164,15 +126,9 @@ class Same:
 
 @dataclass(frozen=True)
 class Refused:
-    """Bad input: refused with a message that names a word.
+    """Bad input: refused with a message that names a word."""
 
-    Attributes
-    ----------
-    word
-        What the message names.
-    """
-
-    word: str
+    word: str  #: What the message names
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -186,18 +142,10 @@ class Refused:
 
 @dataclass(frozen=True)
 class Warned:
-    """A scene that runs, and of which a warning names a word.
+    """A scene that runs, and of which a warning names a word."""
 
-    Attributes
-    ----------
-    word
-        What the warning names.
-    then
-        What it must answer.
-    """
-
-    word: str
-    then: Expectation
+    word: str  #: What the warning names
+    then: Expectation  #: What it must answer
 
     def wanted(self) -> str:
         """The answer in words."""
@@ -213,15 +161,9 @@ class Warned:
 
 @dataclass(frozen=True)
 class Measured:
-    """Quantities of the results that are known.
+    """Quantities of the results that are known."""
 
-    Attributes
-    ----------
-    checks
-        What is compared.
-    """
-
-    checks: tuple[Check, ...]
+    checks: tuple[Check, ...]  #: What is compared
 
     def wanted(self) -> str:
         """The answer in words."""

@@ -40,13 +40,8 @@ def moving(
 ) -> Scene:
     """A scene of blocks that move in time, with its energies."""
     analysis = {
-        "mode": "dynamic",
-        "geometry": "current",
-        "time_step": step,
-        "duration": duration,
-        "steps": 1000000,
-        **groups.pop("analysis", {}),
-    }
+        "mode": "dynamic", "geometry": "current", "time_step": step, "duration": duration, "steps": 1000000,
+        **groups.pop("analysis", {})}
     output = {"joints": False, "condition": False, "energy": True}
     rise = Check("rise of energy over the speed's", 0.0, _rise, 1e-6, scale=1.0)
     expectation = Measured((_FINE, *checks, rise))

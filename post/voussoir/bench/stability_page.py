@@ -46,23 +46,12 @@ _SHOWN = ("scene", "result", "wanted", "found", "error", "seconds")
 
 @dataclass(frozen=True)
 class Kind:
-    """What came of the scenes of one kind.
+    """What came of the scenes of one kind."""
 
-    Attributes
-    ----------
-    name : str
-        The kind.
-    count : Counter
-        Scenes by their result.
-    worst : float or None
-        Largest relative error of those that are right; None where none is told.
-    median, longest : float
-        Times of one scene [s].
-    """
-
-    name: str
-    count: Counter[str]
-    worst: float | None
+    name: str  #: The kind
+    count: Counter[str]  #: Scenes by their result
+    worst: float | None  #: Largest relative error of those that are right; None where none is told
+    #: Times of one scene [s]
     median: float
     longest: float
 
@@ -71,13 +60,9 @@ class Kind:
         total = self.count.total()
         undecided = self.count[UNDECIDED]
         return [
-            self.name,
-            str(total),
-            "-" if self.worst is None else f"{self.worst:.0e}",
-            f"{undecided} ({100.0 * undecided / total:.1f} %)" if undecided else "0",
-            str(self.count[WRONG]),
-            *(f"{1e3 * time:.3g}" if time < 1.0 else f"{1e3 * time:.0f}" for time in (self.median, self.longest)),
-        ]
+            self.name, str(total), "-" if self.worst is None else f"{self.worst:.0e}",
+            f"{undecided} ({100.0 * undecided / total:.1f} %)" if undecided else "0", str(self.count[WRONG]),
+            *(f"{1e3 * time:.3g}" if time < 1.0 else f"{1e3 * time:.0f}" for time in (self.median, self.longest))]
 
 
 #: Heads of the table of kinds
@@ -146,9 +131,7 @@ def write_page(lines: Sequence[Line], file: Path) -> None:
         "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>",
         "<meta name='viewport' content='width=device-width, initial-scale=1'>",
         f"<title>Stiff and extreme scenes</title><style>{_STYLE}</style></head><body>",
-        f"<h1{bad}>{html.escape(headline(lines))}</h1>",
-        *_kind_table(lines),
-    ]
+        f"<h1{bad}>{html.escape(headline(lines))}</h1>", *_kind_table(lines)]
     if doubtful:
         text += ["<h2>What is not right, and why</h2>"]
         text += _scene_table(doubtful, ("group", "scene", "result", "found", "reason"))

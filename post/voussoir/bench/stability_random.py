@@ -18,18 +18,7 @@ _NEARLY_RIGID = 5e12
 
 
 def random_blocks(count: int, seed: int) -> Iterator[Scene]:
-    """Blocks that nobody has listed.
-
-    Parameters
-    ----------
-    seed : int
-        Beginning of the random numbers; the same one makes the same blocks.
-
-    Yields
-    ------
-    Scene
-        Slopes, towers, walls, slides, lumps, flights and pushed walls in turn.
-    """
+    """Slopes, towers, walls, slides, lumps, flights and pushed walls in turn; the same seed makes the same ones."""
     chance = np.random.default_rng([seed, 1])
     kinds = (_slope, _tower, _wall, _slide, _lump, _flight, _pushed_wall, _tower)
     for number in range(1, count + 1):
@@ -82,17 +71,9 @@ def _tower(number: int, chance: np.random.Generator) -> Scene:
 
 
 def tower_push(left: np.ndarray, widths: np.ndarray, heights: np.ndarray, friction: float) -> float:
-    """Force to the right over the weight at which a tower slides or tips.
+    """Force to the right over the weight at which a tower slides or tips, by its blocks from the lowest on [m].
 
-    Parameters
-    ----------
-    left, widths, heights : ndarray
-        Left ends, widths and heights of the blocks, from the lowest on: (n) [m].
-
-    Returns
-    -------
-    float
-        The least over all joints; negative if the tower does not stand by itself.
+    The least over all joints; negative if the tower does not stand by itself.
     """
     level = np.concatenate([[0.0], np.cumsum(heights)])
     mass = widths * heights
@@ -121,10 +102,8 @@ def _wall(number: int, chance: np.random.Generator) -> Scene:
     text = BASE + "".join(map(written_block, wall(courses, bricks, length, height)[0]))
     weight = DENSITY * GRAVITY * courses * bricks * length * height
     checks = (
-        verdict("stable", "verdict"),
-        Check("force on the base [N/m]", weight, support, 1e-8),
-        Check("tension in a joint [N/m]", 0.0, pull, 0.0, scale=1.0),
-    )
+        verdict("stable", "verdict"), Check("force on the base [N/m]", weight, support, 1e-8),
+        Check("tension in a joint [N/m]", 0.0, pull, 0.0, scale=1.0))
     groups["material"]["poisson"] = 0.0
     return block_scene(
         "random blocks", f"{number}: wall of {courses} x {bricks}, friction {friction:g}, {geometry}", "", text,

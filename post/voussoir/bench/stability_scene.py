@@ -18,30 +18,14 @@ BLOCKS = "scene.blocks"
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene.
+    """One scene."""
 
-    Attributes
-    ----------
-    group
-        What is extreme about it.
-    name
-        Its place in the group.
-    deck
-        Groups of the deck: keys and values; or the deck as it is written.
-    expectation
-        What it must answer.
-    guard
-        What keeps the answer right.
-    files
-        Names and texts of the files beside the deck.
-    """
-
-    group: str
-    name: str
-    deck: dict[str, dict[str, Any]] | bytes
-    expectation: Expectation
-    guard: str
-    files: Mapping[str, str] = field(default_factory=dict)
+    group: str  #: What is extreme about it
+    name: str  #: Its place in the group
+    deck: dict[str, dict[str, Any]] | bytes  #: Groups of the deck: keys and values; or the deck as it is written
+    expectation: Expectation  #: What it must answer
+    guard: str  #: What keeps the answer right
+    files: Mapping[str, str] = field(default_factory=dict)  #: Names and texts of the files beside the deck
 
     @property
     def has_lean_plan(self) -> bool:

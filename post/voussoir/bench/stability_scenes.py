@@ -21,15 +21,7 @@ def catalogue() -> Iterator[Scene]:
 
 
 def random_scenes(count: int, seed: int) -> Iterator[Scene]:
-    """Scenes that nobody has listed.
-
-    Parameters
-    ----------
-    count : int
-        How many: two thirds arches, the rest blocks.
-    seed : int
-        Beginning of the random numbers; the same one makes the same scenes.
-    """
+    """Scenes that nobody has listed, two thirds of them arches; the same seed makes the same ones."""
     blocks = count // 3
     yield from random_arches(count - blocks, seed)
     yield from random_blocks(blocks, seed)

@@ -38,15 +38,7 @@ def main() -> None:
 
 
 def compare(name: str, angles: np.ndarray, few: np.ndarray) -> str:
-    """Measure one theory.
-
-    Parameters
-    ----------
-    angles : ndarray
-        Half angles for Fortran and NumPy [rad].
-    few : ndarray
-        Half angles for brentq [rad].
-    """
+    """Measure one theory: many half angles for Fortran and NumPy, few for brentq [rad]."""
     fortran = rate(lambda: theory.critical(angles, name), angles.size)
     vectorised = rate(lambda: numpy_critical(angles, name), angles.size)
     scalar = rate(lambda: [brentq_critical(angle, name) for angle in few], few.size, repeats=1)
@@ -69,20 +61,7 @@ def rate(work: Callable[[], object], count: int, repeats: int = 3) -> float:
 
 
 def numpy_critical(alpha: np.ndarray, name: str, steps: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The algorithm of couplet_heyman_critical on whole arrays, for half angles up to 2.2.
-
-    Parameters
-    ----------
-    alpha : ndarray
-        Half angles [rad].
-    steps : int, optional
-        Newton steps from the first guess.
-
-    Returns
-    -------
-    beta, eta, h : ndarray
-        Hinge [rad], thickness ratio, thrust.
-    """
+    """Hinge [rad], thickness ratio and thrust by couplet_heyman_critical on whole arrays, for half angles up to 2.2."""
     flag = 1.0 if name == "milankovitch" else 0.0
     deficit = 2.0 * _arm_excess(alpha / 2) / np.sin(alpha / 2)
     beta = alpha / math.sqrt(2.0) / (1.0 + 0.07 * alpha**2)
@@ -103,18 +82,7 @@ def numpy_critical(alpha: np.ndarray, name: str, steps: int = 6) -> tuple[np.nda
 
 
 def brentq_critical(alpha: float, name: str) -> tuple[float, float, float]:
-    """The printed equations, by a scalar root finder.
-
-    Parameters
-    ----------
-    alpha : float
-        Half angle [rad].
-
-    Returns
-    -------
-    beta, eta, h : float
-        Hinge [rad], thickness ratio, thrust.
-    """
+    """The same by the printed equations and a scalar root finder."""
     from scipy.optimize import brentq
 
     a = alpha / math.tan(alpha / 2)

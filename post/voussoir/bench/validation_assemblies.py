@@ -75,16 +75,9 @@ def roof_wedge(half_angle_deg: float, friction_deg: float, stiffness: float, swe
 
 
 def snap_load(half_span: float, rise: float, stiffness: float) -> float:
-    """Weight of a bar, half of a shallow truss, that snaps through [N/m].
+    """Weight of a bar, half of a shallow truss of EA [N/m per metre depth], that snaps through [N/m].
 
     Half of the weight bears on the top: the most of 2 EA (z/l) (l0 - l)/l0 over all rises z.
-
-    Parameters
-    ----------
-    half_span, rise : float
-        Of the unloaded truss [m].
-    stiffness : float
-        EA [N/m per metre depth].
     """
     free = math.hypot(half_span, rise)
 

@@ -16,17 +16,10 @@ _STORED = ("kinetic", "elastic", "contact", "gravity")
 
 
 def quarter_period(b: float, h: float, share: float) -> float:
-    """Time from rest at a share of the block's angle to upright, by quadrature [s].
+    """Time from rest at a share of the block's angle to upright, by quadrature [s]; half width and half height in m.
 
-    The speed is that of Housner's block, w^2 = 2 p^2 (cos(a - t0) - cos(a - t)); with t = t0 - s^2
-    the integrand of ds is smooth.
-
-    Parameters
-    ----------
-    b, h : float
-        Half width and half height [m].
-    share : float
-        Tilt at the beginning over atan(b/h).
+    The speed is that of Housner's block, w^2 = 2 p^2 (cos(a - t0) - cos(a - t)); with t = t0 - s^2 the integrand of ds
+    is smooth.
     """
     angle = math.atan2(b, h)
     start = share * angle

@@ -123,9 +123,7 @@ def _spins(*checks: Check) -> tuple[Scene, ...]:
             "angle w t, nothing else",
             (
                 Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
-                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
-                *checks,
-            ),
+                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0), *checks),
             slow=True,
         ),
         Scene(
@@ -166,12 +164,8 @@ def _flights() -> list[Scene]:
             "projectile",
             "vx t, vy t - g tt/2",
             (
-                Check("u after 1 s [m]", 3.0, _moving(0), 1e-10),
-                Check("v after 1 s [m]", thrown, _moving(1), 1e-10),
-                Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0),
-                strain,
-                area,
-            ),
+                Check("u after 1 s [m]", 3.0, _moving(0), 1e-10), Check("v after 1 s [m]", thrown, _moving(1), 1e-10),
+                Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0), strain, area),
             rate=True,
         ),
         *_spins(strain, area),
@@ -215,12 +209,10 @@ def _slides() -> list[Scene]:
     )
     return [
         Scene(SLIDING, "slope", "stands iff phi > a", states),
-        Scene(SLIDING, "slope_creep", "at rest", creep, slow=True),
-        Scene(SLIDING, "incline", law, rows, rate=True),
+        Scene(SLIDING, "slope_creep", "at rest", creep, slow=True), Scene(SLIDING, "incline", law, rows, rate=True),
         Scene(SLIDING, "incline_30", law, two, rate=True),
         Scene(SLIDING, "upslope_stays", "vv/(2g (sin a + cos a tan phi))", up, rate=True),
-        Scene(SLIDING, "upslope_returns", "up, then down", down, rate=True),
-    ]
+        Scene(SLIDING, "upslope_returns", "up, then down", down, rate=True)]
 
 
 def _shaken() -> list[Scene]:
@@ -262,14 +254,7 @@ def _speed_along(slope_deg: float):
 def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> float:
     """Way of a block on a table after a time, by small steps of a motion that sticks and slips [m].
 
-    Its acceleration is push cos t less that of friction (Potra et al. 2006 compare such a block).
-
-    Parameters
-    ----------
-    rub, push : float
-        Accelerations that friction and the force can give [m/s2].
-    end : float
-        The time [s].
+    Its acceleration is push cos t less that of friction [m/s2] (Potra et al. 2006 compare such a block).
     """
     step = end / steps
     way = speed = 0.0

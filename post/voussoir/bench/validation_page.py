@@ -56,13 +56,7 @@ _TAIL = """
 
 
 def csv_text(lines: Sequence[Line]) -> str:
-    """The table with every digit.
-
-    Returns
-    -------
-    str
-        Comma-separated, with a head; columns error_2, error_4 hold the errors in shorter steps.
-    """
+    """The table with every digit; columns error_2, error_4 hold the errors in shorter steps."""
     longest = max((len(line.errors) for line in lines), default=1)
     shorter = [f"error_{2**k}" for k in range(1, longest)]
     text = io.StringIO()
@@ -78,15 +72,7 @@ def csv_text(lines: Sequence[Line]) -> str:
 
 
 def page(lines: Sequence[Line], version: str) -> str:
-    """The page.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        What was compared, those of one section together.
-    version : str
-        What `dda --version` prints.
-    """
+    """The page of lines in the order of their sections, and of what `dda --version` prints."""
     missed = sum(not line.accepted for line in lines)
     scenes = len({line.scene.name for line in lines})
     count = f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."

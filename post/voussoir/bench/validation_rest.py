@@ -23,15 +23,8 @@ ONSETS = (
 def foot_acceleration(b: float, h: float, slope: float, friction: float) -> float:
     """Acceleration of the foot down the slope of a block that begins to topple [m/s2].
 
-    Width b along the slope and height h; the foot slides where the ratio of the forces on a foot
-    that does not would be more than the friction, as in tan(phi_c) of Yagoda-Biran and Hatzor.
-
-    Parameters
-    ----------
-    b, h : float
-        Width and height [m].
-    slope, friction : float
-        Angle of the slope [rad] and coefficient of friction.
+    Of width b along the slope [rad] and height h [m]. The foot slides where the ratio of the forces on a foot that
+    does not would be more than the coefficient of friction, as in tan(phi_c) of Yagoda-Biran and Hatzor.
     """
     # unknowns: acceleration of the foot, acceleration of turn down the slope, normal force; mass 1
     inertia = (b**2 + h**2) / 12.0

@@ -22,25 +22,14 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class Line:
-    """One line of the table.
+    """One line of the table."""
 
-    Attributes
-    ----------
-    scene, check : Scene, Check
-        What was compared.
-    computed : float or str
-        What the deck as it stands gave.
-    errors : tuple of float
-        Errors with the deck's own step, half of it, and so on.
-    seconds : float
-        Wall time of the scene's run with the deck's own step.
-    """
-
+    #: What was compared
     scene: Scene
     check: Check
-    computed: float | str
-    errors: tuple[float, ...]
-    seconds: float
+    computed: float | str  #: What the deck as it stands gave
+    errors: tuple[float, ...]  #: Errors with the deck's own step, half of it, and so on
+    seconds: float  #: Wall time of the scene's run with the deck's own step
 
     @property
     def accepted(self) -> bool:
@@ -59,39 +48,16 @@ class Line:
 def all_scenes() -> tuple[Scene, ...]:
     """Every scene, those of one section together."""
     scenes = (
-        *validation_motion.SCENES,
-        *validation_rest.SCENES,
-        *validation_impact.SCENES,
-        *validation_strain.SCENES,
-        *validation_assemblies.SCENES,
-        *validation_arches.SCENES,
-    )
+        *validation_motion.SCENES, *validation_rest.SCENES, *validation_impact.SCENES, *validation_strain.SCENES,
+        *validation_assemblies.SCENES, *validation_arches.SCENES)
     sections = (
-        validation_motion.FLIGHT,
-        validation_motion.SLIDING,
-        validation_rest.TOPPLING,
-        validation_impact.ROCKING,
-        validation_impact.IMPACT,
-        validation_strain.STRAIN,
-        validation_assemblies.ASSEMBLIES,
-        validation_arches.ARCHES,
-    )
+        validation_motion.FLIGHT, validation_motion.SLIDING, validation_rest.TOPPLING, validation_impact.ROCKING,
+        validation_impact.IMPACT, validation_strain.STRAIN, validation_assemblies.ASSEMBLIES, validation_arches.ARCHES)
     return tuple(sorted(scenes, key=lambda scene: sections.index(scene.section)))
 
 
 def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]:
-    """Run a scene, in ever shorter steps where it has a rate.
-
-    Parameters
-    ----------
-    halvings : int
-        How often the step is halved for the rate.
-
-    Raises
-    ------
-    DdaError
-        If the program refused the deck or broke off: with its own message.
-    """
+    """Run a scene, where it has a rate again in steps halved so often; DdaError has the program's own message."""
     deck = decks / f"{scene.deck}.nml"
     columns = []
     for k in range(1 + (halvings if scene.rate else 0)):

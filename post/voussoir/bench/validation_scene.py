@@ -21,15 +21,7 @@ DENSITY, YOUNG = 2240.0, 5e9
 
 
 class Outcome:
-    """Results of one case of a deck.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of `dda run`.
-    case : int
-        Number of the case.
-    """
+    """Results of one case of a deck, in the folder of `dda run`."""
 
     def __init__(self, folder: Path, case: int) -> None:
         self.folder = folder
@@ -97,30 +89,14 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Check:
-    """One quantity of a scene.
+    """One quantity of a scene."""
 
-    Attributes
-    ----------
-    what : str
-        The quantity, with its unit.
-    exact : float or str
-        Its exact value; a verdict where the scene only stands or falls.
-    measure : callable
-        Takes the outcome and returns what was computed.
-    accept : float
-        Largest error that is accepted.
-    case : int
-        Case of the deck.
-    scale : float, optional
-        What the error is divided by; by default the exact value. 1 leaves it absolute.
-    """
-
-    what: str
-    exact: float | str
-    measure: Callable[[Outcome], float | str]
-    accept: float = 0.0
-    case: int = 1
-    scale: float | None = None
+    what: str  #: The quantity, with its unit
+    exact: float | str  #: Its exact value; a verdict where the scene only stands or falls
+    measure: Callable[[Outcome], float | str]  #: Takes the outcome and returns what was computed
+    accept: float = 0.0  #: Largest error that is accepted
+    case: int = 1  #: Case of the deck
+    scale: float | None = None  #: What the error is divided by; by default the exact value. 1 leaves it absolute.
 
     def error(self, computed: float | str) -> float:
         """Error of a computed value: that over `scale`, or 0 and infinity for a verdict."""
@@ -131,33 +107,15 @@ class Check:
 
 @dataclass(frozen=True)
 class Scene:
-    """A deck of `input/benchmarks` and its checks.
+    """A deck of `input/benchmarks` and its checks."""
 
-    Attributes
-    ----------
-    section : str
-        Heading under which it stands.
-    deck : str
-        Name of the deck.
-    source : str
-        Where the exact values come from: a formula or a name.
-    checks : tuple of Check
-        What is compared.
-    settings : tuple of str
-        Values of --set.
-    slow : bool
-        Whether one run takes longer than two seconds.
-    rate : bool
-        Whether it is run again in shorter steps.
-    """
-
-    section: str
-    deck: str
-    source: str
-    checks: tuple[Check, ...]
-    settings: tuple[str, ...] = ()
-    slow: bool = False
-    rate: bool = False
+    section: str  #: Heading under which it stands
+    deck: str  #: Name of the deck
+    source: str  #: Where the exact values come from: a formula or a name
+    checks: tuple[Check, ...]  #: What is compared
+    settings: tuple[str, ...] = ()  #: Values of --set
+    slow: bool = False  #: Whether one run takes longer than two seconds
+    rate: bool = False  #: Whether it is run again in shorter steps
 
     @property
     def name(self) -> str:
@@ -183,14 +141,9 @@ MOVED = ("analysis%geometry=current",)
 def rigid_and_moving(
     section: str, deck: str, source: str, checks: Sequence[tuple[str, float]], moved: float
 ) -> list[Scene]:
-    """A critical deck in reference geometry, and with blocks that move and strain.
+    """A critical deck in reference geometry, and with blocks that move and strain, where errors may be `moved`.
 
-    Parameters
-    ----------
-    checks : sequence of (str, float)
-        Quantity and exact value of each case.
-    moved : float
-        Error that is accepted where blocks move.
+    `checks` are quantity and exact value of each case.
     """
     rigid = tuple(critical(what, exact, 2e-8, case) for case, (what, exact) in enumerate(checks, 1))
     elastic = tuple(dataclasses.replace(check, accept=moved) for check in rigid)

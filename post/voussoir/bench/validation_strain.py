@@ -17,11 +17,9 @@ def _strains() -> list[Scene]:
     across = lambda outcome: 2.0 * float(outcome.end(2)[0] - outcome.end(1)[0])  # noqa: E731
     along = lambda outcome: float(outcome.end(2)[1] - outcome.end(1)[1])  # noqa: E731
     pressed_checks = (
-        Check("ey, plane stress", -pressed, along, 1e-9, 1),
-        Check("ex, plane stress", nu * pressed, across, 1e-9, 1),
+        Check("ey, plane stress", -pressed, along, 1e-9, 1), Check("ex, plane stress", nu * pressed, across, 1e-9, 1),
         Check("ey, plane strain", -(1.0 - nu**2) * pressed, along, 1e-9, 2),
-        Check("ex, plane strain", nu * (1.0 + nu) * pressed, across, 1e-9, 2),
-    )
+        Check("ex, plane strain", nu * (1.0 + nu) * pressed, across, 1e-9, 2))
     # points at 1 and 9 m of the 10 m
     shorter = lambda outcome: along(outcome) * 10.0 / 8.0  # noqa: E731
     load = 2500.0 * GRAVITY * 100.0 / 2.0
@@ -44,14 +42,9 @@ def _strains() -> list[Scene]:
 
 
 def chain_frequency(n: int, length: float) -> float:
-    """Lowest axial frequency of n blocks on glue, held at one end [1/s].
+    """Lowest axial frequency of n blocks on glue, of a length in all, held at one end [1/s].
 
     Displacements are linear in each block, so it is that of n bar elements with consistent mass.
-
-    Parameters
-    ----------
-    length : float
-        Length of all of them [m].
     """
     angle = math.pi / (2.0 * n)
     square = 6.0 * YOUNG / 2500.0 / (length / n) ** 2

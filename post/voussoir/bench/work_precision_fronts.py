@@ -34,45 +34,24 @@ UNIT_WEIGHT = 2240.0 * 9.81
 
 @dataclass(frozen=True)
 class Point:
-    """One run of one setting.
+    """One run of one setting."""
 
-    Attributes
-    ----------
-    scene, method, setting : str
-        What was run, and how.
-    error : float or None
-        Relative error; None where no answer was given.
-    seconds : float
-        Median time.
-    answer : float or None
-        What was found.
-    """
-
+    #: What was run, and how
     scene: str
     method: str
     setting: str
-    error: float | None
-    seconds: float
-    answer: float | None
+    error: float | None  #: Relative error; None where no answer was given
+    seconds: float  #: Median time
+    answer: float | None  #: What was found
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One class of scene.
+    """One class of scene."""
 
-    Attributes
-    ----------
-    title : str
-        What was run.
-    points : tuple of Point
-        All settings of all methods.
-    gap : float or None
-        Associated limit over the Coulomb answer, less one; None where they are one.
-    """
-
-    title: str
-    points: tuple[Point, ...]
-    gap: float | None = None
+    title: str  #: What was run
+    points: tuple[Point, ...]  #: All settings of all methods
+    gap: float | None = None  #: Associated limit over the Coulomb answer, less one; None where they are one
 
 
 def front(points: list[Point]) -> list[Point]:
@@ -90,15 +69,7 @@ CLASSES = ("arch", "wall", "three rings", "moving arch", "motion")
 
 
 def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iterator[Panel]:
-    """Run classes of scenes.
-
-    Parameters
-    ----------
-    repeats : int
-        Runs of each setting; the median counts.
-    classes : sequence of str, optional
-        Which ones, of `CLASSES`.
-    """
+    """Run classes of scenes, each setting so many times; the median counts."""
     made = {
         "arch": lambda: _arch_panel(scenes.arch(), folder, repeats),
         "wall": lambda: _block_panel(scenes.wall(), folder, repeats),

@@ -35,27 +35,13 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class MotionPoint:
-    """One point of a diagram.
+    """One point of a diagram."""
 
-    Attributes
-    ----------
-    scene
-        What moves, and what is measured.
-    step
-        Longest step that was asked for [s].
-    error
-        Relative error.
-    seconds
-        Median time.
-    steps
-        Steps that were made.
-    """
-
-    scene: str
-    step: float
-    error: float
-    seconds: float
-    steps: int
+    scene: str  #: What moves, and what is measured
+    step: float  #: Longest step that was asked for [s]
+    error: float  #: Relative error
+    seconds: float  #: Median time
+    steps: int  #: Steps that were made
 
 
 @dataclass(frozen=True)
@@ -81,12 +67,9 @@ class Motion:
             "restitution": self.restitution,
         }
         groups = {
-            "scene": {"kind": "blocks", "geometry": BLOCKS},
-            "analysis": analysis,
-            "output": {"vtu": False, "joints": False, "blocks": False},
-            **self.groups,
-            "sweep": {"parameter": "penalty_ratio", "values": [100.0] * repeats},
-        }
+            "scene": {"kind": "blocks", "geometry": BLOCKS}, "analysis": analysis,
+            "output": {"vtu": False, "joints": False, "blocks": False}, **self.groups,
+            "sweep": {"parameter": "penalty_ratio", "values": [100.0] * repeats}}
         groups = merged(groups, more)
         if groups["analysis"]["mode"] == "limerick":  # its runs end with their steps
             groups["analysis"]["steps"] = math.ceil(self.duration / step)
@@ -110,18 +93,7 @@ class Motion:
 
 
 def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
-    """Run every scene with every length of the step.
-
-    Parameters
-    ----------
-    repeats : int
-        Runs of each; the median time counts.
-
-    Yields
-    ------
-    MotionPoint
-        One a scene, quantity and length.
-    """
+    """Run every scene with every length of the step, so many times each: a point a quantity and length."""
     for motion in (_slide(), rocking(), _pendulum(), _bounce()):
         for step in motion.steps():
             finished = motion.run(step, folder, {}, repeats)
@@ -135,13 +107,7 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
 
 
 def order(points: list[MotionPoint]) -> float | None:
-    """Order of convergence: slope of the logarithm of the error by that of the step.
-
-    Returns
-    -------
-    float or None
-        Least-squares slope; None where fewer than two errors are more than rounding.
-    """
+    """Order of convergence: slope of the logarithm of the error by that of the step; None where errors are rounding."""
     told = [point for point in points if point.error > ROUNDING]
     if len(told) < 2:
         return None
@@ -219,14 +185,9 @@ def _bounce() -> Motion:
 
 
 def pendulum_quarter(amplitude: float, frequency: float) -> float:
-    """A quarter of a pendulum's period by the arithmetic-geometric mean of Gauss: the time [s].
+    """A quarter of a pendulum's period by the arithmetic-geometric mean of Gauss [s].
 
-    Parameters
-    ----------
-    amplitude : float
-        Largest angle [rad].
-    frequency : float
-        Of small swings [rad/s].
+    Its largest angle in rad, the frequency of small swings in rad/s.
     """
     a, b = 1.0, math.cos(amplitude / 2.0)
     while abs(a - b) > 1e-15:

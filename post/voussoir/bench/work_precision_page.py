@@ -26,14 +26,9 @@ _QUIET = "#555555"
 GOALS = (1e-1, 1e-3, 1e-6, 1e-9)
 #: Colour (place in the style's inks), mark and line of each method
 _LOOKS = {
-    scenes.RIGID: (1, "o", "-"),
-    scenes.ELASTIC: (0, "s", "-"),
-    scenes.COULOMB: (0, "s", "-"),
-    scenes.ASSOCIATED: (1, "D", "--"),
-    scenes.ORIGINAL: (2, "^", "-"),
-    scenes.SIMPLEX: (3, "v", "--"),
-    scenes.INTERIOR: (3, "P", ":"),
-}
+    scenes.RIGID: (1, "o", "-"), scenes.ELASTIC: (0, "s", "-"), scenes.COULOMB: (0, "s", "-"),
+    scenes.ASSOCIATED: (1, "D", "--"), scenes.ORIGINAL: (2, "^", "-"), scenes.SIMPLEX: (3, "v", "--"),
+    scenes.INTERIOR: (3, "P", ":")}
 
 
 def write_csv(panels: Sequence[Panel], file: Path) -> None:
@@ -59,13 +54,7 @@ def by_method(panel: Panel) -> dict[str, list[Point]]:
 
 
 def front_table(panels: Sequence[Panel]) -> list[str]:
-    """Markdown lines: the least time in which a method reaches an error.
-
-    Returns
-    -------
-    list of str
-        The table, a line a class and method.
-    """
+    """Markdown lines: the least time in which a method reaches an error, a line a class and method."""
     lines = [
         "| scene | method | least error " + "".join(f"| error ≤ {goal:g} " for goal in GOALS) + "|",
         "| --- | --- | ---: " + "| ---: " * len(GOALS) + "|",
@@ -105,13 +94,7 @@ def race_table(races: Sequence[Race]) -> list[str]:
 
 
 def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
-    """Error against run time: a picture a class of scene, all on the same axis of time.
-
-    Parameters
-    ----------
-    folder : Path
-        Where work_precision_arch.svg and so on go, and .png of each.
-    """
+    """Error against run time: work_precision_arch.svg and so on, a class of scene each, on the same axis of time."""
     from voussoir.plot.figure_style import Picture, house_style, save
 
     told = [point.seconds for panel in panels for own in by_method(panel).values() for point in front(own)]

@@ -36,40 +36,18 @@ MOST_MOVING = 100
 
 @dataclass(frozen=True)
 class Cost:
-    """What one part costs.
+    """What one part costs."""
 
-    Attributes
-    ----------
-    voussoirs
-        Their number.
-    part
-        What was forced in.
-    search
-        Whether a critical thickness was searched, not one thickness decided.
-    seconds
-        Least time.
-    megabytes
-        Largest memory of the process.
-    answer
-        Critical thickness ratio, or the verdict.
-    """
-
-    voussoirs: int
-    part: str
-    search: bool
-    seconds: float
-    megabytes: float
-    answer: str
+    voussoirs: int  #: Their number
+    part: str  #: What was forced in
+    search: bool  #: Whether a critical thickness was searched, not one thickness decided
+    seconds: float  #: Least time
+    megabytes: float  #: Largest memory of the process
+    answer: str  #: Critical thickness ratio, or the verdict
 
 
 def plan_costs(counts: Sequence[int], folder: Path, repeats: int) -> Iterator[Cost]:
-    """Run a semicircle with every part forced in.
-
-    Yields
-    ------
-    Cost
-        One a number, part and kind of run.
-    """
+    """Run a semicircle with every part forced in: a cost a number, part and kind of run."""
     folder.mkdir(parents=True, exist_ok=True)
     for count in counts:
         arch = Arch(90.0, count)

@@ -21,18 +21,10 @@ DISTANCES = (-1e-3, -1e-5, 1e-5, 1e-3)
 
 @dataclass(frozen=True)
 class Arch:
-    """An arch of equal voussoirs.
+    """An arch of equal voussoirs."""
 
-    Attributes
-    ----------
-    half_angle_deg
-        Half angle of embrace [deg].
-    voussoirs
-        Their number.
-    """
-
-    half_angle_deg: float
-    voussoirs: int
+    half_angle_deg: float  #: Half angle of embrace [deg]
+    voussoirs: int  #: Their number
 
     def exact(self) -> float:
         """Critical thickness ratio by limit analysis."""
@@ -56,42 +48,22 @@ def decide(arch: Arch, stands: Callable[..., bool], ratio: float) -> bool:
 
 @dataclass(frozen=True)
 class Race:
-    """Times of one decision [s], and of one search: the least at each ratio, of these the median.
+    """Times of one decision [s], and of one search: the least at each ratio, of these the median."""
 
-    Attributes
-    ----------
-    arch
-        What was decided.
-    decision
-        One decision of dda, its arch built within.
-    right
-        Decisions of dda that came out right, of four.
-    search
-        One search of dda to 1e-8.
-    general, compact
-        One decision of the linear programs, built and solved; None without scipy.
-    general_right, compact_right
-        Their decisions that came out right, of four.
-    """
-
-    arch: Arch
-    decision: float
-    right: int
-    search: float
+    arch: Arch  #: What was decided
+    decision: float  #: One decision of dda, its arch built within
+    right: int  #: Decisions of dda that came out right, of four
+    search: float  #: One search of dda to 1e-8
+    #: One decision of the linear programs, built and solved; None without scipy
     general: float | None
+    #: Their decisions that came out right, of four
     general_right: int
     compact: float | None
     compact_right: int
 
 
 def race(arch: Arch, folder: Path, repeats: int) -> Race:
-    """Time decisions of dda and of both linear programs in turn: the least times of all rounds.
-
-    Parameters
-    ----------
-    arch : Arch
-        What is decided, at four distances from critical.
-    """
+    """Time decisions of dda and of both linear programs in turn, at four distances from critical: the least times."""
     exact = arch.exact()
     ratios = [exact * (1.0 + distance) for distance in DISTANCES]
     truth = [distance > 0.0 for distance in DISTANCES]

@@ -28,36 +28,16 @@ Settings = tuple[Mapping[str, Any], ...]
 
 @dataclass(frozen=True)
 class Scene:
-    """A class of scenes, by one of them.
+    """A class of scenes, by one of them."""
 
-    Attributes
-    ----------
-    name : str
-        A word for tables.
-    title : str
-        What it is, for its panel.
-    groups : dict
-        What all decks of it share.
-    methods : dict of str to tuple of dict
-        Settings of each method of dda: groups that go before the shared ones.
-    friction_deg : float
-        Of all joints.
-    files : dict of str to str
-        Files beside the deck.
-    live_block : int or None
-        Block of the live load, where there is one.
-    live_point : (float, float)
-        Where it acts.
-    """
-
-    name: str
-    title: str
-    groups: dict[str, Any]
-    methods: dict[str, Settings]
-    friction_deg: float
-    files: dict[str, str] = field(default_factory=dict)
-    live_block: int | None = None
-    live_point: tuple[float, float] = (0.0, 0.0)
+    name: str  #: A word for tables
+    title: str  #: What it is, for its panel
+    groups: dict[str, Any]  #: What all decks of it share
+    methods: dict[str, Settings]  #: Settings of each method of dda: groups that go before the shared ones
+    friction_deg: float  #: Of all joints
+    files: dict[str, str] = field(default_factory=dict)  #: Files beside the deck
+    live_block: int | None = None  #: Block of the live load, where there is one
+    live_point: tuple[float, float] = (0.0, 0.0)  #: Where it acts
 
 
 def _each(group: str, key: str, values: tuple, **more: Any) -> Settings:
@@ -73,11 +53,8 @@ def _with(settings: Settings, **analysis: Any) -> Settings:
 def _searched(kind: Mapping[str, Any], parameter: str, friction: float) -> dict[str, Any]:
     """What decks with a search share."""
     return {
-        **kind,
-        "joint": {"friction_deg": friction},
-        "output": {"joints": False, "blocks": False, "proof": False},
-        "search": {"parameter": parameter},
-    }
+        **kind, "joint": {"friction_deg": friction}, "output": {"joints": False, "blocks": False, "proof": False},
+        "search": {"parameter": parameter}}
 
 
 def arch() -> Scene:

@@ -6,13 +6,7 @@ from collections.abc import Iterable, Iterator, MutableSet
 
 
 class CaseSet(MutableSet):
-    """A set of whole numbers from 0, kept as a byte each up to the largest.
-
-    Parameters
-    ----------
-    cases : iterable of int, optional
-        Its numbers.
-    """
+    """A set of whole numbers from 0, kept as a byte each up to the largest."""
 
     def __init__(self, cases: Iterable[int] = ()) -> None:
         self._bytes = bytearray()

@@ -15,24 +15,9 @@ WAIT = 30.0
 
 
 def dask_engine(address: str) -> tuple[Engine, int]:
-    """Workers of a Dask cluster.
+    """Workers of a Dask cluster by its scheduler's address, such as tcp://10.0.0.1:8786; and the number of its threads.
 
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, such as tcp://10.0.0.1:8786.
-
-    Returns
-    -------
-    engine : Engine
-        Runs parts; a part whose worker dies is run again by another.
-    workers : int
-        How many threads the cluster has now, at least 1.
-
-    Raises
-    ------
-    DdaError
-        If Dask is not installed, or no scheduler answers.
+    A part whose worker dies is run again by another; DdaError if Dask is not installed, or no scheduler answers.
     """
     try:
         import cloudpickle

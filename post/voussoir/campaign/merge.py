@@ -23,20 +23,8 @@ from voussoir.campaign.part import SEAL, finished_by, slices_of, write_seal
 
 #: Tables with a case in each row
 TABLES = (
-    "joints.csv",
-    "blocks.csv",
-    "proof_forces.csv",
-    "proof_motion.csv",
-    "log.txt",
-    "frames.csv",
-    "frame_joints.csv",
-    "points.csv",
-    "energy.csv",
-    "reactions.csv",
-    "bars.csv",
-    "sizes.record",
-    "results.csv",
-)
+    "joints.csv", "blocks.csv", "proof_forces.csv", "proof_motion.csv", "log.txt", "frames.csv", "frame_joints.csv",
+    "points.csv", "energy.csv", "reactions.csv", "bars.csv", "sizes.record", "results.csv")
 
 
 #: Bytes that are copied at a time
@@ -82,12 +70,7 @@ class Owner:
 def merge(parts: Path, out: Path, record: str | None = None, headers: dict[str, str] | None = None) -> None:
     """Merge all parts into the folder of the campaign; each table is replaced at once.
 
-    What that folder has of the same campaign is a part like the others.
-
-    Parameters
-    ----------
-    record, headers : optional
-        As of `finished_by`.
+    What that folder has of the same campaign is a part like the others; `record` and `headers` are as of `finished_by`.
     """
     candidates = [*([out] if record else []), *(sorted(parts.iterdir()) if parts.is_dir() else ())]
     owner = Owner()
@@ -144,15 +127,7 @@ def join_tables(name: str, attempts: list[Path], out: Path, headers: dict[str, s
 def merge_table(
     name: str, attempts: list[Path], owner: Owner, out: Path, headers: dict[str, str] | None = None
 ) -> None:
-    """Merge one table, sorted by case.
-
-    Parameters
-    ----------
-    owner : Owner
-        For each case the attempt that it is taken from.
-    out : Path
-        Folder of the campaign; the table is left out where no attempt has one.
-    """
+    """Merge one table, sorted by case, each case from its owner; it is left out where no attempt has one."""
     sources = [attempt / name for attempt in attempts if (attempt / name).exists()]
     if not sources:
         return
@@ -205,13 +180,7 @@ def copy_pictures(attempts: list[Path], owner: Owner, out: Path) -> None:
 
 
 def merged(out: Path, cases: Set[int]) -> Summary:
-    """Count what a merged table holds.
-
-    Returns
-    -------
-    Summary
-        How many of them there are, and how many are undecided.
-    """
+    """Count what a merged table holds."""
     if not cases:
         return Summary(0, 0)
     with (out / "results.csv").open("rb") as file:

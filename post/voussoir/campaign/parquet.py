@@ -17,24 +17,9 @@ BATCH = 50000
 
 
 def write_parquet(table: Path) -> Path:
-    """Write a table beside itself, with the types that `voussoir.results` gives its columns.
+    """Write a table as .parquet beside itself, with the types that `voussoir.results` gives its columns.
 
-    Parameters
-    ----------
-    table : Path
-        A CSV file of `dda run`.
-
-    Returns
-    -------
-    Path
-        The file, which ends in .parquet.
-
-    Raises
-    ------
-    MissingPackage
-        If there is no pyarrow.
-    ValueError
-        If a cell has another type than its column.
+    ValueError if a cell has another type than its column, MissingPackage if there is no pyarrow.
     """
     arrow, parquet = load("pyarrow", "Parquet"), load("pyarrow.parquet", "Parquet")
     target = table.with_suffix(".parquet")

@@ -47,15 +47,10 @@ class Part:
 
 
 def run_part(part: Part) -> tuple[int, str]:
-    """Compute the cases of a part that no attempt has finished yet.
+    """Compute the cases of a part that no attempt has finished yet: worst exit status of the program, and its message.
 
-    A program that was killed is started again on the rest. Where it dies without having finished
-    anything, the case at which it died is left out, so that one case cannot hold up the others.
-
-    Returns
-    -------
-    tuple of int and str
-        Worst exit status of the program (0 or 3 if it was never refused), and its message.
+    A program that was killed is started again on the rest. Where it dies without having finished anything, the case at
+    which it died is left out, so that one case cannot hold up the others.
     """
     left_out: set[int] = set()
     done = finished_in(part.folder, part.cases, part.record, part.headers)
@@ -76,13 +71,7 @@ def run_part(part: Part) -> tuple[int, str]:
 
 
 def run_attempt(part: Part, cases: list[int]) -> tuple[int, str]:
-    """Run the program once, in a folder of its own.
-
-    Returns
-    -------
-    tuple of int and str
-        Exit status and what it printed on standard error.
-    """
+    """Run the program once, in a folder of its own: exit status, and what it printed on standard error."""
     folder = part.folder / f"{cases[0]}-{cases[-1]}.{uuid.uuid4().hex}"
     command = [str(part.dda), "run", str(part.deck), "--out", str(folder), "--quiet"]
     command += ["--jobs", str(part.jobs), "--cases", ranges_of(cases)]
@@ -100,19 +89,9 @@ def run_attempt(part: Part, cases: list[int]) -> tuple[int, str]:
 
 
 def finished_in(
-    folder: Path,
-    cases: Iterable[int],
-    record: str | None = None,
-    headers: dict[str, str] | None = None,
-    problems: list[str] | None = None,
-) -> Set[int]:
-    """Which cases some attempt has finished.
-
-    Parameters
-    ----------
-    record, headers, problems : optional
-        As of `finished_by`.
-    """
+    folder: Path, cases: Iterable[int], record: str | None = None, headers: dict[str, str] | None = None,
+    problems: list[str] | None = None) -> Set[int]:
+    """Which cases some attempt has finished; the options are those of `finished_by`."""
     wanted = CaseSet(cases)
     if not wanted:
         return wanted
@@ -287,12 +266,9 @@ def content_of(file: Path) -> bytes:
 
 
 def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
-    """Where the rows of each case are; rows of one case that follow one another are one slice.
+    """Case, first byte and the byte behind the last one of its rows; rows that follow one another are one slice.
 
-    Yields
-    ------
-    tuple of int
-        Case, first byte, byte behind the last one. A row that was cut off is left out.
+    A row that was cut off is left out.
     """
     with table.open("rb") as file:
         header = fields_of(file.readline(), table.suffix)
@@ -312,13 +288,7 @@ def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
 
 
 def case_of(line: bytes, column: int, count: int) -> int:
-    """Case of a row; 0 if it was cut off or is none.
-
-    Parameters
-    ----------
-    count : int
-        Number of its cells; 0 in the log, whose first words are parted by blanks.
-    """
+    """Case of a row of so many cells (0: the log, parted by blanks); 0 if it was cut off or is none."""
     if count and b'"' in line:
         cells = [cell.encode() for cell in fields_of(line, ".csv")]
         whole = len(cells) == count
@@ -338,13 +308,10 @@ def fields_of(line: bytes, suffix: str) -> list[str]:
 
 
 def trusted_length(attempt: Path) -> int:
-    """Up to where the rows of results.csv count.
+    """Up to where the rows of results.csv count [bytes], -1 for all of them.
 
-    Returns
-    -------
-    int
-        Bytes: -1 for all of them, unless disk.record tells of another machine, or of this one
-        before it was started anew: then what was on the disk for certain.
+    That is all unless disk.record tells of another machine, or of this one before it was started anew: then it is what
+    was on the disk for certain.
     """
     try:
         length, _, start = (attempt / "disk.record").read_text(encoding="utf-8").partition(" ")
@@ -364,13 +331,7 @@ def start_name() -> str:
 
 
 def ranges_of(cases: list[int]) -> str:
-    """Case numbers as --cases wants them.
-
-    Returns
-    -------
-    str
-        Such as "1-4,7".
-    """
+    """Case numbers as --cases wants them, such as "1-4,7"."""
     ranges: list[list[int]] = []
     for case in cases:
         if ranges and case == ranges[-1][1] + 1:

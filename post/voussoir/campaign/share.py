@@ -55,19 +55,10 @@ class Campaign:
 
 
 def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False) -> Campaign:
-    """Begin a campaign, or go on with one: the campaign; its folder exists and says what it is for.
+    """Begin a campaign, or go on with one: its folder exists and says what it is for.
 
-    Parameters
-    ----------
-    anew : bool
-        Whether what an earlier campaign has left in that folder is discarded.
-    shared : bool, optional
-        Whether others may work in the folder at the same time: shares of a job array.
-
-    Raises
-    ------
-    DdaError
-        If the deck is bad input, or the folder holds another campaign.
+    What an earlier one has left there is discarded `anew`; a `shared` folder is that of a job array. DdaError if the
+    deck is bad input, or the folder holds another campaign.
     """
     asked = ask(dda, deck, settings)
     campaign = Campaign(dda, deck.resolve(), tuple(settings), out, asked.cases, asked)
@@ -98,13 +89,7 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
 
 
 def changed_keys(old: str, new: str) -> str:
-    """What differs between two records, in words.
-
-    Returns
-    -------
-    str
-        Names of keys, "program" for another build, "files" for files that the deck names.
-    """
+    """What differs between two records: names of keys, "program" for another build, "files" for files of the deck."""
 
     def values(record: str) -> dict[str, list[str]]:
         lines = record.splitlines() or [""]
@@ -125,17 +110,9 @@ def changed_keys(old: str, new: str) -> str:
 
 
 def lock(out: Path, shared: bool) -> None:
-    """Take a folder until this process ends, however it ends.
+    """Take a folder until this process ends, however it ends; shares of a job array take it together.
 
-    Parameters
-    ----------
-    shared : bool
-        Whether others that share it may work there too: shares of a job array.
-
-    Raises
-    ------
-    DdaError
-        If another campaign or run has it: status 4.
+    DdaError of status 4 if another campaign or run has it.
     """
     import fcntl
 
@@ -163,18 +140,7 @@ def unlock(out: Path) -> None:
 
 
 def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> CaseSet:
-    """Cases that need not be computed again.
-
-    Parameters
-    ----------
-    problems : list of str, optional
-        Receives a line for each thing that is damaged.
-
-    Returns
-    -------
-    set of int
-        Those of them whose rows are whole, in the folder of the campaign or in a part.
-    """
+    """Cases whose rows are whole, in the folder of the campaign or in a part; `problems` receives what is damaged."""
     told = campaign.asked.record, campaign.asked.headers, problems
     found = CaseSet(case for case in finished_by(campaign.out, *told) if case in cases)
     rest = [case for case in cases if case not in found] if found else cases
@@ -186,13 +152,7 @@ def finished(campaign: Campaign, cases: range, problems: list[str] | None = None
 def split(
     campaign: Campaign, cases: range, workers: int, jobs: int = 1, problems: list[str] | None = None
 ) -> list[Part]:
-    """Cut cases that are not finished into parts of equal size: the parts, in the order of their cases.
-
-    Parameters
-    ----------
-    jobs : int
-        Cases that each computes at the same time.
-    """
+    """Cut cases that are not finished into parts of equal size, in the order of their cases."""
     done = finished(campaign, cases, problems)
     rest = array("q", (case for case in cases if case not in done)) if done else cases
     size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
@@ -205,13 +165,7 @@ def split(
 
 
 def share(total: int, index: int, of: int) -> range:
-    """Cases of one member of a job array: its cases; those of all members are all cases, each once.
-
-    Parameters
-    ----------
-    index : int
-        Number of the member, from 1.
-    """
+    """Cases of one member of a job array, from 1; those of all members are all cases, each once."""
     return range((index - 1) * total // of + 1, index * total // of + 1)
 
 
@@ -231,18 +185,7 @@ def local_engine(workers: int) -> Engine:
 
 
 def run_parts(parts: list[Part], engine: Engine, shown: bool) -> Outcome:
-    """Run all parts and tell how far they are.
-
-    Parameters
-    ----------
-    shown : bool
-        Whether progress is told, on standard error.
-
-    Returns
-    -------
-    Outcome
-        The worst status of the program, 4 before 2 before all others, and its message.
-    """
+    """Run all parts and tell on standard error how far they are: the worst status, 4 before 2, and its message."""
     worst, message = 0, ""
     start = time.monotonic()
     for done, (status, text) in enumerate(engine(parts), start=1):

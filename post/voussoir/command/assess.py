@@ -82,28 +82,14 @@ def check(text: str, deck: Path) -> None:
 
 
 def without(text: str, *groups: str) -> str:
-    """A deck without some of its groups.
-
-    Parameters
-    ----------
-    text : str
-        The deck, without slashes in the texts of these groups.
-    """
+    """A deck without some of its groups, whose texts have no slashes."""
     for group in groups:
         text = re.sub(rf"&{group}\b[^/]*/", lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
     return text
 
 
 def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
-    """Search the load factor of a deck with live loads.
-
-    Returns
-    -------
-    run : Results or None
-        The run; nothing without live loads.
-    row : dict or None
-        Its row.
-    """
+    """Search the load factor of a deck with live loads: the run and its row; neither without live loads."""
     if not re.search(r"^\s*&(live|vehicle)\b", text, re.IGNORECASE | re.MULTILINE):
         return None, None
     found = run_deck(text + "\n&search parameter = 'load_factor' /\n")
@@ -111,13 +97,7 @@ def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
 
 
 def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str, bool]:
-    """The verdict in a sentence, and whether it is a bad one.
-
-    Parameters
-    ----------
-    factor : dict or None
-        Row of the search for the load factor.
-    """
+    """The verdict in a sentence, from the row of the search for the load factor, and whether it is a bad one."""
     words = {
         "stable": "The structure stands under the loads given.",
         "collapsed": "The structure does not stand under the loads given.",

@@ -103,12 +103,7 @@ def _run_deck(deck: Path) -> int:
 def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...], held: Sequence[int] = ()) -> Blocks:
     """Blocks from outlines: a material a layer, in the order in which the layers come.
 
-    Parameters
-    ----------
-    fixed : tuple of str
-        Layers of what does not move, in small letters.
-    held : sequence of int, optional
-        Numbers of further ones, from 1.
+    `fixed` are the layers, in small letters, of what does not move, `held` numbers of further ones from 1.
     """
     if max(held, default=0) > len(shapes):
         raise ValueError(f"expected numbers of blocks from 1 to {len(shapes)} to hold, got {max(held)}")

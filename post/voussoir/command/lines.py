@@ -46,13 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def read_lines(table: Path) -> dict[str, list[tuple[float, ...]]]:
-    """Ends of all lines by their role.
-
-    Returns
-    -------
-    dict
-        Role: x1, y1, x2, y2 of each line.
-    """
+    """Ends x1, y1, x2, y2 of all lines by their role."""
     lines: dict[str, list[tuple[float, ...]]] = {}
     with table.open(newline="", encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
@@ -64,13 +58,7 @@ def read_lines(table: Path) -> dict[str, list[tuple[float, ...]]]:
 
 
 def draw(lines: dict[str, list[tuple[float, ...]]], picture: Path) -> None:
-    """Draw lines and points.
-
-    Parameters
-    ----------
-    lines : dict
-        Role: x1, y1, x2, y2 of each line.
-    """
+    """Draw lines and points."""
     import matplotlib.pyplot as plt
     from matplotlib.collections import LineCollection
 

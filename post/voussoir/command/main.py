@@ -48,18 +48,7 @@ class Formatter(argparse.RawDescriptionHelpFormatter):
 
 
 def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
-    """The parser of the command line.
-
-    Parameters
-    ----------
-    chosen : str, optional
-        Subcommand whose options are wanted; the others' modules are not loaded.
-
-    Returns
-    -------
-    argparse.ArgumentParser
-        With a subparser for each subcommand.
-    """
+    """The parser of the command line, with the options of the chosen subcommand; other modules are not loaded."""
     parser = argparse.ArgumentParser(
         prog="voussoir", description="Masonry arches: theory, tables and figures.",
         epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS)
@@ -76,19 +65,7 @@ def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a subcommand.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Command line without the program's name; by default that of the process.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 1 where a value of validation or stability is wrong, 2 for bad input, 4
-        where a result could not be written.
-    """
+    """Run a subcommand, by default that of the process: its exit status, see `EXIT_STATUS`."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] in ([], ["help"]):
         words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]

@@ -26,12 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
-        "--case",
-        metavar="N",
-        type=int,
-        nargs="+",
-        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart or --fragility)",
-    )
+        "--case", metavar="N", type=int, nargs="+",
+        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart or --fragility)")
     parser.add_argument(
         "--chart",
         metavar="COLUMN",
@@ -50,13 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)")
     parser.add_argument(
-        "--format",
-        metavar="ENDING",
-        nargs="+",
-        choices=("svg", "pdf", "png"),
-        default=("svg",),
-        help="of svg, pdf, png (default: svg)",
-    )
+        "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
+        help="of svg, pdf, png (default: svg)")
     parser.add_argument(
         "--magnify",
         metavar="M",

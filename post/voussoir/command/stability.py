@@ -61,20 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def run_scenes(scenes: Iterable[Scene], folder: Path, jobs: int, timeout: float) -> list[Line]:
-    """Run scenes, print those that are not right.
-
-    Parameters
-    ----------
-    folder : Path
-        Where their decks and results go, each in a folder of its own.
-    timeout : float
-        Longest time of one scene [s].
-
-    Returns
-    -------
-    list of Line
-        The table, in the order of the scenes.
-    """
+    """Run scenes, each in a folder of its own and at most `timeout` seconds; print those that are not right."""
 
     def run_scene(numbered: tuple[int, Scene]) -> Line:
         number, scene = numbered

@@ -91,15 +91,7 @@ def words_of(read: Results, number: int, pictures: list[Frame], frame: Frame, bl
 
 
 def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], file: Path | None) -> None:
-    """Open the window, or write its last picture.
-
-    Parameters
-    ----------
-    window : module
-        pyvista.
-    file : Path or None
-        Where the picture goes instead.
-    """
+    """Open the window, or write its last picture to a file."""
     from voussoir.plot.case_title import title_of
 
     told = read.blocks_of(number)

@@ -108,14 +108,8 @@ def write_mesh(outlines: list[Outline], file: Path) -> str:
 
 #: How a file is written, by its ending; each gives in words what the file cannot hold
 WRITERS = {
-    ".dxf": write_dxf,
-    ".geojson": write_geojson,
-    ".json": write_geojson,
-    ".wkt": write_wkt,
-    ".vtk": write_mesh,
-    ".vtu": write_mesh,
-    ".msh": write_mesh,
-}
+    ".dxf": write_dxf, ".geojson": write_geojson, ".json": write_geojson, ".wkt": write_wkt, ".vtk": write_mesh,
+    ".vtu": write_mesh, ".msh": write_mesh}
 
 
 def _ring(outline: Outline) -> list[tuple[float, float]]:

@@ -11,13 +11,7 @@ _PURPOSE = "polygons"
 
 
 def polygons_of(shapes: Any) -> tuple[list, list[str]]:
-    """Polygons of a geometry, or of several: the polygons, and in words what is none.
-
-    Raises
-    ------
-    TypeError
-        If something is no geometry.
-    """
+    """Polygons of a geometry or of several, and in words what is none; TypeError if something is no geometry."""
     base = load("shapely.geometry.base", _PURPOSE)
     if not isinstance(shapes, (base.BaseGeometry, Iterable)):
         raise TypeError(f"expected geometries of shapely, got {shapes!r}")
@@ -38,13 +32,7 @@ def polygons_of(shapes: Any) -> tuple[list, list[str]]:
 
 
 def pieces_of(polygon: Any) -> list:
-    """A polygon as polygons without holes.
-
-    Returns
-    -------
-    list of Polygon
-        Itself, or the pieces that upright lines through the middle of each hole make of it.
-    """
+    """A polygon, or the pieces without holes that upright lines through the middle of each hole make of it."""
     if not polygon.interiors:
         return [polygon]
     load("shapely", _PURPOSE)

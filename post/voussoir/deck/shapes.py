@@ -14,18 +14,10 @@ from voussoir.extras import load
 
 @dataclass(frozen=True)
 class ImportedShape:
-    """An outline.
+    """An outline."""
 
-    Attributes
-    ----------
-    polygon : Polygon
-        Of shapely, in metres.
-    layer : str
-        Its layer, or its property role, layer or name; empty if it has none.
-    """
-
-    polygon: Any
-    layer: str
+    polygon: Any  #: Of shapely, in metres
+    layer: str  #: Its layer, or its property role, layer or name; empty if it has none
 
 
 def read_shapes(
@@ -163,11 +155,5 @@ def read_mesh(file: Path, tolerance: float) -> Found:
 
 #: How a file is read, by its ending
 READERS = {
-    ".dxf": read_dxf,
-    ".geojson": read_geojson,
-    ".json": read_geojson,
-    ".wkt": read_wkt,
-    ".msh": read_mesh,
-    ".vtk": read_mesh,
-    ".vtu": read_mesh,
-}
+    ".dxf": read_dxf, ".geojson": read_geojson, ".json": read_geojson, ".wkt": read_wkt, ".msh": read_mesh,
+    ".vtk": read_mesh, ".vtu": read_mesh}

@@ -17,13 +17,7 @@ _MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "mater
 
 
 def value_text(value: Any) -> str:
-    """A value as a deck writes it: such as ".true.", "0.5", "'no-slip'" or "0, 54.5, 90".
-
-    Raises
-    ------
-    TypeError
-        If a deck has no such value.
-    """
+    """A value as a deck writes it (".true.", "0.5", "'no-slip'", "0, 54.5, 90"); TypeError if it has no such value."""
     if hasattr(value, "tolist"):  # NumPy
         value = value.tolist()
     if isinstance(value, bool):
@@ -38,14 +32,7 @@ def value_text(value: Any) -> str:
 
 
 def deck_text(groups: Groups) -> str:
-    """A deck as text, a line a group.
-
-    Parameters
-    ----------
-    groups : mapping
-        Keys and values by group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a
-        list of mappings.
-    """
+    """A deck as text, a line a group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a list of them."""
     lines = []
     for group, keys in groups.items():
         for one in [keys] if isinstance(keys, Mapping) else keys:
@@ -55,13 +42,7 @@ def deck_text(groups: Groups) -> str:
 
 
 def merged(groups: Groups, more: Groups) -> dict[str, Any]:
-    """Groups whose keys go before those of other groups.
-
-    Parameters
-    ----------
-    groups, more : mapping
-        As for `deck_text`; keys of `more` win, its sweeps are added.
-    """
+    """Groups as for `deck_text`; keys of `more` go before, its sweeps are added."""
     joint: dict[str, Any] = dict(groups)
     for group, keys in more.items():
         there = joint.get(group)
@@ -79,13 +60,7 @@ def _as_list(keys: Any) -> list:
 
 @lru_cache(maxsize=4)
 def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
-    """Which groups have a key of that name, as the program says it.
-
-    Returns
-    -------
-    dict of str to tuple of str
-        Groups by key; a group's own name stands for itself.
-    """
+    """Which groups have a key, as the program says it; a group's own name, with its mark, stands for itself."""
     done = subprocess.run([dda, "help", "keys"], capture_output=True, text=True, check=True)
     owners: dict[str, tuple[str, ...]] = {}
     group = ""

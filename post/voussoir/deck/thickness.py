@@ -64,13 +64,7 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
 
 
 def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
-    """The same of an arch of two thicknesses, both of which change in proportion.
-
-    Parameters
-    ----------
-    groups : dict
-        What a deck says of it, without live loads.
-    """
+    """The same of an arch of two thicknesses, both of which change in proportion."""
     names = ("crown_thickness", "springing_thickness")
     ends = (THINNEST, 1.0)
     for _ in range(ROUNDS):
@@ -92,13 +86,7 @@ def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
 
 
 def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
-    """What a deck says of one of its cases, without its live loads.
-
-    Parameters
-    ----------
-    row : dict
-        Row of the case, for what was swept.
-    """
+    """What a deck says of one of its cases, whose row has what was swept, without its live loads."""
     groups: dict[str, Any] = {}
     for name in run.given:
         group, _, key = name.partition("%")

@@ -18,19 +18,9 @@ from voussoir.paper import tables as paper_tables
 #: Roughly how long each part takes [s of processor]: decks, then figures that are drawn; a part
 #: that is not named here counts 1
 _WEIGHTS = {
-    "figure12": 3.0,
-    "figure15": 3.0,
-    "figure9": 1.5,
-    "figure18": 1.5,
-    "drawing animation8": 10.0,
-    "drawing animation13": 4.0,
-    "drawing animation16": 4.0,
-    "drawing animation18": 11.0,
-    "drawing figure9": 4.0,
-    "drawing figure12": 3.0,
-    "drawing figure15": 3.0,
-    "drawing figure18": 2.0,
-}
+    "figure12": 3.0, "figure15": 3.0, "figure9": 1.5, "figure18": 1.5, "drawing animation8": 10.0,
+    "drawing animation13": 4.0, "drawing animation16": 4.0, "drawing animation18": 11.0, "drawing figure9": 4.0,
+    "drawing figure12": 3.0, "drawing figure15": 3.0, "drawing figure18": 2.0}
 #: Before the name of a figure or an animation that is drawn
 DRAWING = "drawing "
 #: Name of the part that all decks are together
@@ -52,21 +42,11 @@ class Timing:
 
 @dataclass
 class Clock:
-    """Times of the parts, and what is told of them on the way.
+    """Times of the parts, and what is told of them on the way."""
 
-    Attributes
-    ----------
-    tell : callable
-        Takes one line of text.
-    left : dict
-        Weight of each part that is still to come.
-    timings : list of Timing
-        Parts that are done.
-    """
-
-    tell: Callable[[str], None]
-    left: dict[str, float]
-    timings: list[Timing] = field(default_factory=list)
+    tell: Callable[[str], None]  #: Takes one line of text
+    left: dict[str, float]  #: Weight of each part that is still to come
+    timings: list[Timing] = field(default_factory=list)  #: Parts that are done
     _done: float = 0.0
     _parts: int = 0
     _start: float = field(default_factory=time.monotonic)
@@ -99,35 +79,16 @@ def run_program(part: str, command: list[str | Path]) -> tuple[int, Timing]:
 
 @dataclass
 class Campaign:
-    """Decks, results and the paper's values.
+    """Decks, results and the paper's values."""
 
-    Attributes
-    ----------
-    decks : Path
-        Folder of the decks and of paper_tables.csv.
-    out : Path
-        Folder that receives a folder of results for each deck.
-    """
-
-    decks: Path
-    out: Path
+    decks: Path  #: Folder of the decks and of paper_tables.csv.
+    out: Path  #: Folder that receives a folder of results for each deck
 
     def __post_init__(self) -> None:
         self._read: dict[str, results.Results] = {}
 
     def deck_files(self, slow: bool = False) -> list[Path]:
-        """The decks in their order.
-
-        Parameters
-        ----------
-        slow : bool, optional
-            Whether those that are run on demand only belong to them.
-
-        Raises
-        ------
-        FileNotFoundError
-            If there are none.
-        """
+        """The decks in their order, slow ones (run on demand only) where asked; FileNotFoundError if there are none."""
         files = sorted(self.decks.glob("*.nml"), key=lambda file: _order(file.stem))
         if not files:
             raise FileNotFoundError(f"no decks in {self.decks}; --decks DIR names their folder")
@@ -138,15 +99,7 @@ class Campaign:
         return [file for file in self.deck_files(slow=True) if (self.out / file.stem / "results.csv").is_file()]
 
     def run(self, dda: Path, clock: Clock, jobs: int, slow: bool, resume: bool) -> int:
-        """Run all decks, each by a process of its own: the worst exit status of the program.
-
-        Parameters
-        ----------
-        slow : bool
-            Whether to run those decks too that are run on demand only.
-        resume : bool
-            Whether to keep what an earlier run has finished.
-        """
+        """Run all decks, each by a process of its own: the worst exit status of the program."""
         files = self.deck_files(slow)
         longest_first = sorted(files, key=lambda file: -clock.left.get(file.stem, 1.0))
         options = ["--quiet", *(["--resume"] if resume else [])]

@@ -28,15 +28,7 @@ CURVES = dict(zip(THEORIES, zip(INK[:3], DASHES)))
 
 
 def draw_points(axes: Axes, table: PaperTable, x: str, error: bool = False) -> Axes:
-    """Draw the columns of a table that were computed, ours and the paper's.
-
-    Parameters
-    ----------
-    x : str
-        Field of a row that is the abscissa.
-    error : bool, optional
-        Whether to draw the magnitude of the error in percent instead of the thickness.
-    """
+    """Draw the computed columns of a table, ours and the paper's, or their errors [%], against a field of its rows."""
     columns = [column for column in table.columns if column not in THEORIES.values()]
     for column in reversed(columns):
         rows = [row for row in table.rows if column in row.values]

@@ -47,13 +47,7 @@ def names() -> list[str]:
 
 
 def make(campaign: Campaign, folder: Path, name: str) -> list[Path]:
-    """Draw one figure as SVG and PNG, or write one animation as GIF.
-
-    Parameters
-    ----------
-    name : str
-        Of `names`.
-    """
+    """Draw one figure as SVG and PNG, or write one animation as GIF."""
     folder.mkdir(parents=True, exist_ok=True)
     with house_style():
         if name in THEORY:

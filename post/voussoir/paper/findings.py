@@ -27,18 +27,9 @@ class Finding:
 def find_all(campaign: Campaign) -> list[Finding]:
     """All findings, in the order in which a reader needs them."""
     return [
-        rigid_is_exact(campaign),
-        from_below(campaign),
-        growth_with_blocks(campaign),
-        paper_elsewhere(campaign),
-        *other_columns(campaign),
-        hinges(campaign),
-        standing_at_ccr(campaign),
-        friction_of_50(campaign),
-        thresholds(campaign),
-        elastic_shift(campaign),
-        which_theory(campaign),
-    ]
+        rigid_is_exact(campaign), from_below(campaign), growth_with_blocks(campaign), paper_elsewhere(campaign),
+        *other_columns(campaign), hinges(campaign), standing_at_ccr(campaign), friction_of_50(campaign),
+        thresholds(campaign), elastic_shift(campaign), which_theory(campaign)]
 
 
 def rigid_is_exact(campaign: Campaign) -> Finding:
@@ -217,18 +208,7 @@ def least_friction_of(row: Row) -> float:
 
 
 def least_friction(joints: Any, **arch: float) -> float:
-    """Least friction angle at which an arch needs no more thickness than without slip [deg].
-
-    Parameters
-    ----------
-    joints
-        As for `theory.discrete_solution`.
-
-    Returns
-    -------
-    float
-        The angle, to 1e-9 degrees.
-    """
+    """Least friction angle at which an arch needs no more thickness than without slip, to 1e-9 [deg]."""
     wanted = theory.discrete_solution(joints, **arch).eta * (1.0 + 1e-10)
     return _bisect(
         lambda angle: theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted, 0.0, 89.0)

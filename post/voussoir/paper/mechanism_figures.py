@@ -125,18 +125,8 @@ def gallery(
 ) -> Figure:
     """Last pictures of some cases side by side; those of one row are of one shape, so that they stand in line.
 
-    Parameters
-    ----------
-    title : callable
-        From the row of a case to the words above its picture.
-    size : float
-        Size of the marks [points].
-    width : float, optional
-        Of the figure [inch].
-    together : bool, optional
-        Whether all pictures show the same piece of the plane.
-    into : SubFigure, optional
-        Part of a figure that receives them; without it a new figure.
+    `title` gives the words above a picture from the row of its case; marks have a size in points; with `together` all
+    show the same piece of the plane; without `into` they make a figure of their own, so many inches wide.
     """
     boxes = [limits(run, numbers if together else [number]) for number in numbers]
     shapes = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]

@@ -60,13 +60,7 @@ def escape(text: object) -> str:
 
 
 class Page:
-    """A page that grows from top to bottom.
-
-    Parameters
-    ----------
-    title : str
-        Heading of the page.
-    """
+    """A page that grows from top to bottom, below its title."""
 
     def __init__(self, title: str) -> None:
         self._title = title
@@ -86,15 +80,7 @@ class Page:
     def table(
         self, caption: str, head: Sequence[str], rows: Iterable[Sequence[str]], anchor: str = "", words: bool = False
     ) -> None:
-        """Add a table.
-
-        Parameters
-        ----------
-        head : sequence of str
-            Headings of the columns; may hold HTML.
-        words : bool, optional
-            Whether the cells hold words rather than numbers.
-        """
+        """Add a table, of words rather than numbers where said; headings may hold HTML."""
         lines = ["".join(f'<th scope="col">{cell}</th>' for cell in head)]
         lines += ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
         body = "".join(f"<tr>{line}</tr>" for line in lines[1:])
@@ -151,14 +137,10 @@ class Page:
 
 
 def inline_svg(text: str, prefix: str, label: str) -> str:
-    """An SVG file as an element of a page: the element, as wide as its place and at most as wide as it was drawn.
+    """An SVG file as an element of a page, as wide as its place and at most as wide as it was drawn.
 
-    Parameters
-    ----------
-    prefix : str
-        Put before all its names, which otherwise meet those of other figures of the page.
-    label : str
-        What it shows, for those who cannot see it; tags are left out.
+    The prefix goes before all its names, which otherwise meet those of other figures; the label is for those who cannot
+    see it.
     """
     svg = text[text.index("<svg") :].strip()
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)

@@ -27,15 +27,7 @@ _PLACES = {"ours, rigid": 4, "ours, elastic": 4}
 
 
 def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -> str:
-    """The page as HTML; `PAGE_TIME` stands for the time that making it takes.
-
-    Parameters
-    ----------
-    figures : Path
-        Folder of the figures; those that are not there are named as left out.
-    timings : list of Timing
-        How long the parts took so far.
-    """
+    """The page as HTML, with the figures that are there; `PAGE_TIME` stands for the time that making it takes."""
     page = Page("Masonry arches by DDA: section 3 of the paper, side by side")
     page.text(
         "Every numerical experiment of section 3 of Rizzi, Rusconi and Cocchetti's paper on "
@@ -149,14 +141,9 @@ def _modes(page: Page, campaign: Campaign) -> None:
     paper = {0: "purely sliding", 10: "mainly sliding", 20: "mixed", 30: "purely rotational"}
     rows = [
         [
-            f"{row['friction_deg']:g}",
-            f"{math.tan(math.radians(row['friction_deg'])):.3f}",
-            paper.get(int(row["friction_deg"]), ""),
-            escape(row["collapse_mode"]),
-            f"{row['sliding_share']:.4f}",
-            _joined(row["intrados_hinge_deg"]),
-            _joined(row["extrados_hinge_deg"]),
-        ]
+            f"{row['friction_deg']:g}", f"{math.tan(math.radians(row['friction_deg'])):.3f}",
+            paper.get(int(row["friction_deg"]), ""), escape(row["collapse_mode"]), f"{row['sliding_share']:.4f}",
+            _joined(row["intrados_hinge_deg"]), _joined(row["extrados_hinge_deg"])]
         for row in campaign.results("figure8").cases.rows()
     ]
     page.table(
@@ -177,26 +164,15 @@ def _thresholds(page: Page, campaign: Campaign) -> None:
             exact = findings.exact_threshold(row["blocks"], row["thickness_ratio"])
             rows.append(
                 [
-                    words,
-                    f"{row['blocks']}",
-                    f"{row['critical']:.6f}",
-                    f"{math.tan(math.radians(row['critical'])):.7f}",
-                    f"{math.tan(math.radians(exact)):.7f}",
-                    f"{continuous:.7f}",
-                    cited,
-                ]
+                    words, f"{row['blocks']}", f"{row['critical']:.6f}",
+                    f"{math.tan(math.radians(row['critical'])):.7f}", f"{math.tan(math.radians(exact)):.7f}",
+                    f"{continuous:.7f}", cited]
             )
     page.table(
         "Friction thresholds of the semicircle",
         [
-            "",
-            "blocks",
-            "&phi; [deg]",
-            "&mu;, ours",
-            "&mu;, exact polygon",
-            "&mu;, continuous arch",
-            "cited by the paper",
-        ],
+            "", "blocks", "&phi; [deg]", "&mu;, ours", "&mu;, exact polygon", "&mu;, continuous arch",
+            "cited by the paper"],
         rows,
         anchor="thresholds",
     )

@@ -30,24 +30,12 @@ Cells = dict[str, str]
 
 @dataclass(frozen=True)
 class Value:
-    """One thickness.
+    """One thickness."""
 
-    Attributes
-    ----------
-    eta : float or None
-        Critical thickness ratio; None if it was not found.
-    error : float or None
-        Deviation from the exact value of the same polygons, relative to that.
-    hinge : str
-        Intrados hinges [deg], joined by semicolons.
-    printed : str
-        The thickness as the paper prints it; empty of what is computed here.
-    """
-
-    eta: float | None
-    error: float | None
-    hinge: str
-    printed: str = ""
+    eta: float | None  #: Critical thickness ratio; None if it was not found
+    error: float | None  #: Deviation from the exact value of the same polygons, relative to that
+    hinge: str  #: Intrados hinges [deg], joined by semicolons
+    printed: str = ""  #: The thickness as the paper prints it; empty of what is computed here
 
     def digits(self, column: str) -> str:
         """The thickness as people read it."""
@@ -124,22 +112,9 @@ def read_paper(file: Path, table: str) -> list[Row]:
 
 
 def join(rows: list[Row], results: Iterator[Cells]) -> list[str]:
-    """Put the results of dda into the rows of the same arches.
+    """Put the results of dda into the paper's rows of the same arches: the headings of the columns as they came.
 
-    Parameters
-    ----------
-    rows
-        Rows of the paper; receive the values.
-
-    Returns
-    -------
-    list of str
-        Headings of the columns, in the order in which they came.
-
-    Raises
-    ------
-    ValueError
-        If a result is of no arch of the paper, or an arch of the paper has no result.
+    ValueError if a result is of no arch of the paper, or an arch of the paper has no result.
     """
     by_key = {key_of(row.half_angle, row.blocks, row.joint): row for row in rows}
     methods: list[str] = []
@@ -181,16 +156,9 @@ def add_theories(rows: list[Row], theory: Any) -> None:
 
 
 def build_table(name: str, results: Path, paper: Path, theory: Any = None) -> PaperTable:
-    """One table with all its columns.
+    """One table with all its columns, from a folder that has a folder of results for each deck.
 
-    Parameters
-    ----------
-    name
-        table1 to table4.
-    results
-        Folder that holds the results of the decks, each in a folder of its name.
-    theory
-        The module `voussoir.theory`; without it the analytic solutions are left out.
+    The analytic solutions are those of the module `voussoir.theory`, left out without it.
     """
     rows = read_paper(paper, name)
     columns = ["paper DDA", *join(rows, results_of(results, name))]

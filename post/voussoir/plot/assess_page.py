@@ -51,15 +51,7 @@ def figure_of(figure: Figure, caption: str = "") -> str:
 
 
 def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: float | None) -> Figure:
-    """The blocks with their dimensions, supports, the surface of the fill and the axles.
-
-    Parameters
-    ----------
-    axles : sequence of tuple
-        Place and weight of each axle [m, N/m].
-    surface : float or None
-        Height of the surface of the fill [m].
-    """
+    """The blocks with dimensions, supports, the surface of the fill [m], and the axles: place and weight [m, N/m]."""
     scene = scene_of(run, 1)
     shapes = scene.shapes(0.0)
     corners = np.vstack(shapes)
@@ -103,13 +95,7 @@ def table_of(rows: Sequence[tuple[str, str]]) -> str:
 
 
 def page(title: str, verdict: str, falls: bool, parts: Sequence[tuple[str, str]]) -> str:
-    """The whole page.
-
-    Parameters
-    ----------
-    falls : bool
-        Whether it is a bad one.
-    """
+    """The whole page; `falls` where the verdict is a bad one."""
     body = "".join(f"<section><h2>{html.escape(name)}</h2>{text}</section>" for name, text in parts)
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'

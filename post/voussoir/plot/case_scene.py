@@ -17,36 +17,16 @@ SUPPORT_SHARE = 0.3
 
 @dataclass(frozen=True)
 class CaseScene:
-    """Shapes of one case.
+    """Shapes of one case."""
 
-    Attributes
-    ----------
-    blocks : list of Block
-        Blocks that can move, at the beginning.
-    supports : list of Block
-        Blocks that cannot; of an arch only the parts next to the springings.
-    is_arch : bool
-        Whether the blocks are an arch's.
-    moves : bool
-        Whether the blocks are computed where they go, so that pictures show them there.
-    falls : bool
-        Whether the displacements are a collapse mechanism, which has no size.
-    voussoirs : int
-        Of an arch of any shape, the voussoirs of a ring, which are numbered first.
-    count : int
-        The number of all of them.
-    unit : str
-        Unit of its forces.
-    """
-
-    blocks: list[Block]
-    supports: list[Block]
-    is_arch: bool
-    moves: bool
-    falls: bool
-    voussoirs: int = 0
-    count: int = 0
-    unit: str = "N/m"
+    blocks: list[Block]  #: Blocks that can move, at the beginning
+    supports: list[Block]  #: Blocks that cannot; of an arch only the parts next to the springings
+    is_arch: bool  #: Whether the blocks are an arch's
+    moves: bool  #: Whether the blocks are computed where they go, so that pictures show them there
+    falls: bool  #: Whether the displacements are a collapse mechanism, which has no size
+    voussoirs: int = 0  #: Of an arch of any shape, the voussoirs of a ring, which are numbered first
+    count: int = 0  #: The number of all of them
+    unit: str = "N/m"  #: Unit of its forces
 
     @property
     def largest(self) -> float:
@@ -61,13 +41,7 @@ class CaseScene:
 
 
 def scene_of(run: Results, number: int) -> CaseScene:
-    """The shapes of one case.
-
-    Raises
-    ------
-    KeyError
-        If the folder has no blocks of this case.
-    """
+    """The shapes of one case; KeyError if the folder has no blocks of it."""
     told = run.blocks_of(number)
     is_arch = run.kind == "arch"
     free = [block for block in told if block.state != "fixed"]
@@ -87,19 +61,9 @@ def scene_of(run: Results, number: int) -> CaseScene:
 
 
 def shortened(support: Block, free: list[Block]) -> Block:
-    """A support of an arch of which only the part next to its joint is left.
+    """A support of an arch of which only the part next to its joint, two corners of a free block, is left.
 
     Two supports overlap behind the springings where an arch spans much more than a semicircle.
-
-    Parameters
-    ----------
-    free : list of Block
-        The blocks of the arch; the support shares two corners with one of them.
-
-    Returns
-    -------
-    Block
-        The same with its far corners drawn up.
     """
     corners = np.vstack([block.corners for block in free])
     apart = np.linalg.norm(support.corners[:, None] - corners[None], axis=2).min(axis=1)
@@ -113,18 +77,7 @@ def shortened(support: Block, free: list[Block]) -> Block:
 
 
 def view(shapes: list[np.ndarray], supports: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """The piece of plane that shows all that moves, and what of the supports is near to it.
-
-    Parameters
-    ----------
-    shapes : list of ndarray
-        Points that must be seen: (n, 2) each [m].
-
-    Returns
-    -------
-    tuple of ndarray
-        Lower left and upper right corner [m].
-    """
+    """Lower left and upper right corner of what shows all that moves, and what of the supports is near to it [m]."""
     points = np.vstack(shapes or supports)
     low, high = points.min(axis=0), points.max(axis=0)
     size = float((high - low).max())

@@ -12,18 +12,7 @@ Row = dict[str, Any]
 
 
 def title_of(row: Row, run: Results | None = None) -> str:
-    """What the case is and how it ended.
-
-    Parameters
-    ----------
-    run : Results, optional
-        The results of the deck, for its title and for what was swept and searched.
-
-    Returns
-    -------
-    str
-        The deck's title if it has one, what tells the case from others, its verdict: a line each.
-    """
+    """The deck's title if it has one, what tells the case from others, its verdict: a line each."""
     title = run.setting("scene%title") if run is not None else None
     several = run is not None and len(run.cases) > 1
     given = ", ".join(_given(row, run))

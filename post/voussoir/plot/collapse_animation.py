@@ -25,13 +25,7 @@ class WriterError(ValueError):
 
 
 def check_ending(file: Path) -> None:
-    """Check that an animation of this name can be written.
-
-    Raises
-    ------
-    WriterError
-        If the ending is unknown or its program is missing.
-    """
+    """Check that an animation of this name can be written; WriterError if its ending or program is missing."""
     ending = file.suffix.lower()
     if ending not in ENDINGS:
         raise WriterError(f"expected a file .gif, .mp4 or .png, got '{file.name}'; change its ending")
@@ -43,30 +37,10 @@ def animate(
     run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], file: Path, columns: int = 2,
     width: float = 5.6, magnify: float = 1.0
 ) -> Path:
-    """Write the motion of some cases, side by side.
+    """Write the motion of some cases, side by side: .gif, .mp4, or .png for a file a picture; gives the first file.
 
-    Parameters
-    ----------
-    numbers : list of int
-        Numbers of the cases; the pictures of shorter motions wait at their end.
-    title : callable
-        From the row of a case to the words above its picture.
-    file : Path
-        Where to write: .gif, .mp4, or .png for one file a picture, `name_001.png` and so on.
-    columns : int, optional
-        Pictures in a row, at most as many as cases.
-    width : float, optional
-        Of the animation [inch], at 100 dots an inch.
-
-    Returns
-    -------
-    Path
-        The file, or the first of them.
-
-    Raises
-    ------
-    WriterError
-        If such a file cannot be written here.
+    `title` gives the words above a picture from the row of its case. Pictures of shorter motions wait at their end. The
+    width is in inches, at 100 dots each. WriterError if such a file cannot be written here.
     """
     check_ending(file)
     columns = min(columns, len(numbers))

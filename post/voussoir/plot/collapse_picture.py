@@ -36,13 +36,7 @@ MEANINGS = {
 
 
 def pictures_of(run: Results, number: int) -> list[Frame]:
-    """Pictures of the motion of a case: its frames, or its collapse mechanism as it grows.
-
-    Returns
-    -------
-    list of Frame
-        The pictures; at most one where nothing moves. Those of a mechanism have no joints.
-    """
+    """Pictures of the motion of a case: its frames, or its collapse mechanism (without joints) as it grows."""
     frames = run.frames_of(number)
     if len(frames) > 1 or run.blocks is None or not np.any(run.blocks["case"] == number):
         return frames
@@ -61,15 +55,7 @@ def pictures_of(run: Results, number: int) -> list[Frame]:
 
 
 def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float = 5.0, magnify: float = 1.0) -> Axes:
-    """Draw one picture of a case, its first one faint behind it.
-
-    Parameters
-    ----------
-    size : float, optional
-        Size of the marks [points].
-    magnify : float, optional
-        Magnification of the displacements; marks are drawn at true scale only.
-    """
+    """Draw one picture of a case, its first one faint behind it; marks [points] at true scale only."""
     first = pictures_of(run, number)[0]
     scene = scene_of(run, number)
     before = shapes_of(scene, first, first, 1.0)
@@ -100,15 +86,7 @@ def shapes_of(scene: CaseScene, first: Frame, frame: Frame, magnify: float) -> l
 
 
 def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
-    """Where a picture of an arch has hinges and slips.
-
-    Hinges are those of the row of the case, slips those of its joints.
-
-    Returns
-    -------
-    dict
-        Points of each kind: (2, n).
-    """
+    """Where a picture of an arch has hinges (by the case's row) and slips (by its joints): (2, n) of each kind."""
     row = run.case(number)
     roles = run.joints_of(number)
     angle = np.abs(roles["angle_deg"])
@@ -122,13 +100,7 @@ def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
 
 
 def contacts_of(frame: Frame) -> dict[str, np.ndarray]:
-    """Where blocks slide on one another in a picture, and where they stick.
-
-    Returns
-    -------
-    dict
-        Corners of each kind: (2, n).
-    """
+    """Where blocks slide on one another in a picture, and where they stick: (2, n) of each kind."""
     joints = frame.joints
     points: dict[str, list[np.ndarray]] = {"slip": [], "closed": []}
     for kind, word in (("slip", "sliding"), ("closed", "locked")):
@@ -146,13 +118,7 @@ def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados"
 
 
 def limits(run: Results, numbers: list[int], magnify: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """The piece of plane that shows all pictures of some cases [m].
-
-    Returns
-    -------
-    tuple of ndarray
-        Lower left and upper right corner.
-    """
+    """Lower left and upper right corner of what shows all pictures of some cases [m]."""
     shapes, supports = [], []
     for number in numbers:
         scene, frames = scene_of(run, number), pictures_of(run, number)

@@ -35,13 +35,7 @@ def chart_columns(names: list[str]) -> set[str]:
 
 
 def swept_columns(cases: Table) -> list[str]:
-    """Columns that were swept and vary.
-
-    Returns
-    -------
-    list of str
-        Their names; `blocks` only where no other column explains it.
-    """
+    """Columns that were swept and vary; `blocks` only where no other column explains it."""
     names = list(cases.columns)
     own = names[names.index(_BEFORE) + 1 : names.index(_BEHIND)]
     shared = [name for name in _SHARED if not (name == "blocks" and "voussoirs" in own)]
@@ -124,37 +118,17 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
         known = ~np.isnan(rows["exact"])
         exact |= bool(known.any())
         axes.plot(
-            rows[column],
-            rows["critical"],
-            linestyle="none",
-            color=color,
-            markersize=6,
-            marker=_MARKERS[number],
-            markerfacecolor="white",
-            label=label or "DDA",
-        )
+            rows[column], rows["critical"], linestyle="none", color=color, markersize=6, marker=_MARKERS[number],
+            markerfacecolor="white", label=label or "DDA")
         axes.plot(
-            rows[column][known],
-            rows["exact"][known],
-            linestyle="none",
-            color=color,
-            marker="+",
-            markersize=9,
-            markeredgewidth=0.9,
-        )
+            rows[column][known], rows["exact"][known], linestyle="none", color=color, marker="+", markersize=9,
+            markeredgewidth=0.9)
     axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
     if exact:
         axes.plot(
-            [],
-            [],
-            color=INK[0],
-            linestyle="none",
-            marker="+",
-            markersize=9,
-            markeredgewidth=0.9,
-            label="limit analysis, same polygons",
-        )
+            [], [], color=INK[0], linestyle="none", marker="+", markersize=9, markeredgewidth=0.9,
+            label="limit analysis, same polygons")
     axes.legend()
     return figure
 

@@ -21,23 +21,8 @@ _NOTHING = "#c9c9c9"
 def draw_field(found: Table, column: str, across: str, panels: str | None, searched: str, note: str) -> Figure:
     """Draw critical values as coloured cells, one a case: nothing is computed between them.
 
-    Parameters
-    ----------
-    found : Table
-        Cases with a critical value.
-    column, across : str
-        The swept numbers along and up.
-    panels : str, optional
-        A third one: of more values than there is room for, evenly spaced ones are drawn, and it is said.
-    searched : str
-        The label of the colours.
-    note : str
-        What is said above the maps; may be empty.
-
-    Returns
-    -------
-    Figure
-        The maps with one scale of colours.
+    The swept numbers lie along and up; of a third one with more values than there is room for, evenly spaced maps are
+    drawn, and it is said. The colours have a label, the maps a note above them.
     """
     kept = np.array([np.nan]) if panels is None else np.unique(found[panels])
     chosen = kept[np.unique(np.linspace(0, len(kept) - 1, min(len(kept), MOST_PANELS)).round().astype(int))]

@@ -20,22 +20,10 @@ STONE = "#ececec"
 TINTS = (STONE, "#d9c9ac", "#bccfdd", "#dbbfb6", "#c8d8bd", "#b9b9b9")
 
 _SETTINGS = {
-    "figure.dpi": 100,
-    "savefig.dpi": 200,
-    "font.size": 10,
-    "axes.labelsize": 11,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "lines.linewidth": 1.6,
-    "mathtext.fontset": "stix",
-    "font.family": "STIXGeneral",
-    "svg.hashsalt": "voussoir",
-    "svg.fonttype": "path",
-}
+    "figure.dpi": 100, "savefig.dpi": 200, "font.size": 10, "axes.labelsize": 11, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
+    "legend.frameon": False, "lines.linewidth": 1.6, "mathtext.fontset": "stix", "font.family": "STIXGeneral",
+    "svg.hashsalt": "voussoir", "svg.fonttype": "path"}
 
 
 class Picture(Figure):
@@ -50,18 +38,7 @@ class Picture(Figure):
 def closer(
     axes: Axes, place: tuple[float, float, float, float], x: tuple[float, float], y: tuple[float, float]
 ) -> Axes:
-    """Axes within others for a piece of them, framed there.
-
-    Parameters
-    ----------
-    place : tuple of float
-        Left and lower end, width and height, as shares of them.
-
-    Returns
-    -------
-    Axes
-        What is to be drawn into; its limits are those of the piece.
-    """
+    """Axes within others for a piece of them, framed there, at left, lower end, width and height as shares of them."""
     limits = axes.axis()  # the frame of the piece must not change them
     inner = axes.inset_axes(place, xlim=x, ylim=y, zorder=8)
     inner.set_autoscale_on(False)
@@ -84,15 +61,7 @@ _METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"S
 
 
 def save(figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("svg", "png")) -> list[Path]:
-    """Write a figure and close it.
-
-    Parameters
-    ----------
-    folder : Path
-        Where; made if missing.
-    formats : tuple of str, optional
-        Endings without the dot, of svg, pdf and png.
-    """
+    """Write a figure as svg, pdf or png, and close it; its folder is made if missing."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{ending}" for ending in formats]
     for path in paths:

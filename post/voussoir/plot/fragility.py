@@ -21,18 +21,10 @@ _normal = np.vectorize(lambda z: 0.5 * math.erfc(-z / math.sqrt(2.0)), otypes=[f
 
 @dataclass(frozen=True)
 class Lognormal:
-    """A lognormal fragility: P(x) = Phi(ln(x/median)/dispersion).
+    """A lognormal fragility: P(x) = Phi(ln(x/median)/dispersion)."""
 
-    Attributes
-    ----------
-    median : float
-        Strength at which half of the records make the blocks collapse.
-    dispersion : float
-        Standard deviation of its logarithm.
-    """
-
-    median: float
-    dispersion: float
+    median: float  #: Strength at which half of the records make the blocks collapse
+    dispersion: float  #: Standard deviation of its logarithm
 
     def __call__(self, strength: np.ndarray) -> np.ndarray:
         """Probability of collapse at some strengths."""
@@ -40,19 +32,9 @@ class Lognormal:
 
 
 def fit_shares(strength: np.ndarray, collapsed: np.ndarray, total: np.ndarray) -> Lognormal | None:
-    """The most likely lognormal fragility (Baker 2015, Earthquake Spectra 31:579).
+    """The most likely lognormal of collapsed of all records at each strength (Baker 2015, Earthquake Spectra 31:579).
 
-    Parameters
-    ----------
-    strength : ndarray
-        Strengths that were tried, above 0.
-    collapsed, total : ndarray
-        Records that made the blocks collapse at each, and all of them.
-
-    Returns
-    -------
-    Lognormal or None
-        None where the likelihood has no maximum: what collapses and what does not is parted by one strength.
+    None where the likelihood has no maximum: what collapses and what does not is parted by one strength.
     """
     tried, falls = strength[total > 0], collapsed[total > 0] > 0
     stands = collapsed[total > 0] < total[total > 0]
@@ -75,18 +57,7 @@ def fit_shares(strength: np.ndarray, collapsed: np.ndarray, total: np.ndarray) -
 
 
 def fit_values(critical: np.ndarray) -> Lognormal | None:
-    """The lognormal of critical strengths, one a record, by the moments of their logarithms.
-
-    Parameters
-    ----------
-    critical : ndarray
-        The strengths, above 0.
-
-    Returns
-    -------
-    Lognormal or None
-        None of fewer than two different ones.
-    """
+    """The lognormal of critical strengths, one a record, by the moments of their logarithms; None of fewer than two."""
     logs = np.log(critical)
     if len(logs) < 2 or not logs.std() > 0.0:
         return None

@@ -17,16 +17,9 @@ WIDTH, HEIGHT, LOWEST, HIGHEST = 7.2, 3.0, 0.7, 4.0
 
 
 def draw_positions(run: Results, cases: Table, worst: float | None = None) -> Figure:
-    """Draw the load factor against the position of the first axle, and the blocks below it.
+    """Draw the load factor against the position of the first axle, and the blocks of case 1 below it.
 
-    Parameters
-    ----------
-    run : Results
-        For the blocks of its first case.
-    cases : Table
-        Rows of a sweep of positions; those without a factor leave a gap.
-    worst : float or None
-        The worst position; by default that of the least factor of the sweep [m].
+    Cases without a factor leave a gap; the worst position is by default that of the least factor of the sweep [m].
     """
     cases = cases.take(np.argsort(cases["position"], kind="stable"))
     factor = np.where(cases["verdict"] == "found", cases["critical"], np.nan)

@@ -25,13 +25,7 @@ def is_shape(record: Sequence[str], searched: str | None) -> bool:
 
 
 def ring_joints(first: np.ndarray, second: np.ndarray, count: int, voussoirs: int) -> list[tuple[int, int]]:
-    """Pairs of joints between which thrust goes through a voussoir.
-
-    Parameters
-    ----------
-    count : int
-        Number of voussoirs; they are numbered first, ring by ring, from left to right.
-    """
+    """Pairs of joints between which thrust goes through a voussoir; these are numbered first, ring by ring."""
     sides: dict[int, list[int]] = {}
     for joint, pair in enumerate(zip(first, second)):
         inside = [int(block) for block in pair if block <= count]

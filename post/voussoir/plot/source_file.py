@@ -12,33 +12,17 @@ Point = tuple[float, float]
 
 @dataclass
 class Source:
-    """What acts on blocks, and what they are made of.
+    """What acts on blocks, and what they are made of."""
 
-    Attributes
-    ----------
-    materials : list of int
-        Material of each block of the file.
-    loads : list of (point, force, bool)
-        Where forces act [m], at the end of their histories [N/m], and whether they are live.
-    held : list of (point, point, str)
-        Points and lines that are held: both ends [m], and "x", "y" or "" for both directions.
-    bars : list of (point, point)
-        Ends of bolts, anchors and ties [m].
-    water : list of list of point
-        Lines of heads at the end of their histories [m].
-    absorbing : list of (point, point)
-        Lines of faces that let waves out [m].
-    missing : list of str
-        What is not known, for its file is not there or not read.
-    """
-
-    materials: list[int] = field(default_factory=list)
+    materials: list[int] = field(default_factory=list)  #: Material of each block of the file
+    #: Where forces act [m], at the end of their histories [N/m], and whether they are live
     loads: list[tuple[Point, Point, bool]] = field(default_factory=list)
+    #: Points and lines that are held: both ends [m], and "x", "y" or "" for both directions
     held: list[tuple[Point, Point, str]] = field(default_factory=list)
-    bars: list[tuple[Point, Point]] = field(default_factory=list)
-    water: list[list[Point]] = field(default_factory=list)
-    absorbing: list[tuple[Point, Point]] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
+    bars: list[tuple[Point, Point]] = field(default_factory=list)  #: Ends of bolts, anchors and ties [m]
+    water: list[list[Point]] = field(default_factory=list)  #: Lines of heads at the end of their histories [m]
+    absorbing: list[tuple[Point, Point]] = field(default_factory=list)  #: Lines of faces that let waves out [m]
+    missing: list[str] = field(default_factory=list)  #: What is not known, for its file is not there or not read
 
 
 def source_of(run: Results) -> Source:

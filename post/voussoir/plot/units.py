@@ -76,18 +76,7 @@ def value_label(parameter: str, value: object) -> str:
 
 
 def length_text(metres: float) -> str:
-    """A length with the unit that suits it.
-
-    Parameters
-    ----------
-    metres : float
-        The length [m].
-
-    Returns
-    -------
-    str
-        Such as "2 mm".
-    """
+    """A length [m] with the unit that suits it, such as "2 mm"."""
     for unit, size in (("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
         if metres >= size * (1.0 - 1e-12) and metres < 1e3 * size:
             return f"{metres / size:.3g} {unit}"
@@ -101,20 +90,7 @@ def force_unit(run: Results | None) -> str:
 
 
 def force_text(force: float, unit: str = "N/m") -> str:
-    """A force with the size of unit that suits it.
-
-    Parameters
-    ----------
-    force : float
-        The force, in the unit.
-    unit : str, optional
-        "N/m" or "N".
-
-    Returns
-    -------
-    str
-        Such as "12.5 kN/m".
-    """
+    """A force in N/m or N with the size of unit that suits it, such as "12.5 kN/m"."""
     for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0)):
         if size <= force < 1e3 * size:
             return f"{force / size:.4g} {prefix}{unit}"
@@ -122,17 +98,6 @@ def force_text(force: float, unit: str = "N/m") -> str:
 
 
 def rounded(value: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that does not exceed a number.
-
-    Parameters
-    ----------
-    value : float
-        Above 0.
-
-    Returns
-    -------
-    float
-        Such as 200.
-    """
+    """The largest of 1, 2 and 5 times a power of ten that does not exceed a number above 0."""
     power = 10.0 ** math.floor(math.log10(value))
     return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value * (1 + 1e-12))

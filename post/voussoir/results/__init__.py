@@ -356,12 +356,8 @@ class Results:
             starts = np.flatnonzero(np.diff(of_frame["block"])) + 1
             pictures.append(
                 Frame(
-                    number=int(frame),
-                    step=int(of_frame["step"][0]),
-                    time=float(of_frame["time"][0]),
-                    blocks=np.split(points, starts),
-                    joints=joints.where(frame=frame),
-                )
+                    number=int(frame), step=int(of_frame["step"][0]), time=float(of_frame["time"][0]),
+                    blocks=np.split(points, starts), joints=joints.where(frame=frame))
             )
         return pictures
 
@@ -400,15 +396,10 @@ def read(folder: str | Path, choice: Choice | None = None) -> Results:
     if choice is not None:
         return Results(folder, cases, None, None, None, None, None, None)
     return Results(
-        folder=folder,
-        cases=cases,
-        joints=_read_table(folder / "joints.csv"),
-        frames=_read_table(folder / "frames.csv"),
-        frame_joints=_read_table(folder / "frame_joints.csv"),
-        blocks=_read_table(folder / "blocks.csv"),
-        points=_read_table(folder / "points.csv"),
-        reactions=_read_table(folder / "reactions.csv"),
-    )
+        folder=folder, cases=cases, joints=_read_table(folder / "joints.csv"),
+        frames=_read_table(folder / "frames.csv"), frame_joints=_read_table(folder / "frame_joints.csv"),
+        blocks=_read_table(folder / "blocks.csv"), points=_read_table(folder / "points.csv"),
+        reactions=_read_table(folder / "reactions.csv"))
 
 
 def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:

@@ -63,28 +63,11 @@ class DamagedTable(ValueError):
 Choice = Callable[[list[str]], Collection[str]]
 
 
-def read_columns(
-    file: Path, at_once: int | None = _AT_ONCE, choice: Choice | None = None
-) -> dict[str, np.ndarray]:
-    """Read a table.
+def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | None = None) -> dict[str, np.ndarray]:
+    """Read a table's chosen columns with their types, so many rows as text at one time (None: all).
 
-    Parameters
-    ----------
-    at_once : int, optional
-        Rows that are text at one time; None for all of them.
-    choice : callable, optional
-        Which columns are read, from the names of all; all without it.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Its columns with their types, rows as they stand. Of a table in several pieces a column of one
-        value is that value once, seen in each row, and cannot be written to.
-
-    Raises
-    ------
-    DamagedTable
-        If dda does not write such a table.
+    Of a table in several pieces a column of one value is that value once, seen in each row, and cannot be written to.
+    DamagedTable if dda does not write such a table.
     """
     pieces: list[list[np.ndarray]] = []
     names: list[str] = []

@@ -11,13 +11,7 @@ _DATA = b'<AppendedData encoding="raw">'
 
 
 def cell_field(path: Path, name: str) -> np.ndarray:
-    """Read a field of the cells.
-
-    Parameters
-    ----------
-    path : Path
-        The file, as the program writes it: 64 bits, little-endian.
-    """
+    """Read a field of the cells of a file as the program writes it: 64 bits, little-endian."""
     whole = path.read_bytes()
     head, _, data = whole.partition(_DATA)
     cells = re.search(r"<CellData.*?</CellData>", head.decode(), re.DOTALL)

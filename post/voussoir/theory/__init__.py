@@ -31,43 +31,14 @@ from voussoir.theory._equations import (
 from voussoir.theory._friction import friction, friction_critical, friction_thickness
 
 __all__ = [
-    "THEORIES",
-    "DiscreteSolution",
-    "critical",
-    "critical_as_printed",
-    "critical_near_limit",
-    "critical_small",
-    "curve_slope",
-    "discrete_critical",
-    "discrete_solution",
-    "eccentricity",
-    "embrace",
-    "equilibrium_thickness",
-    "friction",
-    "friction_critical",
-    "friction_thickness",
-    "initial_thickness",
-    "limits",
-    "lower_thrust",
-    "springing_thrust",
-    "tangent_thrust",
-    "thrust_line",
-    "thrust_through",
-]
+    "THEORIES", "DiscreteSolution", "critical", "critical_as_printed", "critical_near_limit", "critical_small",
+    "curve_slope", "discrete_critical", "discrete_solution", "eccentricity", "embrace", "equilibrium_thickness",
+    "friction", "friction_critical", "friction_thickness", "initial_thickness", "limits", "lower_thrust",
+    "springing_thrust", "tangent_thrust", "thrust_line", "thrust_through"]
 
 _LIMITS = (
-    "alpha_limit",
-    "A_limit",
-    "eta_limit",
-    "beta_limit",
-    "h_limit",
-    "beta_max",
-    "alpha_beta_max",
-    "A_beta_max",
-    "eta_beta_max",
-    "h_beta_max",
-    "alpha_unit_A",
-)
+    "alpha_limit", "A_limit", "eta_limit", "beta_limit", "h_limit", "beta_max", "alpha_beta_max", "A_beta_max",
+    "eta_beta_max", "h_beta_max", "alpha_unit_A")
 
 
 def limits(theory: str) -> dict[str, float]:

@@ -13,53 +13,19 @@ STATIONS = 400
 
 
 def on_circle(radius: float | np.ndarray, angle: float | np.ndarray) -> np.ndarray:
-    """Points at angles from the crown, clockwise.
-
-    Parameters
-    ----------
-    radius : float or ndarray
-        Distance from the centre.
-    angle : float or ndarray
-        Angle from the crown [rad].
-
-    Returns
-    -------
-    ndarray
-        x and y: (2, ...).
-    """
+    """Points (2, ...) at a distance from the centre and angles from the crown, clockwise [rad]."""
     return np.array([radius * np.sin(angle), radius * np.cos(angle)])
 
 
 def chunk(start: float, end: float, eta: float) -> np.ndarray:
-    """Outline of the part of the arch between two angles.
-
-    Parameters
-    ----------
-    start, end : float
-        Angles from the crown [rad].
-    eta : float
-        Thickness ratio.
-
-    Returns
-    -------
-    ndarray
-        Corners of a closed polygon: (2, n).
-    """
+    """Outline (2, n) of the part of the arch between two angles from the crown [rad]."""
     angle = np.linspace(start, end, STATIONS)
     outer, inner = on_circle(1 + eta / 2, angle), on_circle(1 - eta / 2, angle[::-1])
     return np.hstack([outer, inner, outer[:, :1]])
 
 
 def draw_arch(axes: Axes, alpha: float, eta: float, **style) -> Axes:
-    """Draw the outline of an arch.
-
-    Parameters
-    ----------
-    alpha : float
-        Half angle of embrace [rad].
-    eta : float
-        Thickness ratio.
-    """
+    """Draw the outline of an arch."""
     options = {"facecolor": STONE, "edgecolor": INK[0], "linewidth": 0.9, "zorder": 1} | style
     axes.fill(*chunk(-alpha, alpha, eta), **options)
     axes.set_aspect("equal")
@@ -68,15 +34,7 @@ def draw_arch(axes: Axes, alpha: float, eta: float, **style) -> Axes:
 
 
 def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style) -> Axes:
-    """Draw the line of thrust through the extrados of crown and springings, eq. (11).
-
-    Parameters
-    ----------
-    alpha : float
-        Half angle of embrace [rad].
-    eta : float
-        Thickness ratio.
-    """
+    """Draw the line of thrust through the extrados of crown and springings, eq. (11)."""
     angle = np.linspace(0.0, alpha, STATIONS)
     ratio = theory.thrust_line(angle, alpha, eta, name)
     x, y = on_circle(1 - ratio * eta / 2, angle)
@@ -85,13 +43,7 @@ def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style) -> Axe
 
 
 def draw_hinges(axes: Axes, points: np.ndarray, **style) -> Axes:
-    """Draw hinges and their mirror images.
-
-    Parameters
-    ----------
-    points : ndarray
-        x >= 0 and y: (2, n).
-    """
+    """Draw hinges (2, n) with x >= 0, and their mirror images."""
     options = {"marker": "o", "linestyle": "", "color": INK[0], "markerfacecolor": "white", "zorder": 5} | style
     for side in (1, -1):
         axes.plot(side * points[0], points[1], **options)
@@ -99,44 +51,15 @@ def draw_hinges(axes: Axes, points: np.ndarray, **style) -> Axes:
 
 
 def rotated(points: np.ndarray, about: np.ndarray, onto: np.ndarray, angle: float) -> np.ndarray:
-    """Turn points clockwise about one point and carry that point to another.
-
-    Parameters
-    ----------
-    points : ndarray
-        (2, n).
-    about, onto : ndarray
-        The point before and after: (2).
-    angle : float
-        Turn, clockwise [rad].
-
-    Returns
-    -------
-    ndarray
-        (2, n).
-    """
+    """Points (2, n) turned clockwise about one point, which is carried to another [rad]."""
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     return onto[:, None] + turn @ (points - about[:, None])
 
 
 def collapsed_half(alpha: float, beta: float, eta: float, turn: float) -> tuple[list[np.ndarray], np.ndarray]:
-    """The five-hinge mechanism, displaced by a finite turn of the lower chunk.
+    """The five-hinge mechanism after a turn of the lower chunk about the springing's extrados, outwards [rad].
 
-    Parameters
-    ----------
-    alpha, beta : float
-        Half angle of embrace and inner hinge [rad].
-    eta : float
-        Thickness ratio.
-    turn : float
-        Turn of the lower chunk about the springing's extrados, outwards [rad].
-
-    Returns
-    -------
-    chunks : list of ndarray
-        Outlines of the upper and the lower chunk of the right half, displaced: (2, n) each.
-    hinges : ndarray
-        Crown, haunch and springing, displaced: (2, 3).
+    Outlines (2, n) of the upper and the lower chunk of the right half, and crown, haunch and springing hinge (2, 3).
     """
     crown, haunch = on_circle(1 + eta / 2, 0.0), on_circle(1 - eta / 2, beta)
     springing = on_circle(1 + eta / 2, alpha)
@@ -152,17 +75,7 @@ def collapsed_half(alpha: float, beta: float, eta: float, turn: float) -> tuple[
 
 
 def draw_mechanism(axes: Axes, alpha: float, beta: float, eta: float, turn: float) -> Axes:
-    """Draw the displaced five-hinge mechanism.
-
-    Parameters
-    ----------
-    alpha, beta : float
-        Half angle of embrace and inner hinge [rad].
-    eta : float
-        Thickness ratio.
-    turn : float
-        Turn of the lower chunk [rad].
-    """
+    """Draw the five-hinge mechanism after a turn of the lower chunk [rad]."""
     chunks, hinges = collapsed_half(alpha, beta, eta, turn)
     for outline in chunks:
         for side in (1, -1):

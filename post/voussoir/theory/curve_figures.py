@@ -16,13 +16,7 @@ _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 
 
 def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
-    """Figure 4: eta(beta) of the semicircle, with the three conditions of figure 3.
-
-    Parameters
-    ----------
-    alpha_deg : float, optional
-        Half angle of embrace [deg].
-    """
+    """Figure 4: eta(beta) of the semicircle, with the three conditions of figure 3."""
     alpha = math.radians(alpha_deg)
     beta, eta, _ = theory.critical(alpha, "ccr")
     figure, axes = plt.subplots(figsize=(6.4, 4.2))
@@ -86,13 +80,7 @@ def curves_at_140() -> Figure:
 
 
 def compared_curves(alpha_deg: float) -> Figure:
-    """eta(beta) with the weight on the centre line and where it is, their tops, and Heyman's point.
-
-    Parameters
-    ----------
-    alpha_deg : float
-        Half angle of embrace [deg].
-    """
+    """eta(beta) with the weight on the centre line and where it is, their tops, and Heyman's point."""
     alpha = math.radians(alpha_deg)
     figure, axes = plt.subplots(figsize=(6.4, 4.4))
     _compare(axes, alpha)
@@ -123,13 +111,7 @@ def _compare(axes: Axes, alpha: float) -> None:
 
 
 def draw_curve(axes: Axes, alpha: float, name: str, **style) -> Axes:
-    """Draw eta(beta) from the crown to the springing.
-
-    Parameters
-    ----------
-    alpha : float
-        Half angle of embrace [rad].
-    """
+    """Draw eta(beta) from the crown to the springing."""
     beta = np.linspace(0.0, alpha, 801)
     axes.plot(np.degrees(beta), theory.equilibrium_thickness(beta, alpha, name), **style)
     axes.set_xlabel(r"inner hinge $\beta$ [deg]")

@@ -18,13 +18,7 @@ FIGURES = (collapse_mode, notation, lines_of_thrust, curve_of_the_semicircle, cu
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Draw all seven figures.
-
-    Returns
-    -------
-    int
-        Exit status, 0.
-    """
+    """Draw all seven figures."""
     parser = argparse.ArgumentParser(prog="python3 -m voussoir.theory.figures", description=__doc__.splitlines()[0])
     parser.add_argument("--out", metavar="DIR", type=Path, default=Path("."), help="folder for the files (default: .)")
     for path in draw_all(parser.parse_args(arguments).out):

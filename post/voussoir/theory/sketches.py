@@ -19,13 +19,7 @@ _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 
 
 def collapse_mode(alpha_deg: float = 120.0) -> Figure:
-    """Figure 1: the critical arch, its line of thrust, and how it falls.
-
-    Parameters
-    ----------
-    alpha_deg : float, optional
-        Half angle of embrace [deg].
-    """
+    """Figure 1: the critical arch, its line of thrust, and how it falls."""
     alpha = math.radians(alpha_deg)
     beta, eta, h = theory.critical(alpha, "ccr")
     figure, axes = plt.subplots(figsize=(6.4, 5.2))
@@ -47,15 +41,7 @@ def collapse_mode(alpha_deg: float = 120.0) -> Figure:
 
 
 def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4) -> Figure:
-    """Figure 2: the forces on the upper portion of the half arch, which meet in one point D.
-
-    Parameters
-    ----------
-    alpha_deg, beta_deg : float, optional
-        Half angle of embrace and angle of the joint [deg].
-    eta : float, optional
-        Thickness ratio, large for the eye.
-    """
+    """Figure 2: the forces on the upper portion of the half arch, thick for the eye, which meet in one point D."""
     alpha, beta = math.radians(alpha_deg), math.radians(beta_deg)
     h = float(theory.springing_thrust(alpha, eta, "ccr"))
     ratio = float(theory.eccentricity(beta, alpha, eta, h, "ccr"))
@@ -92,15 +78,7 @@ def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4)
 
 
 def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: float) -> Figure:
-    """Finish figure 2: thickness, radius and eccentricity.
-
-    Parameters
-    ----------
-    eta, ratio : float
-        Thickness ratio and 2e/t.
-    beta : float
-        Angle of the joint [rad].
-    """
+    """Finish figure 2: thickness, radius and eccentricity, at a joint and its ratio 2e/t."""
     axes.text(*(on_circle(1.0, -0.5) + (0.03, -0.02)), "$t$", fontsize=12)
     axes.text(*(on_circle(0.55, beta) + (0.03, -0.07)), "$r$", fontsize=12)
     aside = beta + 0.16
@@ -116,15 +94,7 @@ def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: fl
 
 
 def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1.0, 0.6)) -> Figure:
-    """Figure 3: lines of thrust of a super-critical, the critical and a sub-critical semicircle.
-
-    Parameters
-    ----------
-    alpha_deg : float, optional
-        Half angle of embrace [deg].
-    shares : tuple of float, optional
-        Thickness over the critical one.
-    """
+    """Figure 3: lines of thrust of a super-critical, the critical and a sub-critical semicircle."""
     alpha = math.radians(alpha_deg)
     beta, critical, _ = theory.critical(alpha, "ccr")
     figure, panels = plt.subplots(1, len(shares), figsize=(10.5, 2.9))
@@ -140,13 +110,7 @@ def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1
 
 
 def draw_angle(axes: Axes, angle: float, radius: float, label: str) -> Axes:
-    """Draw an angle from the crown about the centre of the arch.
-
-    Parameters
-    ----------
-    angle : float
-        The angle [rad].
-    """
+    """Draw an angle from the crown about the centre of the arch."""
     axes.plot(*on_circle(radius, np.linspace(0.0, angle, 100)), color=INK[0], linewidth=0.7)
     for end in (0.0, angle):
         axes.plot(*np.stack([np.zeros(2), on_circle(1.15 * radius, end)], axis=1), color=INK[0], linewidth=0.7)
@@ -155,15 +119,7 @@ def draw_angle(axes: Axes, angle: float, radius: float, label: str) -> Axes:
 
 
 def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, label: str, shift: tuple[float, float]) -> Axes:
-    """Draw a force.
-
-    Parameters
-    ----------
-    start, end : ndarray
-        Tail and tip: (2).
-    shift : tuple of float
-        Of the name from the tail.
-    """
+    """Draw a force from tail to tip, its name shifted from the tail."""
     axes.annotate("", end, start, arrowprops=_ARROW, zorder=6)
     axes.text(*(np.asarray(start) + shift), label, fontsize=12, zorder=7)
     return axes

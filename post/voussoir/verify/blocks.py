@@ -105,15 +105,7 @@ def _time_of(change: Change) -> float:
 
 
 def read_blocks(path: Path, deck: Deck) -> Source:
-    """Read a file of blocks: what it says.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    deck : Deck
-        Its deck, for what materials leave out.
-    """
+    """What a file of blocks says; its deck fills in what materials leave out."""
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -203,18 +195,7 @@ def _take_point(entry: list[str], rows: list[list[float]], source: Source, deck:
 
 
 def arch_corners(deck: Deck) -> list[np.ndarray]:
-    """Corners of the voussoirs of an arch, from the left springing on.
-
-    Parameters
-    ----------
-    deck : Deck
-        The deck of a case.
-
-    Returns
-    -------
-    list of ndarray
-        Corners of each block that moves, in either sense.
-    """
+    """Corners of the voussoirs of an arch, from the left springing on, in either sense."""
     half = deck.numbers("arch%joints_deg")
     if half:
         angles = [-angle for angle in half[:0:-1]] + half

@@ -28,13 +28,7 @@ OPTIONAL = ("bars",)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Check the proofs of static verdicts that dda run has left in a folder: forces must balance the loads and keep "
         "the law of every joint, mechanisms must open or leave every joint and be driven by the loads. Joints, weights "
@@ -55,13 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-    """
+    """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked."""
     try:
         deck = read_record(arguments.folder)
         tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
@@ -221,16 +209,9 @@ def _check_bound(result: Row, column: str, value: str, finding: Finding) -> None
 
 
 def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) -> Scene:
-    """Blocks and joints of a case.
+    """Blocks and joints of a case, from its rows of blocks.csv and a file of blocks in one of the places.
 
-    Parameters
-    ----------
-    rows : list of dict
-        Its rows of blocks.csv.
-    places : list of Path
-        Folders to look for a file of blocks in.
-    finding : Finding
-        Receives how far corners are from those of the deck.
+    The finding receives how far corners are from those of the deck.
     """
     if not rows:
         raise VerifyError("no blocks of a case in blocks.csv: run the deck with output%blocks = .true.")

@@ -51,15 +51,7 @@ class Joint:
 
 
 def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
-    """A block from its corners in either sense: with area and centre of gravity.
-
-    Parameters
-    ----------
-    corners : ndarray
-        The corners in order, (n, 2).
-    fixed : bool
-        Whether it cannot move.
-    """
+    """A block from its corners (n, 2) in either sense: with area and centre of gravity."""
     shift = corners.mean(axis=0)
     x, y = (corners - shift).T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y

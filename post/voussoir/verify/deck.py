@@ -188,13 +188,7 @@ class Deck:
 
 
 def read_record(folder: Path) -> Deck:
-    """The deck of a folder of results: its given keys and sweeps.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder that dda run has written.
-    """
+    """The deck of a folder of results: its given keys and sweeps."""
     try:
         lines = (folder / "deck.record").read_text(encoding="utf-8").splitlines()
     except OSError as error:

@@ -46,15 +46,7 @@ class ExactScene:
 
 
 def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
-    """Blocks and joints of a case in fractions.
-
-    Parameters
-    ----------
-    rows : list of dict
-        Its rows of blocks.csv.
-    files : list of Path
-        The file of blocks, or of lines and of their materials.
-    """
+    """Blocks and joints of a case in fractions, from its rows of blocks.csv and the files that its deck names."""
     deck, source = replace(deck, exact=True), Source()
     fixed = {int(row["block"]): row["state"] == "fixed" for row in rows}
     if deck.text("scene%kind") == "blocks":
@@ -165,13 +157,7 @@ def _numbers(exact: ExactScene) -> dict[int, int]:
 
 
 def proves(exact: ExactScene, carried: bool) -> bool:
-    """Whether forces that carry the loads, or a mechanism that the loads drive, are proven exactly.
-
-    Parameters
-    ----------
-    carried : bool
-        Whether forces are wanted, or else a mechanism.
-    """
+    """Whether forces that carry the loads, or a mechanism that the loads drive, are proven exactly."""
     number, origin = _numbers(exact), exact.corners[0][0]
     nudge = -NUDGE if carried else NUDGE
     right = [-value for value in _load(exact, number, origin)] + _bounds(exact, nudge)
@@ -188,17 +174,7 @@ def proves(exact: ExactScene, carried: bool) -> bool:
 def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] | None:
     """The largest value of a load's coefficient, from below by forces and from above by a mechanism.
 
-    Parameters
-    ----------
-    name : str
-        The coefficient.
-    way : int
-        1 towards larger values, -1 towards smaller ones.
-
-    Returns
-    -------
-    tuple or None
-        Both values; None where there is no limit, or none was proven.
+    Towards larger values (way 1) or smaller ones (-1); None where there is no limit, or none was proven.
     """
     number, origin = _numbers(exact), exact.corners[0][0]
     loads = []
@@ -221,16 +197,9 @@ def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] |
 
 
 def check_exactly(deck: Deck, files: list[Path], rows: dict[str, list[Row]], finding: Finding) -> None:
-    """Prove the limit of a case, or its verdict where it has none.
+    """Prove the limit of a case, or its verdict where it has none, from its files and its rows of each table.
 
-    Parameters
-    ----------
-    files : list of Path
-        Its file of blocks, or of lines and of their materials.
-    rows : dict
-        Its rows of each table.
-    finding : Finding
-        Receives an interval that contains the limit, and what is wrong.
+    The finding receives an interval that contains the limit, and what is wrong.
     """
     (result,), name = rows["results"], deck.searched or "load_factor"
 

@@ -57,13 +57,7 @@ def has_fill(deck: Deck) -> bool:
 
 
 def chords_of(deck: Deck, blocks: list[Block]) -> list[Chord]:
-    """Upper edges of what can move that no other block lies on.
-
-    Parameters
-    ----------
-    blocks : list of Block
-        The blocks, voussoirs first, span by span.
-    """
+    """Upper edges of what can move that no other block lies on; voussoirs come first, span by span."""
     in_span = round(float(deck.number("arch%rings") * deck.number("arch%voussoirs")))
     spans = round(float(deck.number("arch%spans")))
     chords = []
@@ -77,19 +71,7 @@ def chords_of(deck: Deck, blocks: list[Block]) -> list[Chord]:
 
 
 def is_covered(blocks: list[Block], block: Block, start: np.ndarray, end: np.ndarray) -> bool:
-    """Whether another block lies on a part of an edge, the block on its left.
-
-    Parameters
-    ----------
-    blocks : list of Block
-        All blocks.
-    block : Block
-        The block of the edge.
-    start : ndarray
-        Where the part starts.
-    end : ndarray
-        Where it ends.
-    """
+    """Whether another block lies on a part of an edge, the block on its left."""
     first, last = start.astype(float), end.astype(float)
     point = (first + last) / 2 + OUTSIDE * np.array([last[1] - first[1], first[0] - last[0]])
     for other in blocks:
@@ -150,10 +132,7 @@ def _below(chord: Chord, top: float) -> tuple[float, float]:
 def pressures(deck: Deck, blocks: list[Block], live: list[tuple[np.ndarray, np.ndarray]]) -> list[Pull]:
     """What an arch can lean against: fill on the side away from the live loads of a span, and backing.
 
-    Parameters
-    ----------
-    live : list of tuple
-        Places and forces of the live loads on points.
+    Live loads are places and forces on points.
     """
     chords = chords_of(deck, blocks)
     surface, backing = surface_of(deck, chords), _backing(deck, blocks)
@@ -196,13 +175,7 @@ def _crown(chords: list[Chord]) -> float:
 
 
 def lowest_below(blocks: list[Block], x: float) -> float:
-    """Height of the lower end of the upper edge below an axle; beside all that can move, of the nearest end.
-
-    Parameters
-    ----------
-    x : float
-        The place.
-    """
+    """Height of the lower end of the upper edge below an axle; beside all that can move, of the nearest end."""
     free = np.concatenate([block.corners[:, 0] for block in blocks if not block.fixed])
     x = min(max(x, free.min()), free.max())
     best: tuple[float, float] | None = None

@@ -18,17 +18,7 @@ Rows = list[list[str]]
 
 
 def read_lines(geometry: Path, analysis: Path, blocks: list[Block], deck: Deck) -> Source:
-    """What files say of materials and laws of joints; keys that the deck gives go before.
-
-    Parameters
-    ----------
-    geometry : Path
-        File of lines.
-    analysis : Path
-        File of materials.
-    blocks : list of Block
-        The blocks that were cut.
-    """
+    """What files of lines and of materials say of the blocks that were cut; keys that the deck gives go before."""
     lines, crossing = _geometry(_text(geometry))
     materials, joints = _analysis(_text(analysis))
     source = Source(material=[1] * len(blocks))

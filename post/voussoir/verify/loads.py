@@ -19,13 +19,7 @@ MOST_FRICTION_DEG = "89.9"
 
 
 def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
-    """Forces and moments about the centres of blocks: force along x and y, and moment, of each block: (n, 3).
-
-    Parameters
-    ----------
-    source : Source
-        Its file of blocks, or nothing.
-    """
+    """Forces and moments about the centres of blocks: force along x and y, and moment, of each block: (n, 3)."""
     load = np.zeros((len(blocks), 3), dtype=object if deck.exact else float)
     for i, part in _parts_on(deck, source, blocks):
         load[i] += part
@@ -33,13 +27,7 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
 
 
 def sizes_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
-    """Sizes of all loads on blocks, which may cancel one another: beside them rounding is small.
-
-    Returns
-    -------
-    ndarray
-        Sums of the sizes of forces along x and y, and of moments, of each block: (n, 3).
-    """
+    """Sizes of all loads on blocks, which may cancel one another: beside them rounding is small: (n, 3)."""
     size = np.zeros((len(blocks), 3))
     for i, part in _parts_on(deck, source, blocks):
         size[i] += np.abs(part.astype(float))
@@ -177,13 +165,7 @@ def _on_block(force: PointForce, factor: float, blocks: list[Block]) -> tuple[in
 
 
 def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> float:
-    """Coefficient of friction of a joint; infinite where it cannot slide.
-
-    Parameters
-    ----------
-    springing : bool
-        Whether it is a springing joint of an arch.
-    """
+    """Coefficient of friction of a joint or springing joint; infinite where it cannot slide."""
     law = Law(*(deck.number(f"joint%{name}") for name in ("friction_deg", "cohesion", "tension")))
     if source.lines:
         listed = min(source.lines, key=lambda line: _distance(line[0], joint.edge))[1]
@@ -220,15 +202,7 @@ def _distance(line: np.ndarray, edge: np.ndarray) -> float:
 
 
 def may_hold(source: Source, block: Block, point: np.ndarray, force: np.ndarray) -> bool:
-    """Whether a file of blocks holds a point of a block against a force.
-
-    Parameters
-    ----------
-    source : Source
-        The file of blocks.
-    force : ndarray
-        Its force along x and y.
-    """
+    """Whether a file of blocks holds a point of a block against a force."""
     for held in source.held:
         if held.block not in (0, block.number):
             continue

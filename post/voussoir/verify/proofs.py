@@ -86,17 +86,7 @@ class Scene:
 
 
 def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
-    """Check that forces at joints and held points carry the load.
-
-    Parameters
-    ----------
-    scene : Scene
-        The case, at the value of the proof.
-    rows : list of dict
-        Rows of proof_forces.csv.
-    finding : Finding
-        Receives the figures.
-    """
+    """Check that forces at joints and held points (rows of proof_forces.csv) carry the load at their value."""
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed for block in scene.blocks])
     largest = largest_of(sizes_on(scene.deck, scene.source, scene.blocks)[free], scene.length)
@@ -133,13 +123,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
 
 
 def digits_of(force: float) -> float:
-    """What rounding makes of a force: a share of the largest load.
-
-    Parameters
-    ----------
-    force : float
-        The force over the largest load: blocks that jam press one another with forces far larger than that.
-    """
+    """What rounding makes of a force, as a share of the largest load; blocks that jam press with forces far larger."""
     return min(DIGITS * force, JAMMED)
 
 
@@ -196,48 +180,22 @@ def _match(joints: list[Joint], points: np.ndarray, block: Block) -> tuple[Joint
 
 
 def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> None:
-    """Add a force to what is left on a block.
-
-    Parameters
-    ----------
-    left : ndarray
-        Force and moment of each block, (n, 3).
-    at : ndarray
-        Where the force acts.
-    vector : ndarray
-        The force.
-    """
+    """Add a force at a point to what is left on each block: force and moment, (n, 3)."""
     arm = at - block.centre
     left[block.number - 1] += [*vector, arm[0] * vector[1] - arm[1] * vector[0]]
 
 
 def largest_of(load: np.ndarray, length: float) -> float:
-    """Largest force or moment over a length: the largest, above 0.
-
-    Parameters
-    ----------
-    load : ndarray
-        Force and moment of each block, (n, 3).
-    length : float
-        What moments are divided by.
-    """
+    """Largest force, or moment over a length, of loads (n, 3): above 0."""
     if len(load) == 0:
         return 1e-300
     return max(float(np.abs(load[:, :2]).max()), float(np.abs(load[:, 2]).max()) / length, 1e-300)
 
 
 def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
-    """Check that velocities open or leave every joint and that the load drives them.
+    """Check that velocities (rows of proof_motion.csv) open or leave every joint and that the load drives them.
 
-    Parameters
-    ----------
-    rows : list of dict
-        Rows of proof_motion.csv.
-
-    Returns
-    -------
-    float
-        Power of the loads, less what bars and fill take at most, over what the loads could do.
+    Gives the power of the loads, less what bars and fill take at most, over what the loads could do.
     """
     velocity = np.zeros((len(scene.blocks), 3))
     for row in rows:
@@ -298,15 +256,7 @@ def held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool
 
 
 def velocity_at(scene: Scene, velocity: np.ndarray, number: int, point: np.ndarray) -> np.ndarray:
-    """Velocity of a point of a block: (2).
-
-    Parameters
-    ----------
-    velocity : ndarray
-        Velocities of the centres and spins, (n, 3).
-    number : int
-        Number of the block.
-    """
+    """Velocity of a point of a block, from velocities of the centres and spins, (n, 3)."""
     u, v, spin = velocity[number - 1]
     arm = point - scene.blocks[number - 1].centre
     return np.array([u - spin * arm[1], v + spin * arm[0]])

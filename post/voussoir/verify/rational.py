@@ -17,13 +17,7 @@ Column = dict[int, Fraction]
 
 @lru_cache(maxsize=4096)
 def sine_cosine(degrees: Fraction) -> tuple[Fraction, Fraction]:
-    """Sine and cosine, rounded to forty decimals.
-
-    Parameters
-    ----------
-    degrees : Fraction
-        The angle.
-    """
+    """Sine and cosine of an angle in degrees, rounded to forty decimals."""
     quarters = round(degrees / 90)
     angle = round((degrees - 90 * quarters) * PI / 180 * FINE)
     sums, term = [0, 0], FINE
@@ -36,26 +30,14 @@ def sine_cosine(degrees: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def square_root(value: Fraction) -> Fraction:
-    """Square root of a number that is not negative, to forty digits.
-
-    Parameters
-    ----------
-    value : Fraction
-        The number.
-    """
+    """Square root of a number that is not negative, to forty digits."""
     # digits of the root are counted from its first one on
     scale = 10 ** (40 + max(0, len(str(value.denominator)) - len(str(value.numerator))))
     return Fraction(isqrt(value.numerator * value.denominator * scale**2), value.denominator * scale)
 
 
 class Factor:
-    """A square sparse matrix, taken apart exactly.
-
-    Parameters
-    ----------
-    columns : list of dict
-        Entries of each column by their row.
-    """
+    """A square sparse matrix of columns, taken apart exactly."""
 
     def __init__(self, columns: list[Column]) -> None:
         rows: dict[int, Column] = {k: {} for k in range(len(columns))}
@@ -89,13 +71,7 @@ class Factor:
             self.steps.append((row, column, pivot, entries, multipliers))
 
     def solve(self, right: list[Fraction]) -> list[Fraction]:
-        """Solve with the matrix.
-
-        Parameters
-        ----------
-        right : list of Fraction
-            Right-hand side.
-        """
+        """Solve with the matrix."""
         left, found = list(right), [Fraction(0)] * len(right)
         for row, _, _, _, multipliers in self.steps:
             if left[row]:

@@ -15,13 +15,7 @@ SUMMED = (
 
 
 def told_sums(folder: Path) -> dict[int, int]:
-    """Sums that the program has written down: the sum of each case.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the results.
-    """
+    """Sums that the program has written down: the sum of each case."""
     path = folder / "sizes.record"
     if not path.exists():
         raise VerifyError("no sizes.record: run the deck again, or check proofs alone by --ignore-sums")
@@ -33,13 +27,7 @@ def told_sums(folder: Path) -> dict[int, int]:
 
 
 def sums_of(folder: Path) -> dict[int, int]:
-    """Sums of the tables as they are: CRC-32 of each line, added up for each case.
-
-    Returns
-    -------
-    dict
-        The sum of each case, and of lines of no case under 0.
-    """
+    """Sums of the tables as they are: CRC-32 of each line, added up for each case; lines of no case under 0."""
     sums: dict[int, int] = {}
     for path in [folder / name for name in SUMMED]:
         if not path.exists():

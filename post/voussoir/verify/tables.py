@@ -26,18 +26,8 @@ def check_joints(
 ) -> None:
     """Check that told joint forces keep the law of every joint, and balance the loads of what stands.
 
-    Parameters
-    ----------
-    scene : Scene
-        The case, at a value that stands.
-    rows : list of dict
-        Rows of joints.csv.
-    bars : list of float or None
-        Told forces of the bars; None where nothing stands and forces need not balance.
-    finding : Finding
-        Receives the figures.
-    allowed : ndarray
-        What the forces may leave besides, as the bracket of a search is so wide: (n, 3).
+    `bars` are told forces, None where nothing stands and forces need not balance; `allowed` (n, 3) is what the forces
+    may leave besides, as the bracket of a search is so wide.
     """
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
@@ -132,12 +122,7 @@ def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, crush: f
 def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
     """Check that told motions are those of rigid blocks, or of blocks that strain alike throughout.
 
-    Parameters
-    ----------
-    rows : list of dict
-        Rows of blocks.csv.
-    strain : float
-        How far blocks may be from rigid, over the largest velocity; infinite where they need not be.
+    They may be `strain` times the largest velocity from rigid; infinite where they need not be.
     """
     told: dict[int, list[list[float]]] = {}
     for row in rows:

@@ -24,13 +24,7 @@ class Water:
 
 
 def water_loads(water: Water, rise: float, blocks: list[Block]) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Forces of the water on the blocks that move: the block, where the force acts, and the force.
-
-    Parameters
-    ----------
-    rise : float
-        By how much all lines have risen.
-    """
+    """Forces of the water, all lines risen, on the blocks that move: the block, where the force acts, and the force."""
     found = []
     for block in blocks:
         for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
