@@ -1,9 +1,8 @@
 """Speed of the theory: solutions a second, against NumPy and scipy.optimize.brentq.
 
-Run as ``python3 -m voussoir.bench.theory_times``. The three do the same: hinge, thickness and thrust at
-given half angles. NumPy runs the Newton iteration of the Fortran module on whole arrays, with the
-same stable kernels; brentq solves the printed eqs. (1), (24), (23) angle by angle. One process, one
-core.
+Run as ``python3 -m voussoir.bench.theory_times``. The three do the same: hinge, thickness and thrust at given half
+angles. NumPy runs the Newton iteration of the Fortran module on whole arrays, with the same stable kernels; brentq
+solves the printed eqs. (1), (24), (23) angle by angle. One process, one core.
 """
 
 from __future__ import annotations
@@ -44,9 +43,8 @@ def compare(name: str, angles: np.ndarray, few: np.ndarray) -> str:
     scalar = rate(lambda: [brentq_critical(angle, name) for angle in few], few.size, repeats=1)
     ratio = numpy_critical(angles, name)[1] / theory.critical(angles, name)[1]
     return (
-        f"{name:<14}{fortran:>12.3g}{vectorised:>12.3g}{scalar:>12.3g}   "
-        f"{fortran / vectorised:.1f} x NumPy, {fortran / scalar:.0f} x brentq, "
-        f"{np.max(np.abs(ratio - 1.0)):.1e}"
+        f"{name:<14}{fortran:>12.3g}{vectorised:>12.3g}{scalar:>12.3g}   {fortran / vectorised:.1f} x NumPy, "
+        f"{fortran / scalar:.0f} x brentq, {np.max(np.abs(ratio - 1.0)):.1e}"
     )
 
 

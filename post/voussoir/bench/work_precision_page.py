@@ -85,10 +85,9 @@ def race_table(races: Sequence[Race]) -> list[str]:
             lines.append(start + "| - " * 7 + "|")
             continue
         lines.append(
-            start + f"| {race.general * 1e6:.0f} | {race.general_right} of 4 "
-            f"| {race.compact * 1e6:.0f} | {race.compact_right} of 4 "
-            f"| {race.general / race.decision:.0f} | {race.compact / race.decision:.1f} "
-            f"| {race.search / race.compact:.2f} |"
+            start + f"| {race.general * 1e6:.0f} | {race.general_right} of 4 | {race.compact * 1e6:.0f} | "
+            f"{race.compact_right} of 4 | {race.general / race.decision:.0f} | {race.compact / race.decision:.1f} | "
+            f"{race.search / race.compact:.2f} |"
         )
     return lines
 

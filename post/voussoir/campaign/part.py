@@ -195,9 +195,8 @@ def whole_rows(attempt: Path, said: list[str]) -> CaseSet:
                 found.add(case)
             else:
                 said.append(
-                    f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
-                    f"{count} cells with its case, got another one; its case is "
-                    "computed again"
+                    f"{attempt / 'results.csv'}:{number}: warning: expected a row of {count} cells with its case, got "
+                    "another one; its case is computed again"
                 )
     return found
 

@@ -77,9 +77,8 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     true = first == hashlib.sha256(record.encode(errors="replace")).hexdigest()
     if true and record != asked.record:
         raise DdaError(
-            f"{deck}:1: error: expected the campaign that {out} was begun for, got another one "
-            f"(other {changed_keys(record, asked.record)}); choose another --out, or discard what "
-            "is there with --anew")
+            f"{deck}:1: error: expected the campaign that {out} was begun for, got another one (other "
+            f"{changed_keys(record, asked.record)}); choose another --out, or discard what is there with --anew")
     if known != text:
         if content_of(out / "deck.record") != asked.record.encode():
             for name in ("results.csv", "disk.record"):  # of whatever was there before

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 from voussoir import results
 from voussoir.command.options import magnification
-from voussoir.extras import advice
 
 #: Most cases that move side by side without being named
 MOST_CASES = 6
@@ -18,9 +16,8 @@ MOST_CASES = 6
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Animate cases of a folder that dda run has written, side by side: the frames of runs "
-        "with geometry = 'current' (arches and blocks, collapses and dynamic runs), else the "
-        "collapse mechanism as it grows."
+        "Animate cases of a folder that dda run has written, side by side: the frames of runs with geometry = "
+        "'current' (arches and blocks, collapses and dynamic runs), else the collapse mechanism as it grows."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -39,31 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Animate.
-
-    Exit status: 0, 2 for results that cannot be animated, 4 for a file that cannot be written.
-    """
-    try:
-        return _run(arguments)
-    except results.DamagedTable as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
-    except (FileNotFoundError, KeyError, ValueError) as error:
-        words = error.args[0] if isinstance(error, KeyError) else error
-        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
-        return 2
-    except ImportError as error:
-        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n")
-        return 2
-    except OSError as error:
-        sys.stderr.write(
-            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
-            f"{error.strerror}; choose another one with --out\n")
-        return 4
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    """Animate; failures are exceptions."""
+    """Animate."""
     read = results.read(arguments.folder)
     cases = arguments.case or [int(number) for number in read.cases["case"]]
     for number in cases:

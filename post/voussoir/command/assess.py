@@ -8,7 +8,6 @@ import html
 import math
 import platform
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -44,29 +43,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page.
-
-    Exit status: 0, 2 for a deck that cannot be assessed, 4 for a page that cannot be written.
-    """
+    """Write the page."""
     out = arguments.out or arguments.deck.with_suffix(".html")
     try:
         text = arguments.deck.read_text(encoding="utf-8")
         check(text, arguments.deck)
         written = assess(text, arguments.deck)
-    except (DdaError, ValueError) as error:
-        sys.stderr.write(_COPY.sub(lambda _: str(arguments.deck), str(error)) + "\n")
-        return 2
-    except ImportError as error:
-        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); install python3-matplotlib\n")
-        return 2
+    except DdaError as error:
+        raise DdaError(_COPY.sub(lambda _: str(arguments.deck), str(error))) from error
     except OSError as error:
-        sys.stderr.write(f"{arguments.deck}:1: error: expected a deck that can be read: {error.strerror}\n")
-        return 2
+        raise ValueError(f"expected a deck that can be read: {error.strerror}") from error
     try:
         out.write_text(written, encoding="utf-8")
     except OSError as error:
-        sys.stderr.write(f"{out}:1: error: expected a file that can be written: {error.strerror}\n")
-        return 4
+        raise DdaError(f"{out}:1: error: expected a file that can be written: {error.strerror}", 4) from error
     print(out)
     return 0
 

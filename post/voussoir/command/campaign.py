@@ -15,7 +15,7 @@ from voussoir.campaign.part import finished_by
 from voussoir.campaign.share import Campaign, finished, local_engine, open_campaign, run_parts, share, split, unlock
 from voussoir.command.options import add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda
-from voussoir.extras import MissingPackage, load
+from voussoir.extras import load
 
 #: Of several exit statuses the first one counts
 _WORST_FIRST = (4, 2, 3, 0)
@@ -58,36 +58,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the campaign.
-
-    Exit status as of `dda run`.
-    """
-    try:
-        if arguments.parquet:  # before hours are spent
-            load("pyarrow", "Parquet")
-        return _run(arguments)
-    except MissingPackage as error:
-        sys.stderr.write(f"--parquet:1: error: {error}\n")
-        return 2
-    except DdaError as error:
-        sys.stderr.write(f"{error}\n")
-        return error.status
-    except OSError as error:
-        name = error.filename or arguments.out or arguments.deck
-        sys.stderr.write(
-            f"{name}:1: error: files cannot be written: {error.strerror}; "
-            "what is finished stays safe in the folder parts\n")
-        return 4
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    """The campaign; failures are exceptions."""
+    """Run the campaign; exit status as of `dda run`."""
+    if arguments.parquet:  # before hours are spent
+        load("pyarrow", "Parquet")
     index, of = _share_of(arguments)
     out = (arguments.out or Path(arguments.deck.stem)).resolve()
     shared = arguments.index is not None
     try:
         campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared)
         return _compute(campaign, arguments, share(campaign.total, index, of))
+    except OSError as error:
+        raise DdaError(
+            f"{error.filename or out}:1: error: files cannot be written: {error.strerror}; what is finished stays safe "
+            "in the folder parts", 4) from error
     finally:
         unlock(out)
 
@@ -148,9 +131,8 @@ def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary)
     missing = campaign.total - summary.cases
     if not arguments.quiet:
         print(
-            f"{arguments.deck}: {summary.cases - summary.undecided} decided, "
-            f"{summary.undecided} undecided, {missing} not finished; "
-            f"results in {campaign.out / 'results.csv'}")
+            f"{arguments.deck}: {summary.cases - summary.undecided} decided, {summary.undecided} undecided, {missing} "
+            f"not finished; results in {campaign.out / 'results.csv'}")
     if arguments.parquet and summary.cases:
         write_parquet(campaign.out / "results.csv")
     return 3 if summary.undecided or missing else 0

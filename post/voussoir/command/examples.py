@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import shutil
-import sys
 from pathlib import Path
 
 from voussoir.dda_program import DdaError, find_input
@@ -16,15 +15,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """List the decks, or copy them.
-
-    Exit status: 0, 2 without decks, 4 where they cannot be copied.
-    """
-    try:
-        folder = find_input("paper").parent
-    except DdaError as missing:
-        sys.stderr.write(f"voussoir: error: {missing}\n")
-        return 2
+    """List the decks, or copy them."""
+    folder = find_input("paper").parent
     if arguments.copy is None:
         for deck in sorted(folder.rglob("*.nml")):
             print(deck.relative_to(folder.parent))
@@ -33,7 +25,6 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         shutil.copytree(folder, target, dirs_exist_ok=True)
     except (OSError, shutil.Error) as problem:
-        sys.stderr.write(f"{target}:1: error: expected a folder to copy to, got: {problem}\n")
-        return 4
+        raise DdaError(f"{target}:1: error: expected a folder to copy to, got: {problem}", 4) from problem
     print(f"{target}: {len(list(target.rglob('*.nml')))} decks")
     return 0

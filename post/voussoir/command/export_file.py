@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from voussoir import results
 from voussoir.command.options import magnification
+from voussoir.dda_program import DdaError
 from voussoir.deck.export import WRITERS, outlines_of
-from voussoir.extras import MissingPackage
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,25 +26,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write; exit status 0, 2 for results or an ending that will not do, 4 for a file that cannot be written."""
-    file = arguments.file
-    try:
-        if file.suffix.lower() not in WRITERS:
-            raise ValueError(f"expected a file of {', '.join(WRITERS)}, got '{file.suffix}'")
-        outlines = outlines_of(results.read(arguments.folder), arguments.case, arguments.magnify)
-    except (FileNotFoundError, KeyError, ValueError) as problem:
-        words = problem.args[0] if isinstance(problem, KeyError) else problem
-        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
-        return 2
+    """Write."""
+    file, write = arguments.file, WRITERS.get(arguments.file.suffix.lower())
+    if write is None:
+        raise ValueError(f"expected a file of {', '.join(WRITERS)}, got '{file.suffix}'")
+    outlines = outlines_of(results.read(arguments.folder), arguments.case, arguments.magnify)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        lost = WRITERS[file.suffix.lower()](outlines, file)
-    except (MissingPackage, ValueError) as problem:
-        sys.stderr.write(f"{file}:1: error: {problem}\n")
-        return 2
+        lost = write(outlines, file)
     except OSError as problem:
-        sys.stderr.write(f"{file}:1: error: expected a file that can be written, got: {problem}\n")
-        return 4
+        raise DdaError(f"{file}:1: error: expected a file that can be written, got: {problem}", 4) from problem
     fixed = sum(outline.layer == "fixed" for outline in outlines)
     print(f"{file}: {len(outlines)} blocks, {fixed} of them fixed" + (f"; it cannot hold {lost}" if lost else ""))
     return 0

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import argparse
 import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from voussoir.command import plot
 from voussoir.command.options import magnification, whole_number
-from voussoir.dda_program import find_dda, path_word
+from voussoir.dda_program import DdaError, find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import READERS, ImportedShape, read_shapes
-from voussoir.extras import MissingPackage
 
 #: Words that make a layer or a property one of what does not move
 FIXED = ("fixed", "ground", "support", "abutment")
@@ -50,19 +48,14 @@ def _scale(word: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, write, say what was dropped, and run the deck if asked.
-
-    Exit status: 0, 2 for a file that cannot be read or holds no outline, 4 for one that cannot be written;
-    with --run 3 for a case that is undecided.
-    """
+    """Read, write, say what was dropped, and run the deck if asked: then 3 for a case that is undecided."""
     try:
         shapes, dropped, (scale, whose) = read_shapes(arguments.file, arguments.scale, arguments.tolerance)
-        if not shapes:
-            raise ValueError("expected closed outlines, got none; close the polylines")
-        blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed), arguments.hold)
-    except (MissingPackage, OSError, ValueError) as problem:
-        sys.stderr.write(f"{arguments.file}:1: error: {problem}\n")
-        return 2
+    except OSError as problem:
+        raise ValueError(problem) from problem
+    if not shapes:
+        raise ValueError("expected closed outlines, got none; close the polylines")
+    blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed), arguments.hold)
     deck = arguments.out or Path(arguments.file.with_suffix(".nml").name)
     name = deck.with_suffix(".blocks").name
     blocks.groups["scene"] |= {"title": arguments.file.stem, "geometry": name}
@@ -73,8 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         deck.with_suffix(".blocks").write_text(blocks.files[BLOCKS_FILE], encoding="utf-8")
         deck.write_text(blocks.text(), encoding="utf-8")
     except OSError as problem:
-        sys.stderr.write(f"{deck}:1: error: expected a file that can be written, got: {problem}\n")
-        return 4
+        raise DdaError(f"{deck}:1: error: expected a file that can be written, got: {problem}", 4) from problem
     fixed = sum(shape.fixed for shape in blocks.shapes)
     for words in dropped:
         print(f"dropped: {words}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import sys
 from pathlib import Path
 
 #: Layers of the picture from below: role, colour by its place in INK, width of the line
@@ -23,24 +22,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Draw.
-
-    Exit status: 0, 2 for a table that cannot be drawn, 4 for a file that cannot be written.
-    """
+    """Draw."""
     picture = arguments.out or arguments.table.with_suffix(".png")
     if picture.suffix not in (".png", ".svg", ".pdf"):
-        print(f"{picture}: expected a name that ends in .png, .svg or .pdf", file=sys.stderr)
-        return 2
+        raise ValueError(f"expected a picture whose name ends in .png, .svg or .pdf, got {picture}")
     try:
         lines = read_lines(arguments.table)
-    except (OSError, ValueError, KeyError) as error:
-        print(f"{arguments.table}: error: expected a table of dda lines: {error}", file=sys.stderr)
-        return 2
-    try:
-        draw(lines, picture)
-    except OSError as error:
-        print(f"{picture}: error: {error}", file=sys.stderr)
-        return 4
+    except (OSError, ValueError, KeyError) as problem:
+        raise ValueError(f"expected a table of dda lines: {problem}") from problem
+    draw(lines, picture)
     print(picture)
     return 0
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
 
 from voussoir import __version__
+from voussoir.dda_program import DdaError
+from voussoir.extras import MissingPackage, advice
 
-#: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
-#: and one line of help
+#: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status, and one line of help
 COMMANDS = {
     "animate": ("voussoir.command.animate", "the motion of cases as a GIF"),
     "assess": ("voussoir.command.assess", "one page for a client: does the arch stand, and how safely"),
@@ -76,3 +78,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # who reads the output, such as head, has enough of it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except (DdaError, ImportError, KeyError, OSError, ValueError) as problem:
+        return fail(problem, chosen)
+
+
+def fail(problem: Exception, chosen: argparse.Namespace) -> int:
+    """Say why a subcommand has failed: FILE:LINE, that of what it reads where nothing better is known; its status."""
+    inputs = (getattr(chosen, name, None) for name in ("folder", "table", "deck", "file"))
+    place, status = next(filter(None, inputs), None), getattr(problem, "status", 2)
+    words = str(problem.args[0] if isinstance(problem, KeyError) else problem)
+    if isinstance(problem, ImportError) and not isinstance(problem, MissingPackage):
+        place, words = None, f"expected matplotlib, got none ({problem}); {advice('matplotlib')}"
+    elif isinstance(problem, OSError) and not isinstance(problem, FileNotFoundError) and problem.filename != str(place):
+        place, status = problem.filename or getattr(chosen, "out", None) or place, 4
+        words = f"the file cannot be written: {problem.strerror}; choose another with --out"
+    told = re.search(r":\d+: error: ", words)  # the program's own messages name file and line
+    bare = place is None or isinstance(problem, DdaError)
+    head = "" if told else "voussoir: error: " if bare else f"{place}:1: error: "
+    sys.stderr.write(f"{head}{words}\n")
+    return status

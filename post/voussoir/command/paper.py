@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from voussoir.command.options import add_decks, add_quiet, whole_number
-from voussoir.dda_program import DdaError, find_dda, find_input
+from voussoir.dda_program import find_dda, find_input
 from voussoir.extras import advice
 from voussoir.paper import tables
 from voussoir.paper.campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock, Timing, weights
@@ -35,23 +35,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the decks, draw the figures, write tables and report.
-
-    Exit status: that of dda, or 2 if it or the decks are missing, 4 if nothing can be written.
-    """
-    try:
-        campaign = Campaign(arguments.decks or find_input("paper"), arguments.out)
-        dda = find_dda(arguments.dda)
-        decks = campaign.deck_files(arguments.limerick)
-    except (DdaError, FileNotFoundError) as problem:
-        print(f"voussoir: error: {problem}", file=sys.stderr)
-        return 2
-    try:
-        parts = [DRAWING + name for name in _drawings()]
-        return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, parts)))
-    except OSError as problem:
-        print(f"voussoir: error: {problem}", file=sys.stderr)
-        return 4
+    """Run the decks, draw the figures, write tables and report; the exit status is that of dda."""
+    campaign = Campaign(arguments.decks or find_input("paper"), arguments.out)
+    dda = find_dda(arguments.dda)
+    decks = campaign.deck_files(arguments.limerick)
+    parts = [DRAWING + name for name in _drawings()]
+    return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, parts)))
 
 
 def _teller(arguments: argparse.Namespace):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from voussoir import results
 from voussoir.command.options import magnification
-from voussoir.extras import advice
 
 #: Most cases that are drawn without being named
 MOST_CASES = 12
@@ -20,9 +18,8 @@ LARGE = 10_000_000
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Draw the cases of a folder that dda run has written, arches and blocks alike: line of "
-        "thrust, hinges, slips, contact forces, loads, held points, ways of measured points; or "
-        "chart the critical values of a sweep."
+        "Draw the cases of a folder that dda run has written, arches and blocks alike: line of thrust, hinges, slips, "
+        "contact forces, loads, held points, ways of measured points; or chart the critical values of a sweep."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -63,32 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Draw.
-
-    Exit status: 0, 2 for results that cannot be drawn, 4 for files that cannot be written.
-    """
-    try:
-        return _run(arguments)
-    except results.DamagedTable as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
-    except (FileNotFoundError, KeyError, ValueError) as error:
-        words = error.args[0] if isinstance(error, KeyError) else error
-        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
-        return 2
-    except ImportError as error:
-        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n")
-        return 2
-    except OSError as error:
-        sys.stderr.write(
-            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
-            f"{error.strerror}; choose another folder with --out\n"
-        )
-        return 4
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    """Draw; failures are exceptions."""
+    """Draw."""
     from voussoir.plot.case_picture import draw_case
     from voussoir.plot.design_chart import chart_columns, draw_chart
     from voussoir.plot.figure_style import house_style, save

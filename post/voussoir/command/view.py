@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from voussoir import results
-from voussoir.extras import MissingPackage, load
+from voussoir.extras import load
 from voussoir.results import Frame, Results
 
 #: Depth that the blocks are drawn with, over the size of the scene
@@ -32,27 +31,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show.
-
-    Exit status: 0, 2 for results that cannot be shown or a missing package, 4 for a file that cannot be written.
-    """
-    try:
-        read = results.read(arguments.folder)
-        read.case(arguments.case)
-        pictures = pictures_of_case(read, arguments.case)
-        window = load("pyvista", "a window that turns")
-    except results.DamagedTable as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
-    except (MissingPackage, FileNotFoundError, KeyError, ValueError) as error:
-        words = error.args[0] if isinstance(error, KeyError) else error
-        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
-        return 2
-    try:
-        show(window, read, arguments.case, pictures, arguments.out)
-    except OSError as error:
-        sys.stderr.write(f"{arguments.out}:1: error: the file cannot be written: {error}; choose another --out\n")
-        return 4
+    """Show."""
+    read = results.read(arguments.folder)
+    read.case(arguments.case)
+    pictures = pictures_of_case(read, arguments.case)
+    show(load("pyvista", "a window that turns"), read, arguments.case, pictures, arguments.out)
     return 0
 
 

@@ -15,7 +15,7 @@ from voussoir.bench.work_precision_page import draw, front_table, race_table, wr
 from voussoir.bench.work_precision_plan import cost_table, plan_costs
 from voussoir.bench.work_precision_runs import Arch, Race, race
 from voussoir.command.options import whole_number
-from voussoir.dda_program import DdaError, find_dda
+from voussoir.dda_program import find_dda
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,15 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Measure, write tables and figure, print the table of ratios.
-
-    Exit status: 2 without the program, else 0.
-    """
-    try:
-        find_dda()
-    except DdaError as missing:
-        sys.stderr.write(f"voussoir: error: {missing}\n")
-        return missing.status
+    """Measure, write tables and figure, print the table of ratios."""
+    find_dda()
     arches = [Arch(angle, count) for count in arguments.voussoirs for angle in arguments.angles]
     arguments.out.mkdir(parents=True, exist_ok=True)
     runs = arguments.out / "runs"

@@ -59,8 +59,7 @@ def metres_a_unit(file: Path) -> Optional[float]:
 def read_dxf(file: Path, tolerance: float) -> Found:
     """Closed polylines, circles, ellipses, splines; what single lines and arcs of a layer enclose.
 
-    Arcs are cut where corners of other outlines lie on them, so that both sides of a curved joint have the
-    same chords.
+    Arcs are cut where corners of other outlines lie on them, so that both sides of a curved joint have the same chords.
     """
     shape = load("shapely.geometry", _PURPOSE)
     drawn: list[Drawn] = []

@@ -80,10 +80,9 @@ def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set
     jobs : int, optional
         Cases computed at the same time.
     **set
-        Keys as in decks, by their names (friction_deg=40), with the group where several have one
-        (**{"arch%radius": 5.0}), or a group at a time (search={"parameter": "friction_deg"}, for
-        which search="friction_deg" will do). sweep wants a dict or a list of them, and a deck that
-        is no file.
+        Keys as in decks, by their names (friction_deg=40), with the group where several have one (**{"arch%radius":
+        5.0}), or a group at a time (search={"parameter": "friction_deg"}, for which search="friction_deg" will do).
+        sweep wants a dict or a list of them, and a deck that is no file.
 
     Returns
     -------

@@ -13,9 +13,8 @@ CAPTIONS = {
     "friction angle, with the two thresholds that the paper cites from others.",
     "figure9": "Fig. 9: collapse against the number of blocks; thickness 0.105965 (Heyman) and "
     "0.107426 (CCR), elastic blocks. &beta;: intrados hinge at the onset.",
-    "figure10": "Fig. 10: intrados hinge against the number of blocks, rigid and elastic, "
-    "among the joints that the arch has. Below its critical thickness an arch may turn at the "
-    "next joint.",
+    "figure10": "Fig. 10: intrados hinge against the number of blocks, rigid and elastic, among the joints that the "
+    "arch has. Below its critical thickness an arch may turn at the next joint.",
     "figure11": "Fig. 11: critical thickness against the number of blocks. The line joins the "
     "exact values of every even number of blocks.",
     "figure12": "Fig. 12: collapse of four blocks at half angle 90 degrees, joint imposed at "

@@ -58,18 +58,16 @@ def from_below(campaign: Campaign) -> Finding:
     shown = ""
     if example is not None:
         shown = (
-            f" Of the numbers in Fig. 10, {first['blocks'][example]} blocks need "
-            f"{first['exact'][example]:.9f} and {first['blocks'][example + 1]} blocks "
-            f"{first['exact'][example + 1]:.9f}."
+            f" Of the numbers in Fig. 10, {first['blocks'][example]} blocks need {first['exact'][example]:.9f} and "
+            f"{first['blocks'][example + 1]} blocks {first['exact'][example + 1]:.9f}."
         )
     return Finding(
         f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no steady way",
-        f"Of {even.size} even numbers of blocks from {even[0]} to {even[-1]}, "
-        f"{int(np.count_nonzero(exact < limit))} need less than the continuous arch of "
-        f"Milankovitch ({limit:.6f}); the largest value is {exact.max():.9f}, at "
-        f"{even[exact.argmax()]} blocks. From one even number to the next the value "
-        f"falls {falls} times: what counts is how near a joint comes to "
-        f"{math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} degrees." + shown,
+        f"Of {even.size} even numbers of blocks from {even[0]} to {even[-1]}, {int(np.count_nonzero(exact < limit))} "
+        f"need less than the continuous arch of Milankovitch ({limit:.6f}); the largest value is {exact.max():.9f}, at "
+        f"{even[exact.argmax()]} blocks. From one even number to the next the value falls {falls} times: what counts "
+        f"is how near a joint comes to {math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} "
+        "degrees." + shown,
     )
 
 
@@ -83,16 +81,14 @@ def growth_with_blocks(campaign: Campaign) -> Finding:
     late = exact[number >= 30]
     return Finding(
         "The paper's growth with the number of blocks is not statics",
-        f"Its values exceed the exact ones by {100 * (paper[0] / exact[0] - 1):.1f} % at "
-        f"{rows[0].blocks} blocks and by {100 * (paper[-1] / exact[-1] - 1):.1f} % at "
-        f"{rows[-1].blocks}, about {slope:.2f} % more for each block. The exact values from 30 "
-        f"blocks on lie within {100 * (late.max() / late.min() - 1):.3f} % of one another. The "
-        "cause is the compliance of the contacts in the program that the paper used: it "
-        "lowers its penalty until the deepest corner penetrates by a fixed share of the size "
-        "of the whole model, whatever Young's modulus is. The closures of the joints add up, "
-        "more joints to more: 36 blocks sink by a tenth of their thickness at the crown while "
-        "they still stand, and the flatter arch needs more thickness. Limit analysis of the "
-        "arch so deformed gives the paper's value.",
+        f"Its values exceed the exact ones by {100 * (paper[0] / exact[0] - 1):.1f} % at {rows[0].blocks} blocks and "
+        f"by {100 * (paper[-1] / exact[-1] - 1):.1f} % at {rows[-1].blocks}, about {slope:.2f} % more for each block. "
+        f"The exact values from 30 blocks on lie within {100 * (late.max() / late.min() - 1):.3f} % of one another. "
+        "The cause is the compliance of the contacts in the program that the paper used: it lowers its penalty until "
+        "the deepest corner penetrates by a fixed share of the size of the whole model, whatever Young's modulus is. "
+        "The closures of the joints add up, more joints to more: 36 blocks sink by a tenth of their thickness at the "
+        "crown while they still stand, and the flatter arch needs more thickness. Limit analysis of the arch so "
+        "deformed gives the paper's value.",
     )
 
 
@@ -126,9 +122,8 @@ def other_columns(campaign: Campaign) -> Iterator[Finding]:
         if shares:
             yield Finding(
                 f"{column}: the original's scheme and constants",
-                f"{len(shares)} of {total} arches were found; they deviate from the paper's own "
-                f"values by at most {100 * max(shares):.1f} %, by "
-                f"{100 * float(np.median(shares)):.2f} % in the middle.",
+                f"{len(shares)} of {total} arches were found; they deviate from the paper's own values by at most "
+                f"{100 * max(shares):.1f} %, by {100 * float(np.median(shares)):.2f} % in the middle.",
             )
 
 
@@ -166,9 +161,8 @@ def standing_at_ccr(campaign: Campaign) -> Finding:
     values = ", ".join(f"{value:.7f}" for value in stands["exact"])
     return Finding(
         f"Some arches stand at the thickness of CCR, {eta:g}",
-        f"{words[0].capitalize()} and {words[1]} stand there; the exact critical values of the "
-        f"rigid ones, {values}, lie below it. A collapse that the paper saw in them is its "
-        "program's.",
+        f"{words[0].capitalize()} and {words[1]} stand there; the exact critical values of the rigid ones, {values}, "
+        "lie below it. A collapse that the paper saw in them is its program's.",
     )
 
 
@@ -265,12 +259,10 @@ def elastic_shift(campaign: Campaign) -> Finding:
     shallow = campaign.tables["table4"].rows[0]
     return Finding(
         "Elastic blocks need a little more thickness, shallow and thin arches noticeably more",
-        "Blocks of the paper's Young's modulus that move and deform shorten the arch under its "
-        "own weight: "
+        "Blocks of the paper's Young's modulus that move and deform shorten the arch under its own weight: "
         + "; ".join(parts)
-        + f". It matters at {shallow.half_angle} degrees ({_share(shallow, _ELASTIC, 2)}) and "
-        "where the arch is thin. The shift is inversely proportional to Young's modulus, and "
-        "much smaller than what the paper's program adds.",
+        + f". It matters at {shallow.half_angle} degrees ({_share(shallow, _ELASTIC, 2)}) and where the arch is thin. "
+        "The shift is inversely proportional to Young's modulus, and much smaller than what the paper's program adds.",
     )
 
 

@@ -30,16 +30,13 @@ def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -
     """The page as HTML, with the figures that are there; `PAGE_TIME` stands for the time that making it takes."""
     page = Page("Masonry arches by DDA: section 3 of the paper, side by side")
     page.text(
-        "Every numerical experiment of section 3 of Rizzi, Rusconi and Cocchetti's paper on "
-        "the Couplet-Heyman problem, repeated. Beside the paper's own DDA values stand ours, "
-        "for rigid blocks (small displacements) and for elastic blocks that move; the exact "
-        "values of limit analysis of the same polygons; and the analytic solutions of "
-        "Milankovitch, CCR and Heyman. Each error is the deviation from the exact polygon "
-        "value.",
-        "&eta; is thickness over radius, &beta; the angle of the intrados hinge from the "
-        "crown, &alpha; the half angle of embrace. Radius 10 m, unit weight 22 "
-        "kN/m<sup>3</sup>, Young's modulus 5e6 kN/m<sup>2</sup>, Poisson's ratio 0.2, plane "
-        "stress, friction 50 degrees where nothing else is said.",
+        "Every numerical experiment of section 3 of Rizzi, Rusconi and Cocchetti's paper on the Couplet-Heyman "
+        "problem, repeated. Beside the paper's own DDA values stand ours, for rigid blocks (small displacements) and "
+        "for elastic blocks that move; the exact values of limit analysis of the same polygons; and the analytic "
+        "solutions of Milankovitch, CCR and Heyman. Each error is the deviation from the exact polygon value.",
+        "&eta; is thickness over radius, &beta; the angle of the intrados hinge from the crown, &alpha; the half angle "
+        "of embrace. Radius 10 m, unit weight 22 kN/m<sup>3</sup>, Young's modulus 5e6 kN/m<sup>2</sup>, Poisson's "
+        "ratio 0.2, plane stress, friction 50 degrees where nothing else is said.",
     )
     top = figures / "figure18.png"
     if top.is_file():
@@ -233,10 +230,9 @@ def _decks(page: Page, campaign: Campaign) -> None:
     """The decks as they were run."""
     page.section("Decks", "decks")
     page.text(
-        "What was computed, as files for <code>dda run</code>. Each has a folder of results "
-        "beside this page: <code>results.csv</code>, <code>joints.csv</code>, and where "
-        "pictures were asked for <code>frames.csv</code> and <code>frames/case_N.pvd</code> for "
-        "ParaView."
+        "What was computed, as files for <code>dda run</code>. Each has a folder of results beside this page: "
+        "<code>results.csv</code>, <code>joints.csv</code>, and where pictures were asked for <code>frames.csv</code> "
+        "and <code>frames/case_N.pvd</code> for ParaView."
     )
     for file in campaign.finished_decks():
         page.listing(file.name, file.read_text(encoding="utf-8"))

@@ -39,8 +39,7 @@ class Table(Mapping):
     Parameters
     ----------
     columns : dict of str to ndarray
-        Whole numbers, floats (NaN where a cell is empty), texts, or objects (tuples of floats for
-        the hinge angles).
+        Whole numbers, floats (NaN where a cell is empty), texts, or objects (tuples of floats for the hinge angles).
     """
 
     def __init__(self, columns: dict[str, np.ndarray]) -> None:

@@ -32,9 +32,8 @@ _NEEDED = {
         " sliding_share intrados_hinge_deg extrados_hinge_deg springing_hinge steps"
     ).split(),
     "joints.csv": (
-        "case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force shear_force"
-        " eccentricity_ratio opening_intrados opening_extrados slip state block_1 block_2 x y"
-        " force_x force_y mechanism slides_x slides_y"
+        "case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force shear_force eccentricity_ratio "
+        "opening_intrados opening_extrados slip state block_1 block_2 x y force_x force_y mechanism slides_x slides_y"
     ).split(),
     "blocks.csv": "case block state vertex x y u v".split(),
     "frames.csv": "case frame step time block vertex x y".split(),
@@ -45,10 +44,9 @@ _NEEDED = {
 #: Columns of numbers whatever is swept
 _NUMBERS = frozenset(
     (
-        "critical critical_low critical_high exact relative_error sliding_share x_intrados y_intrados"
-        " x_extrados y_extrados normal_force shear_force eccentricity_ratio opening_intrados"
-        " opening_extrados slip x y u v vx vy fx fy moment time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y"
-        " angle_deg"
+        "critical critical_low critical_high exact relative_error sliding_share x_intrados y_intrados x_extrados "
+        "y_extrados normal_force shear_force eccentricity_ratio opening_intrados opening_extrados slip x y u v vx vy "
+        "fx fy moment time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y angle_deg"
     ).split()
 )
 #: Columns of several angles joined by semicolons

@@ -52,10 +52,9 @@ def limits(theory: str) -> dict[str, float]:
     Returns
     -------
     dict
-        ``alpha_limit`` [rad], the greatest half angle, with ``A_limit``, ``eta_limit``,
-        ``beta_limit`` [rad] and ``h_limit`` = 0 there; ``beta_max`` [rad], the farthest hinge of
-        all half angles, with ``alpha_beta_max`` [rad], ``A_beta_max``, ``eta_beta_max`` and
-        ``h_beta_max`` there; ``alpha_unit_A`` [rad], where A = 1.
+        ``alpha_limit`` [rad], the greatest half angle, with ``A_limit``, ``eta_limit``, ``beta_limit`` [rad] and
+        ``h_limit`` = 0 there; ``beta_max`` [rad], the farthest hinge of all half angles, with ``alpha_beta_max`` [rad],
+        ``A_beta_max``, ``eta_beta_max`` and ``h_beta_max`` there; ``alpha_unit_A`` [rad], where A = 1.
     """
     return dict(zip(_LIMITS, map(float, theory_api.limit_values(theory_number(theory)))))
 

@@ -51,9 +51,8 @@ def discrete_critical(
     Parameters
     ----------
     joints : array_like
-        With alpha: number of equal voussoirs of the whole arch. Without: joint angles of one half
-        from the crown to the springing, as in a deck; the first is 0 for a joint at the crown, else
-        a voussoir straddles it [rad].
+        With alpha: number of equal voussoirs of the whole arch. Without: joint angles of one half from the crown to the
+        springing, as in a deck; the first is 0 for a joint at the crown, else a voussoir straddles it [rad].
     alpha : array_like, optional
         Half angle of embrace, in (0, pi) [rad].
     facet : array_like, optional

@@ -26,11 +26,10 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
     Returns
     -------
     dict
-        ``mu_rotational``: from here on the arch collapses by rotation alone; ``mu_mixed``: below
-        here no thickness stands; ``h_mixed``, ``eta_mixed``, ``beta_mixed`` [rad] the thrust,
-        thickness ratio and hinge at mu_mixed; ``beta_slip`` [rad] the joint of the haunch that
-        slides there together with the springing; ``slides_first`` "springing" or "haunch", the
-        joint that limits mu_rotational.
+        ``mu_rotational``: from here on the arch collapses by rotation alone; ``mu_mixed``: below here no thickness
+        stands; ``h_mixed``, ``eta_mixed``, ``beta_mixed`` [rad] the thrust, thickness ratio and hinge at mu_mixed;
+        ``beta_slip`` [rad] the joint of the haunch that slides there together with the springing; ``slides_first``
+        "springing" or "haunch", the joint that limits mu_rotational.
     """
     found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=5)
     if found[0].ndim > 0:
@@ -54,8 +53,7 @@ def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SE
     Parameters
     ----------
     mu : array_like
-        Friction coefficient, mu_mixed or more; from mu_rotational on the result is that of
-        `critical`.
+        Friction coefficient, mu_mixed or more; from mu_rotational on the result is that of `critical`.
     theory : str
         Name of the theory.
     alpha : array_like, optional

@@ -1,7 +1,6 @@
 """Figures 1 to 7 of the paper, section 2, as SVG and PNG.
 
-Run as ``python3 -m voussoir.theory.figures --out DIR``. Every number drawn comes from
-`voussoir.theory`.
+Run as ``python3 -m voussoir.theory.figures --out DIR``. Every number drawn comes from `voussoir.theory`.
 """
 
 from __future__ import annotations
