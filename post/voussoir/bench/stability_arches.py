@@ -10,7 +10,7 @@ import numpy as np
 
 from voussoir import theory
 from voussoir.bench.stability_judge import Critical, Expectation, Refused, Same, Shifted, Verdict
-from voussoir.bench.stability_scene import Bare, Scene
+from voussoir.bench.stability_scene import Scene
 
 #: Weight of a cubic metre of the decks' default masonry [N/m3]
 UNIT_WEIGHT = 2240.0 * 9.81
@@ -213,7 +213,7 @@ def _refused() -> Iterator[Scene]:
         deck = {"arch": {"thickness_ratio": 0.15}, group: {key: value}}
         yield Scene("bad input", f"{key} {value}", deck, Refused(key), "ranges of the deck's keys")
     for word in ("NaN", "Inf", "1e999"):
-        deck = {"material": {"young": Bare(word)}}
+        deck = f"&material young = {word} /\n".encode()
         yield Scene("bad input", f"young {word}", deck, Refused("young"), "numbers are finite")
 
 

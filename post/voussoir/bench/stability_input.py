@@ -7,7 +7,7 @@ from typing import Any
 
 from voussoir.bench.stability_blocks import BASE, WEIGHT, normal_force
 from voussoir.bench.stability_judge import Expectation, Measured, Refused, Verdict, Warned
-from voussoir.bench.stability_scene import Scene, block_scene, rectangle, written_block
+from voussoir.bench.stability_scene import Scene, block_scene, rectangle, written_block, written_blocks
 from voussoir.bench.validation_scene import GRAVITY, Check, verdict
 
 _SQUARE = rectangle(0.0, 0.0, 1.0, 1.0)
@@ -38,102 +38,87 @@ def _blocks(name: str, text: str, expectation: Expectation, **groups: dict[str, 
 
 def _polygons() -> Iterator[Scene]:
     """Corners that make no block, or a doubtful one."""
-    bow_tie = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]
-    yield _blocks("bow tie", BASE + written_block(bow_tie), Refused("edges 1 and 3 meet at"))
-    turned = written_block(_SQUARE[::-1])
-    yield _blocks("clockwise", BASE + turned, _STANDS)
-    line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
-    yield _blocks("zero area", BASE + written_block(line), Refused("block 2"))
-    two = [(0.0, 0.0), (1.0, 0.0)]
-    yield _blocks("two corners", BASE + written_block(two), Refused("block 2"))
-    twice = [*_SQUARE[:2], _SQUARE[1], *_SQUARE[2:]]
     merged = Warned("corners given twice are merged", _STANDS)
-    yield _blocks("a corner twice", BASE + written_block(twice), merged)
-    yield _blocks("one corner four times", BASE + written_block([(0, 0)] * 4), Refused("block 2"))
-    thin = written_block(rectangle(0.0, 0.0, 1.0, 1e-9))
-    yield _blocks("sliver of 1e-9", BASE + thin, Refused("block 2"))
-    short = [*_SQUARE[:2], (1.0, 1e-9), *_SQUARE[2:]]
-    yield _blocks("an edge of 1e-9", BASE + written_block(short), merged)
-    edge = [*_SQUARE[:2], (1.0, 1e-6), *_SQUARE[2:]]
-    yield _blocks("an edge of 1e-6", BASE + written_block(edge), _STANDS)
-    spike = [*_SQUARE, (-1.0, 1.0), (0.0, 1.0)]
-    yield _blocks("a spike without width", BASE + written_block(spike), Refused("block 2"))
+    for name, corners, answer in (
+        ("bow tie", [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)], Refused("edges 1 and 3 meet at")),
+        ("clockwise", _SQUARE[::-1], _STANDS),
+        ("zero area", [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], Refused("block 2")),
+        ("two corners", [(0.0, 0.0), (1.0, 0.0)], Refused("block 2")),
+        ("a corner twice", [*_SQUARE[:2], _SQUARE[1], *_SQUARE[2:]], merged),
+        ("one corner four times", [(0, 0)] * 4, Refused("block 2")),
+        ("sliver of 1e-9", rectangle(0.0, 0.0, 1.0, 1e-9), Refused("block 2")),
+        ("an edge of 1e-9", [*_SQUARE[:2], (1.0, 1e-9), *_SQUARE[2:]], merged),
+        ("an edge of 1e-6", [*_SQUARE[:2], (1.0, 1e-6), *_SQUARE[2:]], _STANDS),
+        ("a spike without width", [*_SQUARE, (-1.0, 1.0), (0.0, 1.0)], Refused("block 2")),
+    ):
+        yield _blocks(name, BASE + written_block(corners), answer)
 
 
 def _overlaps() -> Iterator[Scene]:
     """Blocks that share space."""
-    for share in (0.1, 0.01, 1e-3):
-        low = written_block(rectangle(0.0, -share, 1.0, 1.0))
-        yield _blocks(f"blocks overlap by {share:g}", BASE + low, Refused("blocks 1 and 2 overlap"))
-    low = written_block(rectangle(0.0, -1e-7, 1.0, 1.0))
-    yield _blocks("blocks overlap by 1e-7", BASE + low, _STANDS)
-    inside = written_block(rectangle(0.0, -0.8, 0.5, 0.5))
-    yield _blocks("a block inside another", BASE + inside, Refused("block 2 lies inside block 1"))
-    yield _blocks("the same block twice", BASE + _BLOCK + _BLOCK, Refused("block 3 lies inside block 2"))
-    cross = written_block(rectangle(-0.5, 0.4, 2.0, 0.2))
-    yield _blocks("a cross of two blocks", BASE + _BLOCK + cross, Refused("2 and 3"))
+    for name, shapes, answer in (
+        *((f"blocks overlap by {share:g}", [rectangle(0.0, -share, 1.0, 1.0)], Refused("blocks 1 and 2 overlap"))
+          for share in (0.1, 0.01, 1e-3)),
+        ("blocks overlap by 1e-7", [rectangle(0.0, -1e-7, 1.0, 1.0)], _STANDS),
+        ("a block inside another", [rectangle(0.0, -0.8, 0.5, 0.5)], Refused("block 2 lies inside block 1")),
+        ("the same block twice", [_SQUARE, _SQUARE], Refused("block 3 lies inside block 2")),
+        ("a cross of two blocks", [_SQUARE, rectangle(-0.5, 0.4, 2.0, 0.2)], Refused("2 and 3")),
+    ):
+        yield _blocks(name, BASE + written_blocks(shapes), answer)
 
 
 def _supports() -> Iterator[Scene]:
     """Blocks that nothing holds, or everything."""
     high = written_block(rectangle(0.0, 1.0, 1.0, 1.0))
+    weightless = {"load": {"gravity": 0.0}, "material": {"density": 2240.0}}
+    for name, text, answer, groups in (
+        ("floating, static", BASE + high, Refused("block 2 has no support"), {}),
+        ("floating, static, moving", BASE + high, Refused("block 2 has no support"),
+         {"analysis": {"geometry": "current"}}),
+        ("nothing fixed, static", _BLOCK + high, Refused("has no support"), {}),
+        ("all fixed", BASE + written_block(_SQUARE, "fixed"), Warned("fixed", Verdict("stable")), {}),
+        ("a held point outside", BASE + _BLOCK + "fix 5 5\n", Refused("lies in none"), {}),
+        ("a held point that is led", BASE + _BLOCK + "fix 0.5 0.5\ndisplacement 0.5 0.5 0.1 0\n",
+         Refused("prescribed points"), {}),
+        ("a block held twice", BASE + _BLOCK + "fix block 2 0 0\nfix block 2 1 0\n", Verdict("stable"), {}),
+        ("no weight, static", BASE + _BLOCK, Refused("gravity"), weightless),
+        ("gravity up", BASE + _BLOCK, Verdict("collapsed"), {"load": {"gravity_direction_deg": 90.0}}),
+        ("empty file", "", Refused("scene.blocks"), {}),
+        ("no block", "material 2 density 1\n", Refused("block"), {}),
+    ):
+        yield _blocks(name, text, answer, **groups)
     fall = Check("fall [m]", -GRAVITY / 2.0, lambda outcome: float(outcome.end(1)[1]), 1e-9)
     falls = Measured((verdict("completed", "verdict"), fall))
-    free = _BLOCK + "measure 0.5 0.5\n"
     gap = written_block(rectangle(-10.0, -9.0, 20.0, 1.0), "fixed")
-    yield _blocks("floating, static", BASE + high, Refused("block 2 has no support"))
-    still = {"geometry": "current"}
-    name = "floating, static, moving"
-    yield _blocks(name, BASE + high, Refused("block 2 has no support"), analysis=still)
-    for name, text in (("nothing fixed", free), ("floating", gap + free)):
-        word = "nothing is fixed" if name == "nothing fixed" else "has no support"
-        deck = {"analysis": {**_FALLS, "steps": 10000}, "material": {"density": 2240.0}}
-        yield _blocks(f"{name}, dynamic", text, Warned(word, falls), **deck)
-    yield _blocks("nothing fixed, static", _BLOCK + high, Refused("has no support"))
-    fixed = Warned("fixed", Verdict("stable"))
-    yield _blocks("all fixed", BASE + written_block(_SQUARE, "fixed"), fixed)
-    yield _blocks("a held point outside", BASE + _BLOCK + "fix 5 5\n", Refused("lies in none"))
-    led = "fix 0.5 0.5\ndisplacement 0.5 0.5 0.1 0\n"
-    yield _blocks("a held point that is led", BASE + _BLOCK + led, Refused("prescribed points"))
-    pinned = BASE + _BLOCK + "fix block 2 0 0\nfix block 2 1 0\n"
-    yield _blocks("a block held twice", pinned, Verdict("stable"))
-    up = {"gravity_direction_deg": 90.0}
-    yield _blocks("no weight, static", BASE + _BLOCK, Refused("gravity"), **_weightless())
-    yield _blocks("gravity up", BASE + _BLOCK, Verdict("collapsed"), load=up)
-    yield _blocks("empty file", "", Refused("scene.blocks"))
-    yield _blocks("no block", "material 2 density 1\n", Refused("block"))
-
-
-def _weightless() -> dict[str, dict[str, Any]]:
-    """Groups of a deck without gravity."""
-    return {"load": {"gravity": 0.0}, "material": {"density": 2240.0}}
+    deck = {"analysis": {**_FALLS, "steps": 10000}, "material": {"density": 2240.0}}
+    for name, below, word in (("nothing fixed", "", "nothing is fixed"), ("floating", gap, "has no support")):
+        yield _blocks(f"{name}, dynamic", below + _BLOCK + "measure 0.5 0.5\n", Warned(word, falls), **deck)
 
 
 def _materials() -> Iterator[Scene]:
     """Densities, moduli and joints that no material has."""
     for words in (
         "density 0", "density -1", "density NaN", "density Inf", "young 0", "young -5e9", "young nan", "poisson 0.5",
-        "poisson 0.7", "poisson -1", "unit_weight -1", "mass 3"):
+        "poisson 0.7", "poisson -1", "unit_weight -1", "mass 3",
+    ):
         text = BASE + written_block(_SQUARE, "material 2") + f"material 2 {words}\n"
         yield _blocks(f"material {words}", text, Refused("scene.blocks:"))
     strain = {"material": {"poisson": 0.5, "plane": "strain"}}
     yield _blocks("poisson 0.5, plane strain", BASE + _BLOCK, Refused("poisson"), **strain)
-    missing = BASE + written_block(_SQUARE, "material 7")
-    yield _blocks("material not given", missing, Refused("material 7"))
+    yield _blocks("material not given", BASE + written_block(_SQUARE, "material 7"), Refused("material 7"))
     again = BASE + _BLOCK + "material 2 density 1\nmaterial 2 density 3\n"
     yield _blocks("material given twice", again, Refused("2"))
     for words in ("friction_deg -1", "friction_deg 91", "cohesion -1", "friction_deg x", "friction_deg"):
-        text = BASE + _BLOCK + f"joint 1 1 {words}\n"
-        yield _blocks(f"joint {words}", text, Refused("scene.blocks:"))
-    small = [(x * 1e3, y * 1e3) for x, y in _SQUARE]
-    base = written_block([(x * 1e3, y * 1e3) for x, y in rectangle(-1.0, -1.0, 3.0, 1.0)], "fixed")
-    doubt = Warned("units", Verdict("stable"))
-    yield _blocks("millimetres for metres", base + written_block(small), doubt)
-    far = [(x * 0.1 + 1e7, y * 0.1) for x, y in _SQUARE]
-    base = written_block([(1e7 - 1.0, -0.1), (1e7 + 1.0, -0.1), (1e7 + 1.0, 0.0), (1e7 - 1.0, 0.0)])
-    base = base.replace("block", "block fixed", 1)
-    spaced = Warned("digits", Verdict("stable"))
-    yield _blocks("blocks of 0.1 m at 1e7 m", base + written_block(far), spaced)
+        yield _blocks(f"joint {words}", BASE + _BLOCK + f"joint 1 1 {words}\n", Refused("scene.blocks:"))
+    for name, size, away, base, word in (
+        ("millimetres for metres", 1e3, 0.0, (-1.0, -1.0, 3.0, 1.0), "units"),
+        ("blocks of 0.1 m at 1e7 m", 0.1, 1e7, (-10.0, -1.0, 20.0, 1.0), "digits"),
+    ):
+        low, block = (
+            [(x * size + away, y * size) for x, y in corners] for corners in (rectangle(*base), _SQUARE)
+        )
+        text = written_block(low, "fixed") + written_block(block)
+        yield _blocks(name, text, Warned(word, Verdict("stable")))
 
 
 def _written() -> Iterator[Scene]:
@@ -143,9 +128,8 @@ def _written() -> Iterator[Scene]:
     def scene(name: str, deck: bytes, expectation: Expectation) -> Scene:
         return Scene(_GROUP, name, deck, expectation, _GUARD)
 
-    line_ends = arch.replace(b", ", b",\r\n")
     for name, deck in (
-        ("CRLF", line_ends),
+        ("CRLF", arch.replace(b", ", b",\r\n")),
         ("byte order mark", b"\xef\xbb\xbf" + arch),
         ("a million blanks", arch.replace(b" /", b" " * 1000000 + b"/")),
         ("no end of line", arch.rstrip()),

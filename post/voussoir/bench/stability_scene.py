@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from voussoir.bench.stability_judge import Expectation
+from voussoir.deck.text import deck_text
 
 #: Corners of a polygon [m]
 Corners = Sequence[tuple[float, float]]
 #: Name of the file of blocks beside a deck
 BLOCKS = "scene.blocks"
+#: Both geometries, with the modulus that makes moving blocks nearly rigid [Pa]
+GEOMETRIES = (("reference", 5e9), ("current", 5e12))
 
 
 @dataclass(frozen=True)
@@ -38,32 +39,7 @@ class Scene:
             return self.deck
         told = {"joints": False, "blocks": False} if lean else {"condition": True}
         output = {"vtu": False, **told, **self.deck.get("output", {})}
-        lines = []
-        for group, keys in {**self.deck, "output": output}.items():
-            values = ", ".join(f"{key} = {_written(value)}" for key, value in keys.items())
-            lines.append(f"&{group.split('#')[0]} {values} /")
-        return ("\n".join(lines) + "\n").encode()
-
-
-class Bare:
-    """A word written without quotes."""
-
-    def __init__(self, word: str) -> None:
-        self.word = word
-
-    def __repr__(self) -> str:
-        return self.word
-
-
-def _written(value: Any) -> str:
-    """A value as a deck writes it."""
-    if isinstance(value, bool):
-        return ".true." if value else ".false."
-    if isinstance(value, str):
-        return f"'{value}'"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return ", ".join(_written(item) for item in value)
-    return repr(value)
+        return deck_text({**self.deck, "output": output}).encode()
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> list[tuple[float, float]]:
@@ -76,9 +52,25 @@ def written_block(corners: Corners, words: str = "") -> str:
     return f"block {words}\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
 
 
+def written_blocks(shapes: Iterable[Corners]) -> str:
+    """Blocks that can move as their file writes them."""
+    return "".join(map(written_block, shapes))
+
+
 def block_scene(
     group: str, name: str, guard: str, blocks: str, expectation: Expectation, **groups: dict[str, Any]
 ) -> Scene:
     """A scene of a file of blocks."""
     deck = {"scene": {"kind": "blocks", "geometry": BLOCKS}, **groups}
     return Scene(group, name, deck, expectation, guard, {BLOCKS: blocks})
+
+
+def in_both(
+    group: str, name: str, guard: str, blocks: str, expectation: Expectation, moving: Expectation | None = None,
+    **groups: dict[str, Any]
+) -> Iterator[Scene]:
+    """The scene in reference geometry, and with nearly rigid blocks that move, which may answer a little else."""
+    for geometry, young in GEOMETRIES:
+        own = {**groups, "material": {"young": young, **groups.get("material", {})}, "analysis": {"geometry": geometry}}
+        answer = expectation if geometry == "reference" else moving or expectation
+        yield block_scene(group, f"{name}, {geometry}", guard, blocks, answer, **own)
