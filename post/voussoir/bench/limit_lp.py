@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from voussoir.bench.limit_lp_blocks import Assembly, solve
+
 #: HiGHS' answers: an admissible system of forces was found, or there is none
 _FEASIBLE, _INFEASIBLE = 0, 2
 
@@ -27,82 +29,23 @@ def scipy_version() -> str | None:
 def stands_by_general(
     half_angle: float, voussoirs: int, ratio: float, friction: float, method: str = "highs", tolerance: float = 1e-7
 ) -> bool:
-    """Whether an arch stands, by the general program: whether admissible joint forces balance the weights.
+    """Whether admissible joint forces balance the weights of an arch: half angle [rad], thickness over radius.
 
-    Parameters
-    ----------
-    half_angle : float
-        Half angle of embrace [rad].
-    ratio : float
-        Thickness over radius.
-    method : str, optional
-        "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses.
-    tolerance : float, optional
-        By how much HiGHS may violate rows.
+    By "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses; rows may be violated by the
+    tolerance.
     """
-    from scipy.optimize import linprog
-    from scipy.sparse import coo_array
-
-    joints = voussoirs + 1
-    balance, loads = _balance(half_angle, voussoirs, ratio)
-    number = np.arange(2 * joints)
-    first = 3 * (number // 2)
-    sign = np.where(number % 2 == 0, 1.0, -1.0)
-    cone_entries = (
-        np.concatenate([-friction * np.ones(4 * joints), sign]),
-        (np.tile(number, 3), np.concatenate([first, first + 1, first + 2])),
-    )
-    cone = coo_array(cone_entries, shape=(2 * joints, 3 * joints)).tocsr()
-    lower = np.tile([0.0, 0.0, -np.inf], joints)
-    return _stands(
-        linprog(
-            np.zeros(3 * joints), A_ub=cone, b_ub=np.zeros(2 * joints), A_eq=balance, b_eq=loads,
-            bounds=np.column_stack([lower, np.full(3 * joints, np.inf)]), method=method,
-            options={"primal_feasibility_tolerance": tolerance})
-    )
-
-
-def _balance(half_angle: float, voussoirs: int, ratio: float) -> tuple[Any, np.ndarray]:
-    """Equilibrium of the blocks: matrix of the joint forces' share (sparse), and the loads."""
-    from scipy.sparse import coo_array
-
     angle, inner, outer, weight, centre = _blocks(half_angle, voussoirs, ratio)
-    joints = voussoirs + 1
-    # forces N1 at the intrados, N2 at the extrados, T along the joint towards the extrados, on the
-    # block to the right of the joint; the block to its left feels the opposite
-    normal = np.column_stack([np.cos(angle), -np.sin(angle)])
-    along = np.column_stack([np.sin(angle), np.cos(angle)])
-    rows, columns, values = [], [], []
-    for side, sign in ((0, 1.0), (1, -1.0)):
-        block = np.arange(voussoirs)
-        joint = block + side
-        for kind, (force, place) in enumerate(((normal, inner), (normal, outer), (along, inner))):
-            arm = place[joint] - centre
-            moment = arm[:, 0] * force[joint, 1] - arm[:, 1] * force[joint, 0]
-            for balance, part in enumerate((force[joint, 0], force[joint, 1], moment)):
-                rows.append(3 * block + balance)
-                columns.append(3 * joint + kind)
-                values.append(sign * part)
-    shape = (3 * voussoirs, 3 * joints)
-    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    loads = np.zeros(3 * voussoirs)
-    loads[1::3] = weight
-    return coo_array(entries, shape=shape).tocsr(), loads
+    dead = np.zeros((voussoirs, 3))
+    dead[:, 1] = -weight
+    # joints lead from the block on their left to that on their right; beyond the springings nothing moves
+    left = np.arange(-1, voussoirs)
+    right = np.append(np.arange(voussoirs), -1)
+    arch = Assembly(centre, dead, dead, np.stack([outer, inner], axis=1), np.column_stack([left, right]))
+    return _stands(solve(arch, friction, method, tolerance))
 
 
 def stands_by_compact(half_angle: float, voussoirs: int, ratio: float, friction: float) -> bool:
-    """Whether a symmetric arch with a joint at the crown stands, by the compact program.
-
-    Parameters
-    ----------
-    half_angle, voussoirs, ratio, friction
-        As for `stands_by_general`; the number of voussoirs is even.
-
-    Returns
-    -------
-    bool
-        Whether some horizontal thrust at some height of the crown leads through all joints.
-    """
+    """Whether some thrust at some height of the crown leads through all joints of an even number of voussoirs."""
     from scipy.optimize import linprog
 
     if voussoirs % 2:

@@ -7,6 +7,7 @@ itself, so that nothing is bisected.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -71,10 +72,51 @@ def limit_factor(assembly: Assembly, friction: float, method: str, tolerance: fl
 
     `method` is "highs-ds" (simplex) or "highs-ipm" (interior points); RuntimeError if it gives no answer.
     """
+    scale = np.abs(assembly.dead).max()
+    found = solve(assembly, friction, method, tolerance, scale, assembly.live.ravel() / scale)
+    if found.status != 0:
+        raise RuntimeError(f"HiGHS gave no answer: {found.message}")
+    return float(-found.fun)
+
+
+def solve(
+    assembly: Assembly, friction: float, method: str, tolerance: float, scale: float = 1.0,
+    live: np.ndarray | None = None
+) -> Any:
+    """The linear program of three forces a joint and, with live loads, their factor, of which most is wanted.
+
+    Forces over the scale are N1 and N2 at both ends and T along the joint, on its second block; the first feels the
+    opposite. Without live loads the answer is whether some forces balance the dead ones.
+    """
     from scipy.optimize import linprog
     from scipy.sparse import coo_array
 
-    joints, blocks = len(assembly.ends), len(assembly.centre)
+    joints, factors = len(assembly.ends), 0 if live is None else 1
+    values, (rows, columns) = _balance(assembly)
+    if live is not None:
+        loaded = np.flatnonzero(live)
+        rows = np.append(rows, loaded)
+        columns = np.append(columns, np.full(len(loaded), 3 * joints))
+        values = np.append(values, live[loaded])
+    shape = 3 * len(assembly.centre), 3 * joints + factors
+    row = np.arange(2 * joints)
+    first = 3 * (row // 2)
+    cone = coo_array((
+        np.concatenate([-friction * np.ones(4 * joints), np.where(row % 2 == 0, 1.0, -1.0)]),
+        (np.tile(row, 3), np.concatenate([first, first + 1, first + 2])),
+    ), shape=(2 * joints, shape[1]))
+    lower = np.append(np.tile([0.0, 0.0, -np.inf], joints), np.zeros(factors))
+    options = {"primal_feasibility_tolerance": tolerance}
+    if live is not None:
+        options["dual_feasibility_tolerance"] = tolerance
+    return linprog(
+        np.append(np.zeros(3 * joints), -np.ones(factors)), A_ub=cone.tocsr(), b_ub=np.zeros(2 * joints),
+        A_eq=coo_array((values, (rows, columns)), shape=shape).tocsr(), b_eq=-assembly.dead.ravel() / scale,
+        bounds=np.column_stack([lower, np.full(shape[1], np.inf)]), method=method, options=options)
+
+
+def _balance(assembly: Assembly) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """What the forces of the joints do to the blocks: entries, and their rows and columns."""
     along = assembly.ends[:, 1] - assembly.ends[:, 0]
     along /= np.linalg.norm(along, axis=1)[:, None]
     normal = np.column_stack((-along[:, 1], along[:, 0]))
@@ -89,29 +131,4 @@ def limit_factor(assembly: Assembly, friction: float, method: str, tolerance: fl
                 rows.append(3 * block + balance)
                 columns.append(3 * joint + kind)
                 values.append(sign * part)
-    scale = np.abs(assembly.dead).max()
-    loaded = np.flatnonzero(assembly.live)
-    rows.append(loaded)
-    columns.append(np.full(len(loaded), 3 * joints))
-    values.append(assembly.live.ravel()[loaded] / scale)
-    place = np.concatenate(rows), np.concatenate(columns)
-    balance = coo_array((np.concatenate(values), place), shape=(3 * blocks, 3 * joints + 1))
-    row = np.arange(2 * joints)
-    first = 3 * (row // 2)
-    cone = coo_array(
-        (
-            np.concatenate([-friction * np.ones(4 * joints), np.where(row % 2 == 0, 1.0, -1.0)]),
-            (np.tile(row, 3), np.concatenate([first, first + 1, first + 2])),
-        ),
-        shape=(2 * joints, 3 * joints + 1),
-    )
-    options = {"primal_feasibility_tolerance": tolerance, "dual_feasibility_tolerance": tolerance}
-    found = linprog(
-        np.append(np.zeros(3 * joints), -1.0), A_ub=cone.tocsr(), b_ub=np.zeros(2 * joints), A_eq=balance.tocsr(),
-        b_eq=-assembly.dead.ravel() / scale,
-        bounds=np.column_stack([np.append(np.tile([0.0, 0.0, -np.inf], joints), 0.0), np.full(3 * joints + 1, np.inf)]),
-        method=method, options=options
-    )
-    if found.status != 0:
-        raise RuntimeError(f"HiGHS gave no answer: {found.message}")
-    return float(-found.fun)
+    return np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))

@@ -39,7 +39,7 @@ section{break-inside:avoid}svg{max-height:70mm}.verdict{margin:.4rem 0}*{print-c
 def svg_of(figure: Figure) -> str:
     """A figure as SVG that stands in a page."""
     text = io.StringIO()
-    figure.savefig(text, format="svg", bbox_inches="tight")
+    figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None})
     drawn = text.getvalue()
     return drawn[drawn.index("<svg") :]
 
