@@ -3,10 +3,11 @@
 How thin may a circular masonry arch be, and where does it hinge, under its own weight alone. All
 numbers come from the Fortran module (``docs/theory.md``); here arguments are checked and broadcast.
 
-Symbols: ``alpha`` half angle of embrace, ``beta`` angle of the intrados hinge from the crown, ``eta
-= t/r`` thickness over mean radius, ``h = H/(w r)`` horizontal thrust, ``A = alpha cot(alpha/2)``;
-angles in radians. A theory is named "heyman", "ccr" or "milankovitch". Every function broadcasts
-its arguments and raises ValueError, with the offending value, outside the range of validity.
+Symbols of all arguments and results: ``alpha`` half angle of embrace, in (0, alpha_limit] of the theory or (0, pi)
+[rad]; ``beta`` angle of the intrados hinge or of a joint from the crown, in [0, alpha] or (0, pi) [rad]; ``eta = t/r``
+thickness over mean radius, in (0, 2); ``h = H/(w r)`` horizontal thrust; ``A = alpha cot(alpha/2)``; ``mu`` friction
+coefficient. A theory is named "heyman", "ccr" or "milankovitch". Every function broadcasts its arguments and raises
+ValueError, with the offending value, outside the range of validity.
 
 Examples
 --------
@@ -87,56 +88,17 @@ def critical(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
 
 
 def critical_as_printed(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
-    """The same by eqs. (1), (23), (24) as printed; shallow arches lose their digits.
-
-    Parameters
-    ----------
-    alpha : array_like
-        Half angle of embrace, in (0, alpha_limit] [rad].
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    beta, eta, h : array or float
-        As from `critical`.
-    """
+    """The same as `critical` by eqs. (1), (23), (24) as printed; shallow arches lose their digits."""
     return _critical(theory_api.critical_as_printed, alpha, theory)
 
 
 def critical_small(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
-    """The same by power series for small half angles; at 0.1 rad they hold eleven digits.
-
-    Parameters
-    ----------
-    alpha : array_like
-        Half angle of embrace, in (0, alpha_limit] [rad].
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    beta, eta, h : array or float
-        As from `critical`.
-    """
+    """The same as `critical` by power series for small half angles; at 0.1 rad they hold eleven digits."""
     return _critical(theory_api.critical_small, alpha, theory)
 
 
 def critical_near_limit(distance: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
-    """Leading terms of the critical solution close to the limit of the theory.
-
-    Parameters
-    ----------
-    distance : array_like
-        alpha_limit - alpha, in [0, alpha_limit) [rad].
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    beta, eta, h : array or float
-        As from `critical`.
-    """
+    """Leading terms of `critical` at a distance alpha_limit - alpha from the limit of the theory [rad]."""
     wanted = "a distance in [0, alpha_limit) rad"
     routine = theory_api.critical_near_limit
     return evaluate(routine, {"distance": distance}, [wanted], theory_number(theory), results=3)
@@ -164,63 +126,21 @@ def equilibrium_thickness(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str
 
 
 def initial_thickness(alpha: npt.ArrayLike, theory: str) -> Value:
-    """Start eta_0 of the equilibrium curve at the crown: eqs. (15), (26).
-
-    Parameters
-    ----------
-    alpha : array_like
-        Half angle of embrace, in (0, alpha_limit] [rad].
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    array or float
-        eta_0, zero where A >= 1.
-    """
+    """Start eta_0 of the equilibrium curve at the crown, zero where A >= 1: eqs. (15), (26)."""
     arguments = {"alpha": alpha}
     return evaluate(theory_api.curve_start, arguments, [_embraced(theory)], theory_number(theory))[0]
 
 
 def curve_slope(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value:
-    """Slope d eta/d beta of the equilibrium curve: eq. (19).
-
-    Parameters
-    ----------
-    beta : array_like
-        Inner hinge, in [0, alpha] [rad].
-    alpha : array_like
-        Half angle of embrace, in (0, alpha_limit] [rad].
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    array or float
-        The slope [1/rad].
-    """
+    """Slope d eta/d beta of the equilibrium curve [1/rad], arguments as of `equilibrium_thickness`: eq. (19)."""
     arguments = {"beta": beta, "alpha": alpha}
     return evaluate(theory_api.slope, arguments, [JOINT, _embraced(theory)], theory_number(theory))[0]
 
 
 def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
-    """Line of thrust through the extrados of crown and springing: eq. (11).
+    """Line of thrust through the extrados of crown and springing, as the eccentricity ratio 2e/t at beta: eq. (11).
 
-    Parameters
-    ----------
-    beta : array_like
-        Angle of the joint, in [0, alpha] [rad].
-    alpha : array_like
-        Half angle of embrace, in (0, pi) [rad].
-    eta : array_like
-        Thickness ratio, in (0, 2) and thick enough for a thrust h2 > 0.
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    array or float
-        Eccentricity ratio 2e/t, -1 at the extrados, 1 at the intrados.
+    The ratio is -1 at the extrados and 1 at the intrados; eta in (0, 2) must be thick enough for a thrust h2 > 0.
     """
     arguments = {"beta": beta, "alpha": alpha, "eta": eta}
     ranges = [JOINT, HALF_ANGLE, THICKNESS + " with a thrust"]

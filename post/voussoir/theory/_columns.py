@@ -26,41 +26,14 @@ JOINT = "an angle in [0, alpha] rad"
 
 
 def theory_number(name: str) -> int:
-    """Number of a theory.
-
-    Returns
-    -------
-    int
-        Its number in the Fortran module.
-
-    Raises
-    ------
-    ValueError
-        If there is no such theory.
-    """
+    """Number of a theory in the Fortran module; ValueError if there is no such theory."""
     if not isinstance(name, str) or name.lower() not in THEORIES:
         raise ValueError(f"theory must be one of {', '.join(map(repr, THEORIES))}, got {name!r}")
     return THEORIES[name.lower()]
 
 
 def real_array(name: str, value: npt.ArrayLike) -> Column:
-    """A numeric argument as an array of doubles.
-
-    Parameters
-    ----------
-    name : str
-        Name of the argument, for the message.
-
-    Returns
-    -------
-    ndarray
-        The same numbers, float64.
-
-    Raises
-    ------
-    ValueError
-        If the argument is no array of real numbers, or some of them are masked.
-    """
+    """A numeric argument as an array of doubles; ValueError if it has masked or other than real numbers."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name} must be real numbers, got masked ones; pass .compressed() instead")
     array = np.asarray(value)
@@ -70,20 +43,7 @@ def real_array(name: str, value: npt.ArrayLike) -> Column:
 
 
 def columns(**arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Column]]:
-    """Broadcast arguments against one another and flatten them.
-
-    Returns
-    -------
-    shape : tuple of int
-        Common shape.
-    flat : list of ndarray
-        Each argument as a contiguous array of one rank.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not numeric or the shapes do not fit.
-    """
+    """Common shape of arguments, and each broadcast to it as a flat array; ValueError if the shapes do not fit."""
     arrays = [real_array(name, value) for name, value in arguments.items()]
     shape = np.broadcast_shapes(*(array.shape for array in arrays))
     return shape, [np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for array in arrays]
@@ -99,24 +59,9 @@ def evaluate(
 ) -> tuple[Value, ...]:
     """Call a routine of the Fortran layer for every element of its arguments.
 
-    Parameters
-    ----------
-    routine : callable
-        Takes the arguments as columns, then the numbers; returns columns and its fault.
-    arguments : mapping of str to array_like
-        The arguments by name, in the order of the call.
-    ranges : sequence of str or callable
-        What each of them wants, or what says it.
-
-    Returns
-    -------
-    tuple of ndarray or scalar
-        The results in the shape of the arguments.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not numeric, the shapes do not fit, or a value is out of range.
+    It takes them as columns, then the numbers, and returns columns and its fault, told by what each argument wants
+    (`ranges`). Results have the shape of the arguments. ValueError if they are not numeric, do not fit, or are out of
+    range.
     """
     if all(type(value) in _FLOATS for value in arguments.values()):
         *found, fault = routine(*arguments.values(), *numbers)
@@ -131,21 +76,9 @@ def evaluate(
 
 
 def refuse(fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[Range]) -> None:
-    """Raise the exception that a fault of the Fortran layer stands for.
+    """Raise the ValueError, with the offending value, that a fault of the Fortran layer stands for.
 
-    Parameters
-    ----------
-    fault : sequence of int
-        Place of the argument and of its element, from 1; zeros where all is well.
-    names : sequence of str
-        Names of the arguments in the order of the Fortran call.
-    ranges : sequence of str or callable
-        What each of them wants, or what says it.
-
-    Raises
-    ------
-    ValueError
-        With the offending value.
+    A fault is the place of the argument and of its element, from 1; zeros where all is well.
     """
     argument, element = int(fault[0]), int(fault[1])
     if argument == 0:

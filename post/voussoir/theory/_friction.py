@@ -48,25 +48,9 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
 
 
 def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> tuple[Value, Value, Value]:
-    """Hinge, least thickness and thrust at a friction coefficient.
+    """Hinge [rad], least thickness and thrust, as of `critical`, at a friction coefficient mu_mixed or more.
 
-    Parameters
-    ----------
-    mu : array_like
-        Friction coefficient, mu_mixed or more; from mu_rotational on the result is that of `critical`.
-    theory : str
-        Name of the theory.
-    alpha : array_like, optional
-        Half angle of embrace, in (0, alpha_limit]; the semicircle by default [rad].
-
-    Returns
-    -------
-    beta : array or float
-        Intrados hinge [rad].
-    eta : array or float
-        Least thickness ratio of a statically admissible state.
-    h : array or float
-        Horizontal thrust H/(w r).
+    From mu_rotational on the result is that of `critical`; below mu_mixed, see `friction`, no thickness stands.
     """
     ranges = ["a coefficient of mu_mixed or more, see friction()", _ANGLE]
     arguments = {"mu": mu, "alpha": alpha}
@@ -74,20 +58,5 @@ def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SE
 
 
 def friction_thickness(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> Value:
-    """Least thickness ratio at a friction coefficient, on the mixed branch and beyond it.
-
-    Parameters
-    ----------
-    mu : array_like
-        Friction coefficient, mu_mixed or more.
-    theory : str
-        Name of the theory.
-    alpha : array_like, optional
-        Half angle of embrace; the semicircle by default [rad].
-
-    Returns
-    -------
-    array or float
-        eta(mu).
-    """
+    """The least thickness ratio of `friction_critical` alone."""
     return friction_critical(mu, theory, alpha)[1]
