@@ -61,7 +61,9 @@ def _tower(number: int, chance: np.random.Generator) -> Scene:
     return _pushed(f"{number}: tower of {count}", text, friction, exact, chance)
 
 
-def _pushed(name: str, text: str, friction: float, exact: float, chance: np.random.Generator, most: float = 2.0) -> Scene:
+def _pushed(
+    name: str, text: str, friction: float, exact: float, chance: np.random.Generator, most: float = 2.0
+) -> Scene:
     """A search for the horizontal force over the weight."""
     geometry, groups = _geometry(chance)
     return block_scene(

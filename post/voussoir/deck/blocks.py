@@ -117,17 +117,7 @@ class Blocks(Deck):
         return blocks
 
     def add(self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1) -> int:
-        """Add a polygon: its number, from 1.
-
-        Parameters
-        ----------
-        corners : array_like, (n, 2)
-            Its corners in either sense [m].
-        fixed : bool, optional
-            Whether it never moves.
-        material : int, optional
-            Number of its material.
-        """
+        """Add a polygon by its corners (n, 2), in either sense [m]: its number, from 1."""
         self.shapes.append(BlockShape((_points(corners),), fixed, material))
         return len(self.shapes)
 

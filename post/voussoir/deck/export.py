@@ -24,19 +24,9 @@ class Outline:
 
 
 def outlines_of(run: Results, case: int, magnify: float = 0.0) -> list[Outline]:
-    """Blocks of a case: on the layer "fixed", "blocks", or "material N" for materials from 2 on.
+    """Blocks of a case, on the layer "fixed", "blocks", or "material N" for materials from 2 on.
 
-    Parameters
-    ----------
-    magnify : float, optional
-        How many times their displacements they have moved.
-
-    Raises
-    ------
-    KeyError
-        If the folder has no blocks of this case.
-    ValueError
-        If a displacement is asked for that is not known.
+    They have moved by so many times their displacements; ValueError if these are not known, KeyError without blocks.
     """
     materials = source_of(run).materials
     found = []

@@ -43,13 +43,7 @@ class Deck:
         return deck_text(self.groups)
 
     def write(self, file: Union[str, Path]) -> Path:
-        """Write the deck, and its files beside it.
-
-        Parameters
-        ----------
-        file : str or Path
-            The deck's name; its folder is made if missing.
-        """
+        """Write the deck, whose folder is made if missing, and its files beside it."""
         file = Path(file)
         file.parent.mkdir(parents=True, exist_ok=True)
         for name, text in self.files.items():

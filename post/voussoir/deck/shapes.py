@@ -25,21 +25,9 @@ def read_shapes(
 ) -> tuple[list[ImportedShape], list[str], tuple[float, str]]:
     """Outlines of a file: the outlines, in words what was dropped, and the scale with who says so.
 
-    Parameters
-    ----------
-    file : Path
-        Its ending says how it is read: see `READERS`.
-    scale : float, optional
-        Metres a unit of the file; by default what a drawing says of its unit, else 1.
-    tolerance : float
-        How far a chord may be from its arc [m].
-
-    Raises
-    ------
-    ValueError
-        If the ending is not known, or the file is none of its kind.
-    MissingPackage
-        If a package is missing.
+    The file's ending says how it is read, see `READERS`. The scale, metres a unit, is by default what a drawing says,
+    else 1; chords are within a tolerance of their arcs [m]. ValueError if the file is none of its kind, MissingPackage
+    if it needs one.
     """
     if file.suffix.lower() not in READERS:
         raise ValueError(f"expected a file of {', '.join(READERS)}, got '{file.suffix}'")

@@ -74,18 +74,11 @@ def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
 
 
 def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Groups from keyword arguments: as for `deck_text`.
+    """Groups, as for `deck_text`, from keyword arguments.
 
-    Parameters
-    ----------
-    keys : mapping
-        By bare name ("friction_deg"), with the group ("arch%radius"), or a group as a mapping
-        ("search" to {"parameter": "friction_deg"}); the name of a parameter will do for "search".
-
-    Raises
-    ------
-    ValueError
-        If no group has such a key, or several do.
+    Keys are bare names ("friction_deg"), names with the group ("arch%radius"), or a group as a mapping ("search" to
+    {"parameter": "friction_deg"}, for which that text alone will do). ValueError if no group has such a key, or several
+    do.
     """
     owners = groups_of_keys(dda)
     groups: dict[str, Any] = {}

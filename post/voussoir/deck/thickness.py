@@ -21,24 +21,9 @@ _OTHERS = ("scene", "output", "search", "live", "vehicle")
 
 
 def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
-    """Thickness over the least with which an arch stands under its dead load.
+    """Thickness over the least with which an arch stands under its dead load, and what that is, or why it is not known.
 
-    Parameters
-    ----------
-    run : Results
-        A run of arches in which `number` is a case.
-
-    Returns
-    -------
-    safety : float
-        The number; infinite where no smaller thickness falls, NaN where it is not known.
-    note : str
-        What it is, or why it is not known.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the program dda is not found.
+    It is infinite where no smaller thickness falls, NaN where it is not known.
     """
     row = run.case(number)
     told = float(row.get("safety_thickness", math.nan))

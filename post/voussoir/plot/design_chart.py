@@ -45,23 +45,9 @@ def swept_columns(cases: Table) -> list[str]:
 def draw_chart(run: Results, column: str | None = None) -> Figure:
     """Draw the critical value against one swept column, a curve for each value of the others, or maps.
 
-    Parameters
-    ----------
-    run : Results
-        The results of a deck with &search and &sweep.
-    column : str, optional
-        The abscissa; by default the numeric column with the most values.
-
-    Returns
-    -------
-    Figure
-        The figure: brackets' middles as points, exact values of the same polygons as crosses;
-        nothing is joined by lines that are not computed.
-
-    Raises
-    ------
-    ChartError
-        If nothing was found, nothing was swept, or the curves are too many.
+    By default the column is the number with the most values. Points are the middles of brackets, crosses exact values
+    of the same polygons; nothing is joined by lines that are not computed. ChartError if nothing was found or swept, or
+    the curves are too many.
     """
     is_found = run.cases["verdict"] == "found"
     found = run.cases if np.all(is_found) else run.cases.take(is_found)

@@ -67,22 +67,8 @@ def fit_values(critical: np.ndarray) -> Lognormal | None:
 def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Lognormal | None]:
     """Draw the fragility of a sweep over records and strengths, or of searches for the strength of each record.
 
-    Parameters
-    ----------
-    column : str, optional
-        Swept column that is the strength; by default amplitude or scale.
-
-    Returns
-    -------
-    figure : Figure
-        Shares as points, the lognormal as a line.
-    fit : Lognormal or None
-        The lognormal, where there is one.
-
-    Raises
-    ------
-    ChartError
-        If the results tell no fragility.
+    The column is by default amplitude or scale. Shares are points, the lognormal (None where there is none) a line.
+    ChartError if the results tell no fragility.
     """
     found = run.cases.take(run.cases["verdict"] == "found")
     if len(found) > 1 and column is None:

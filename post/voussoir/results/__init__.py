@@ -84,13 +84,7 @@ class Table(Mapping):
         return self.columns.items()
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The table as a data frame of pandas.
-
-        Raises
-        ------
-        ImportError
-            If there is no pandas.
-        """
+        """The table as a data frame of pandas; ImportError if there is none."""
         try:
             import pandas
         except ImportError as missing:
@@ -103,18 +97,7 @@ class Table(Mapping):
             yield {name: column[row] for name, column in self.columns.items()}
 
     def where(self, **wanted: Any) -> Table:
-        """Rows whose columns have the wanted values.
-
-        Parameters
-        ----------
-        **wanted
-            Value of each column by its name.
-
-        Returns
-        -------
-        Table
-            The rows, in the same order.
-        """
+        """Rows, in the same order, whose columns have the wanted values: where(geometry="current")."""
         kept = np.ones(len(self), dtype=bool)
         for name, value in wanted.items():
             kept &= self.columns[name] == value
@@ -288,25 +271,13 @@ class Results:
         return record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
 
     def case(self, number: int) -> dict[str, Any]:
-        """Row of one case.
-
-        Raises
-        ------
-        KeyError
-            If there is no such case.
-        """
+        """Row of one case; KeyError if there is no such case."""
         for row in self.cases.where(case=number).rows():
             return row
         raise KeyError(f"no case {number} in {self.folder}")
 
     def joints_of(self, number: int) -> Table:
-        """Joints of one case.
-
-        Raises
-        ------
-        KeyError
-            If no joints were written.
-        """
+        """Joints of one case; KeyError if none were written."""
         if self.joints is None:
             raise KeyError(
                 f"no joints.csv in {self.folder}: run the deck again with --set output%joints=.true. --cases {number}"
@@ -314,13 +285,7 @@ class Results:
         return self.joints.where(case=number)
 
     def blocks_of(self, number: int) -> list[Block]:
-        """Blocks of one case.
-
-        Raises
-        ------
-        KeyError
-            If they were not written.
-        """
+        """Blocks of one case; KeyError if they were not written."""
         rows = None if self.blocks is None else self.blocks.where(case=number)
         if not rows:
             raise KeyError(

@@ -35,22 +35,7 @@ def thrust_through(beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike
 
 
 def lower_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
-    """Lower thrust h1, through the extrados of the crown and the intrados at beta: eq. (7).
-
-    Parameters
-    ----------
-    beta : array_like
-        Inner hinge, in (0, pi) [rad].
-    eta : array_like
-        Thickness ratio, in (0, 2).
-    theory : str
-        Name of the theory.
-
-    Returns
-    -------
-    array or float
-        h1; negative where no thrust can pass.
-    """
+    """Lower thrust h1, through the crown's extrados and the intrados at beta: eq. (7); negative where none can pass."""
     return thrust_through(beta, 1.0, eta, theory)
 
 
