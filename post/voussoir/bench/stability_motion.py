@@ -11,7 +11,7 @@ import numpy as np
 from voussoir.bench.stability_judge import Measured
 from voussoir.bench.stability_scene import Scene, block_scene, rectangle, written_block
 from voussoir.bench.validation_impact import largest_rise
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, verdict
+from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, end, verdict
 
 #: Steps of every length from the shortest on [s]
 STEPS = tuple(10.0**k for k in range(-7, 1))
@@ -27,11 +27,6 @@ def motion_scenes() -> Iterator[Scene]:
     yield from _bounces()
     yield from _rests()
     yield from _stiff_motion()
-
-
-def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:
-    """Measure of a displacement at the end [m]."""
-    return lambda outcome: float(outcome.end(point)[axis])
 
 
 def moving(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from voussoir.bench.validation_scene import MOVED, YOUNG, Check, Outcome, Scene, critical, rigid_and_moving, verdict
+from voussoir.bench.validation_scene import MOVED, YOUNG, Check, Outcome, Scene, critical, in_both, verdict
 
 ASSEMBLIES = "Assemblies"
 
@@ -17,26 +17,23 @@ def _assemblies() -> list[Scene]:
     """Scenes of section 1.7."""
     cohesion = 12500.0 * (math.sin(40 * DEGREE) - math.cos(40 * DEGREE) * math.tan(25 * DEGREE))
     wedges = 250.0 * math.tan(15 * DEGREE) / math.tan(20 * DEGREE)
-    lintel = [("horizontal force over weight", 1.0 / 3.0)]
     force = "normal force of joint {} [N/m]"
-    stack = tuple(Check(force.format(k + 1), _WEIGHT * (10 - k), _normal(k), 1e-8) for k in (0, 4, 9))
-    notch = tuple(
-        Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", exact, _normal(k), 1e-8, case) for case,
-        (phi, exact) in enumerate(((phi, _in_notch(phi)) for phi in (0, 10, 20)), 1) for k in (0, 1))
-    scenes = []
-    for more in ((), MOVED):
-        scenes.append(Scene(ASSEMBLIES, "stack", "weight above", stack, more))
-        scenes.append(Scene(ASSEMBLIES, "wedge_in_notch", "W/(2 (sin b + mu cos b))", notch, more))
-    source = "W1 tan(a1 - phi) = W2 tan(phi - a2)"
-    passive = [("unit weight of the passive wedge [N/m3]", wedges)]
-    scenes += rigid_and_moving(ASSEMBLIES, "two_wedges", source, passive, 1e-4)
-    source = "W (sin a - cos a tan phi)/A"
-    held = [("cohesion [Pa]", cohesion)]
-    scenes += rigid_and_moving(ASSEMBLIES, "slide_with_cohesion", source, held, 1e-4)
-    scenes += rigid_and_moving(ASSEMBLIES, "post_and_lintel", "limit analysis", lintel, 1e-4)
-    four = (verdict("stable", "reference geometry"), verdict("stable", "current geometry", 2))
-    scenes.append(Scene(ASSEMBLIES, "four_corners", "stands", four))
-    return scenes
+    stack = [Check(force.format(k + 1), _WEIGHT * (10 - k), _normal(k), 1e-8) for k in (0, 4, 9)]
+    notch = [
+        Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", _in_notch(phi), _normal(k), 1e-8, case)
+        for case, phi in enumerate((0, 10, 20), 1) for k in (0, 1)
+    ]
+    pairs = zip(in_both(ASSEMBLIES, "stack", "weight above", *stack),
+                in_both(ASSEMBLIES, "wedge_in_notch", "W/(2 (sin b + mu cos b))", *notch))
+    scenes = [scene for pair in pairs for scene in pair]
+    for deck, source, what, exact in (
+        ("two_wedges", "W1 tan(a1 - phi) = W2 tan(phi - a2)", "unit weight of the passive wedge [N/m3]", wedges),
+        ("slide_with_cohesion", "W (sin a - cos a tan phi)/A", "cohesion [Pa]", cohesion),
+        ("post_and_lintel", "limit analysis", "horizontal force over weight", 1.0 / 3.0),
+    ):
+        scenes += in_both(ASSEMBLIES, deck, source, critical(what, exact, 2e-8), moved=1e-4)
+    four = verdict("stable", "reference geometry"), verdict("stable", "current geometry", 2)
+    return [*scenes, Scene(ASSEMBLIES, "four_corners", "stands", four)]
 
 
 def _in_notch(friction_deg: float) -> float:
@@ -97,7 +94,7 @@ def snap_load(half_span: float, rise: float, stiffness: float) -> float:
 
 def _pressed() -> list[Scene]:
     """Blocks that stand by the forces along them."""
-    jammed = (critical("friction, W/(2N) [deg]", math.degrees(math.atan(0.1)), 1e-5),)
+    jammed = critical("friction, W/(2N) [deg]", math.degrees(math.atan(0.1)), 1e-5)
     half = math.tan(20 * DEGREE)
     # documented stiffness of a found joint: E area/(twice the way from the centre)^2
     across = 2.0 * (half / 2.0 * math.cos(20 * DEGREE) + math.sin(20 * DEGREE) / 6.0)
@@ -107,19 +104,15 @@ def _pressed() -> list[Scene]:
     thrust = 25000.0 * 0.5 * 4.0**2 / (8.0 * 0.5)
     beam = tuple(Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust) for k in range(3))
     sagging = Check("thrust of the sagging beam over w LL/(8 (h - z))", 1.0, _sagging, 1e-4)
-    roof = "unit weight of the wedge [N/m3]"
-    scenes = []
-    for more, accept in (((), 1e-4), (MOVED, 2e-3)):
-        scenes.append(Scene(ASSEMBLIES, "jammed", "2 mu N = W", jammed, more))
-        wedge = (critical(roof, pull, accept),)
-        source = "Brady and Brown, derived again"
-        scenes.append(Scene(ASSEMBLIES, "roof_wedge", source, wedge, more))
+    roof = critical("unit weight of the wedge [N/m3]", pull, 1e-4)
+    pairs = zip(in_both(ASSEMBLIES, "jammed", "2 mu N = W", jammed),
+                in_both(ASSEMBLIES, "roof_wedge", "Brady and Brown, derived again", roof, moved=2e-3))
     return [
-        *scenes,
+        *(scene for pair in pairs for scene in pair),
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", beam),
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", (sagging,), MOVED),
-        Scene(
-            ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0", (critical("unit weight [N/m3]", bar, 1e-4),)),
+        Scene(ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0",
+              (critical("unit weight [N/m3]", bar, 1e-4),)),
     ]
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, Scene, verdict
+from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, Scene, end, under, verdict
 
 FLIGHT = "Blocks that fly"
 SLIDING = "Blocks that slide"
@@ -54,11 +55,6 @@ def _rotation(outcome: Outcome) -> float:
     """Largest angle that the line from point 2 to point 3 has turned [rad]."""
     angle = outcome.direction(2, 3)
     return float(np.abs(angle - angle[0]).max())
-
-
-def _moving(axis: int, point: int = 1):
-    """Measure of a displacement at the end."""
-    return lambda outcome: float(outcome.end(point)[axis])
 
 
 def _way_at(time: float):
@@ -114,65 +110,35 @@ def _momentum_checks() -> tuple[Check, ...]:
     return tuple(Check(f"{name} gained", 0.0, _gained(i), 1e-9, scale=scale) for i, name in enumerate(names))
 
 
-def _spins(*checks: Check) -> tuple[Scene, ...]:
-    """Scenes of a block that spins; the checks are those of a spin alone."""
-    return (
-        Scene(
-            FLIGHT,
-            "spin",
-            "angle w t, nothing else",
-            (
-                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
-                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0), *checks),
-            slow=True,
-        ),
-        Scene(
-            FLIGHT,
-            "spin_and_fall",
-            "both of them",
-            (
-                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
-                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
-            ),
-            rate=True,
-        ),
-    )
-
-
 def _flights() -> list[Scene]:
     """Scenes without contact, and one in which blocks meet freely."""
-    thrown = 5.0 - GRAVITY / 2.0
     terminal = -GRAVITY / 4.0 * (10.0 - (1.0 - math.exp(-40.0)) / 4.0)
-    kinetic = DENSITY * 2.0 * GRAVITY**2 / 2.0
     fast = lambda outcome: float(outcome.energy("kinetic")[-1])  # noqa: E731
     away = "largest change of a corner's distance from the centre, relative"
     strain = Check(away, 0.0, _radius_change, 1e-12, scale=1.0)
     area = Check("largest change of area, relative", 0.0, _area_change, 1e-12, scale=1.0)
+    scene = under(FLIGHT)
     return [
-        Scene(
-            FLIGHT,
-            "free_fall",
-            "-g tt/2; m (g t)^2/2",
-            (
-                Check("v after 1 s [m]", -GRAVITY / 2.0, _moving(1), 1e-10),
-                Check("kinetic energy [J/m]", kinetic, fast, 1e-10),
-            ),
-            rate=True,
-        ),
-        Scene(
-            FLIGHT,
-            "projectile",
-            "vx t, vy t - g tt/2",
-            (
-                Check("u after 1 s [m]", 3.0, _moving(0), 1e-10), Check("v after 1 s [m]", thrown, _moving(1), 1e-10),
-                Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0), strain, area),
-            rate=True,
-        ),
-        *_spins(strain, area),
-        Scene(
-            FLIGHT, "damped_fall", "-(g/c) (t - (1 - exp(-c t))/c)",
-            (Check("v after 10 s [m]", terminal, _moving(1), 1e-9),), rate=True),
-        Scene(FLIGHT, "momentum", "constant", _momentum_checks(), rate=True),
+        scene(
+            "free_fall", "-g tt/2; m (g t)^2/2",
+            Check("v after 1 s [m]", -GRAVITY / 2.0, end(1), 1e-10),
+            Check("kinetic energy [J/m]", DENSITY * 2.0 * GRAVITY**2 / 2.0, fast, 1e-10), rate=True),
+        scene(
+            "projectile", "vx t, vy t - g tt/2",
+            Check("u after 1 s [m]", 3.0, end(0), 1e-10),
+            Check("v after 1 s [m]", 5.0 - GRAVITY / 2.0, end(1), 1e-10),
+            Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0), strain, area, rate=True),
+        scene(
+            "spin", "angle w t, nothing else",
+            Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
+            Check("way of the centre [m]", 0.0, end(0), 1e-10, scale=1.0), strain, area, slow=True),
+        scene(
+            "spin_and_fall", "both of them",
+            Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, end(1), 1e-9),
+            Check("angle after 2 s [rad]", 0.5, _turned, 1e-9), rate=True),
+        scene("damped_fall", "-(g/c) (t - (1 - exp(-c t))/c)", Check("v after 10 s [m]", terminal, end(1), 1e-9),
+              rate=True),
+        scene("momentum", "constant", *_momentum_checks(), rate=True),
     ]
 
 
@@ -185,34 +151,43 @@ def _creep(outcome: Outcome) -> float:
 def _slides() -> list[Scene]:
     """Scenes of one block on a slope."""
     cases = ((30.0, 0.0), (30.0, 20.0), (20.0, 10.0), (28.0, 22.0))
-    s = "s(1 s), {:.0f} deg, friction {:.0f} deg [m]"
-    rows = tuple(
-        Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case) for case, row in enumerate(cases, 1)
-    ) + tuple(
-        Check(s.format(*row).replace("1 s", "2 s"), slide(*row) * 2.0, _way_at(2.0), 1e-3, case)
-        for case, row in enumerate(cases, 1))
-    stop = -4.0 / (2.0 * slide(20.0, 30.0, up=True))
+    what = "s({:g} s), {:.0f} deg, friction {:.0f} deg [m]"
+    ways = [
+        Check(what.format(time, *row), slide(*row) * time**2 / 2.0, _way_at(time), 1e-3, case)
+        for time in (1.0, 2.0) for case, row in enumerate(cases, 1)
+    ]
     top = 2.0 / slide(30.0, 15.0, up=True)
     back = slide(30.0, 15.0) * (1.0 - top) ** 2 / 2.0 - top
-    two = (Check("s(2 s) [m]", 2.0 * slide(30.0, 20.0), _along(30.0), 1e-3),)
-    up = (Check("way [m]", stop, _along(20.0), 1e-2),)
-    down = (Check("s(1 s) [m]", back, _along(30.0), 1e-2),)
-    creep = (
-        Check("way in 100000 steps, strain and all [m]", 0.0, _along(30.0), 1e-6, scale=1.0),
-        Check("creep after the first 1000 steps [m]", 0.0, _creep, 1e-6, scale=1.0),
-    )
     law = "g (sin a - cos a tan phi) tt/2"
-    states = tuple(
-        verdict("collapsed" if case < 3 else "stable", f"{phi}, {geometry} geometry", case)
-        for case, (phi, geometry) in enumerate(
-            ((phi, g) for phi in ("29.9 deg", "30.1 deg") for g in ("reference", "current")), 1)
-    )
+    states = [
+        verdict("collapsed" if case < 3 else "stable", f"{phi} deg, {geometry} geometry", case)
+        for case, (phi, geometry) in enumerate(itertools.product((29.9, 30.1), ("reference", "current")), 1)
+    ]
+    scene = under(SLIDING)
     return [
-        Scene(SLIDING, "slope", "stands iff phi > a", states),
-        Scene(SLIDING, "slope_creep", "at rest", creep, slow=True), Scene(SLIDING, "incline", law, rows, rate=True),
-        Scene(SLIDING, "incline_30", law, two, rate=True),
-        Scene(SLIDING, "upslope_stays", "vv/(2g (sin a + cos a tan phi))", up, rate=True),
-        Scene(SLIDING, "upslope_returns", "up, then down", down, rate=True)]
+        scene("slope", "stands iff phi > a", *states),
+        scene(
+            "slope_creep", "at rest",
+            Check("way in 100000 steps, strain and all [m]", 0.0, _along(30.0), 1e-6, scale=1.0),
+            Check("creep after the first 1000 steps [m]", 0.0, _creep, 1e-6, scale=1.0), slow=True),
+        scene("incline", law, *ways, rate=True),
+        scene("incline_30", law, Check("s(2 s) [m]", 2.0 * slide(30.0, 20.0), _along(30.0), 1e-3), rate=True),
+        scene("upslope_stays", "vv/(2g (sin a + cos a tan phi))",
+              Check("way [m]", -4.0 / (2.0 * slide(20.0, 30.0, up=True)), _along(20.0), 1e-2), rate=True),
+        scene("upslope_returns", "up, then down", Check("s(1 s) [m]", back, _along(30.0), 1e-2), rate=True),
+    ]
+
+
+#: Newmark's blocks: deck, dip [deg], way and speed at the end [m, m/s]
+_NEWMARK = (
+    ("newmark_flat", 0.0, -0.007708, 0.235090),
+    ("newmark_periodic", 0.0, -0.007708, 0.235090),
+    ("newmark_slope", 20.0, 0.018257, 0.0),
+    ("newmark_velocity", 20.0, 0.018257, 0.0),
+    ("newmark_displacement", 20.0, 0.018257, 0.0),
+    ("newmark_fast", 20.0, 0.496482, 0.246839),
+    ("newmark_rough", 20.0, 0.023078, 0.0),
+)
 
 
 def _shaken() -> list[Scene]:
@@ -220,28 +195,12 @@ def _shaken() -> list[Scene]:
 
     One ground is given by its acceleration, its velocity and its displacement.
     """
-    way = "way down the slope at the end [m]"
-    rows = (
-        ("newmark_flat", 0.0, -0.007708, 0.235090),
-        ("newmark_periodic", 0.0, -0.007708, 0.235090),
-        ("newmark_slope", 20.0, 0.018257, 0.0),
-        ("newmark_velocity", 20.0, 0.018257, 0.0),
-        ("newmark_displacement", 20.0, 0.018257, 0.0),
-        ("newmark_fast", 20.0, 0.496482, 0.246839),
-        ("newmark_rough", 20.0, 0.023078, 0.0),
-    )
     return [
-        Scene(
-            SLIDING,
-            deck,
-            "Newmark 1965, integrated",
-            (
-                Check(way, exact, _along(dip), 1e-2),
-                Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24),
-            ),
-            rate=True,
-        )
-        for deck, dip, exact, speed in rows
+        under(SLIDING)(
+            deck, "Newmark 1965, integrated",
+            Check("way down the slope at the end [m]", exact, _along(dip), 1e-2),
+            Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24), rate=True)
+        for deck, dip, exact, speed in _NEWMARK
     ]
 
 
@@ -274,7 +233,7 @@ def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> floa
 def _sticking() -> Scene:
     """A block that a periodic force moves to and fro."""
     exact = stick_slip(5.0, 8.0, 10.0)
-    check = Check("way after 10 s [m]", exact, _moving(0), 1e-2)
+    check = Check("way after 10 s [m]", exact, end(0), 1e-2)
     return Scene(SLIDING, "stick_slip", "F cos t against friction, integrated", (check,), rate=True)
 
 

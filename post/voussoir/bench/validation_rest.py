@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
-from voussoir.bench.validation_scene import GRAVITY, MOVED, Check, Outcome, Scene, rigid_and_moving, verdict
+from voussoir.bench.validation_scene import GRAVITY, Check, Outcome, Scene, critical, in_both, verdict
 
 TOPPLING = "Blocks that topple"
 
@@ -58,39 +59,36 @@ def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
     return Scene(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", checks, rate=True)
 
 
-def _overhangs() -> list[Scene]:
-    """Stacks that lean out a little less and a little more than they can."""
-    scenes = []
-    for deck, state, what in (
-        ("overhang_stands", "stable", "five blocks at 0.99 of L/2 sum 1/k"),
-        ("overhangs_stand", "stable", "one to four blocks at 0.99 of L/2 sum 1/k"),
-        ("overhang_of_one_falls", "collapsed", "one block at 1.01 of it"),
-        ("overhang_of_two_falls", "collapsed", "two blocks at 1.01 of it"),
-        ("overhang_of_three_falls", "collapsed", "three blocks at 1.01 of it"),
-        ("overhang_of_four_falls", "collapsed", "four blocks at 1.01 of it"),
-        ("overhang_falls", "collapsed", "five blocks at 1.01 of it"),
-    ):
-        checks = (verdict(state, what),)
-        scenes += [Scene(TOPPLING, deck, "harmonic", checks, more) for more in ((), MOVED)]
-    return scenes
+#: Stacks that lean out a little less and a little more than they can
+_OVERHANGS = (
+    ("overhang_stands", "stable", "five blocks at 0.99 of L/2 sum 1/k"),
+    ("overhangs_stand", "stable", "one to four blocks at 0.99 of L/2 sum 1/k"),
+    ("overhang_of_one_falls", "collapsed", "one block at 1.01 of it"),
+    ("overhang_of_two_falls", "collapsed", "two blocks at 1.01 of it"),
+    ("overhang_of_three_falls", "collapsed", "three blocks at 1.01 of it"),
+    ("overhang_of_four_falls", "collapsed", "four blocks at 1.01 of it"),
+    ("overhang_falls", "collapsed", "five blocks at 1.01 of it"),
+)
 
 
-def _toppling() -> list[Scene]:
+def _toppling() -> Iterator[Scene]:
     """Scenes of section 1.3."""
     tilt = math.tan(math.atan(0.25) - 10 * DEGREE)
-    across = [("force across gravity over weight", tilt)]
-    column = [("horizontal force over weight", 0.2)]
-    push = [("horizontal force over weight, tan phi 0.7", 0.5), ("the same, tan phi 0.3", 0.3)]
-    scenes = [
-        *rigid_and_moving(TOPPLING, "toppling", "tan(atan(b/h) - a)", across, 1e-4),
-        *rigid_and_moving(TOPPLING, "push", "min(mu, b/h)", push, 1e-4),
-        *rigid_and_moving(TOPPLING, "column", "b/h", column, 1e-4),
-        *(_onset(*onset) for onset in ONSETS),
-        *_overhangs(),
-    ]
-    slope = (verdict("stable", "40 deg", 1), verdict("collapsed", "32.9 deg", 5), verdict("collapsed", "30 deg", 6))
-    source = "Goodman and Bray 1976: 38.15; limit analysis: 33.4"
-    return scenes + [Scene(TOPPLING, "goodman_bray", source, slope, more) for more in ((), MOVED)]
+    force = "horizontal force over weight"
+    for deck, source, *checks in (
+        ("toppling", "tan(atan(b/h) - a)", critical("force across gravity over weight", tilt, 2e-8)),
+        ("push", "min(mu, b/h)", critical(f"{force}, tan phi 0.7", 0.5, 2e-8),
+         critical("the same, tan phi 0.3", 0.3, 2e-8, 2)),
+        ("column", "b/h", critical(force, 0.2, 2e-8)),
+    ):
+        yield from in_both(TOPPLING, deck, source, *checks, moved=1e-4)
+    for onset in ONSETS:
+        yield _onset(*onset)
+    for deck, state, what in _OVERHANGS:
+        yield from in_both(TOPPLING, deck, "harmonic", verdict(state, what))
+    yield from in_both(
+        TOPPLING, "goodman_bray", "Goodman and Bray 1976: 38.15; limit analysis: 33.4",
+        verdict("stable", "40 deg", 1), verdict("collapsed", "32.9 deg", 5), verdict("collapsed", "30 deg", 6))
 
 
 #: Every scene of this module

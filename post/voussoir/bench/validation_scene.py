@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -124,27 +125,35 @@ class Scene:
         return " ".join([self.deck, *values])
 
 
+def under(section: str) -> Callable[..., Scene]:
+    """What makes scenes below a heading: of a deck, a source, checks, and the other fields by their names."""
+
+    def scene(deck: str, source: str, *checks: Check, **others: Any) -> Scene:
+        return Scene(section, deck, source, checks, **others)
+
+    return scene
+
+
+def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:
+    """Measure of a displacement at the end [m]."""
+    return lambda outcome: float(outcome.end(point)[axis])
+
+
 def verdict(exact: str, what: str, case: int = 1) -> Check:
     """A check that a case stands or falls as it must."""
     return Check(what, exact, lambda outcome: outcome.verdict, case=case)
 
 
-def critical(what: str, exact: float, accept: float, case: int = 1) -> Check:
+def critical(what: str, exact: float, accept: float, case: int = 1, scale: float | None = None) -> Check:
     """A check of a critical value."""
-    return Check(what, exact, lambda outcome: outcome.critical, accept, case)
+    return Check(what, exact, lambda outcome: outcome.critical, accept, case, scale)
 
 
 #: Settings of a scene with blocks that move
 MOVED = ("analysis%geometry=current",)
 
 
-def rigid_and_moving(
-    section: str, deck: str, source: str, checks: Sequence[tuple[str, float]], moved: float
-) -> list[Scene]:
-    """A critical deck in reference geometry, and with blocks that move and strain, where errors may be `moved`.
-
-    `checks` are quantity and exact value of each case.
-    """
-    rigid = tuple(critical(what, exact, 2e-8, case) for case, (what, exact) in enumerate(checks, 1))
-    elastic = tuple(dataclasses.replace(check, accept=moved) for check in rigid)
-    return [Scene(section, deck, source, rigid), Scene(section, deck, source, elastic, MOVED)]
+def in_both(section: str, deck: str, source: str, *checks: Check, moved: float | None = None) -> list[Scene]:
+    """A deck in reference geometry, and with blocks that move and strain, where errors may be `moved`."""
+    elastic = checks if moved is None else tuple(dataclasses.replace(check, accept=moved) for check in checks)
+    return [Scene(section, deck, source, checks), Scene(section, deck, source, elastic, MOVED)]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from voussoir.bench.validation_scene import GRAVITY, MOVED, YOUNG, Check, Outcome, Scene
+from voussoir.bench.validation_scene import GRAVITY, YOUNG, Check, Outcome, Scene, in_both
 
 STRAIN = "Strain of blocks"
 
@@ -34,8 +34,8 @@ def _strains() -> list[Scene]:
     swing = (Check("frequency, 1.10266 of the bar's [1/s]", frequency, _swings(1), 1e-3),)
     decay = (Check("amplitude lost in a cycle of 2565 steps", lost, _lost_amplitude, 1e-2),)
     return [
-        *(Scene(STRAIN, "uniaxial", "Hooke", pressed_checks, more) for more in ((), MOVED)),
-        *(Scene(STRAIN, "bar_own_weight", "rho g HH/(2E)", bar, more) for more in ((), MOVED)),
+        *in_both(STRAIN, "uniaxial", "Hooke", *pressed_checks),
+        *in_both(STRAIN, "bar_own_weight", "rho g HH/(2E)", *bar),
         Scene(STRAIN, "bar_swings", "sqrt(3E/rho)/(2 pi H)", swing, rate=True),
         Scene(STRAIN, "bar_swings", "a step: 1/sqrt(1 + (w dt)^2/2)", decay),
     ]
