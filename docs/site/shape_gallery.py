@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -34,7 +35,8 @@ SHAPES = {
 def main() -> None:
     """Draw."""
     with house_style():
-        figure, grid = plt.subplots(3, 3, figsize=(11.0, 9.5), layout="constrained")
+        figure, grid = plt.subplots(5, 2, figsize=(6.0, 11.0), layout="constrained")
+        grid.flat[-1].remove()
         for axes, (title, keys) in zip(grid.flat, SHAPES.items()):
             run = voussoir.run(f"&arch {keys} /\n&joint friction_deg = 60 /\n")
             scene = scene_of(run, 1)
@@ -45,7 +47,7 @@ def main() -> None:
             axes.set_aspect("equal")
             axes.set_axis_off()
             row = row_with_safety(run, 1)
-            axes.set_title(f"{title}\n{row['verdict']}{safety_of(row, run)}", fontsize=9)
+            axes.set_title(f"{title}\n" + textwrap.fill(row["verdict"] + safety_of(row, run), 40), fontsize=9)
         figure.savefig(Path(__file__).parents[1] / "images" / "shapes.svg", metadata={"Date": None})
 
 

@@ -61,7 +61,7 @@ def legend_below(figure: Figure, axes: Axes, columns: int = 2) -> None:
 
 def friction(campaign: Campaign) -> Figure:
     """Behind figure 8: critical thickness against friction, with both thresholds."""
-    figure, axes = plt.subplots(figsize=(6.8, 4.4))
+    figure, axes = plt.subplots(figsize=(5.2, 3.9))
     cases = campaign.results("figure8_thickness").cases
     lower = campaign.results("figure8_lower").cases["critical"]
     upper = campaign.results("figure8_upper").cases["critical"]
@@ -80,14 +80,14 @@ def friction(campaign: Campaign) -> Figure:
     ):
         kept = (cases["collapse_mode"] == "rotational") == turning
         axes.plot(cases["friction_deg"][kept], cases["critical"][kept], linestyle="none", label=label, **style)
-    for value, words in ((lower[0], "stands at no thickness"), (upper[0], "no joint slips")):
+    for value, words in ((lower[0], "stands at\nno thickness"), (upper[0], "no joint slips")):
         axes.axvline(value, color=INK[3], linewidth=1.0, linestyle=DASHES[3])
         side = -1 if value == lower[0] else 1
         axes.text(
             value + 0.06 * side, 0.155,
             f"{words}\n{'below' if side < 0 else 'from'} {value:.4f}°\n($\\mu$ = {math.tan(math.radians(value)):.6f})",
             ha="right" if side < 0 else "left", va="center", fontsize=9)
-    axes.set_xlim(14.7, cases["friction_deg"].max() + 0.2)
+    axes.set_xlim(14.4, cases["friction_deg"].max() + 0.2)
     axes.set_ylim(0.1, 0.205)
     axes.set_xlabel(r"friction angle $\varphi$ [deg]")
     axes.set_ylabel(r"critical thickness ratio $\eta$ [-]")
@@ -98,7 +98,7 @@ def friction(campaign: Campaign) -> Figure:
 def numbers_of_blocks(campaign: Campaign) -> Figure:
     """Figure 11: critical thickness of the semicircle against the number of blocks."""
     table = campaign.tables["table1"]
-    figure, (wide, close) = plt.subplots(2, 1, figsize=(6.8, 7.6), sharex=True)
+    figure, (wide, close) = plt.subplots(2, 1, figsize=(5.2, 6.6), sharex=True)
     even = np.arange(10, 100, 2)
     exact = theory.discrete_critical(even, math.pi / 2)
     for axes in (wide, close):
@@ -129,7 +129,7 @@ def imposed_at_140(campaign: Campaign) -> Figure:
 
 def _imposed(table: PaperTable, alpha_deg: float, place: tuple, near: tuple, high: tuple) -> Figure:
     """A table of imposed joints; the piece near the top is drawn larger where there is room."""
-    figure, (curve, error) = plt.subplots(2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2))
+    figure, (curve, error) = plt.subplots(2, 1, figsize=(5.2, 6.2), sharex=True, height_ratios=(3, 2))
     _draw_imposed(curve, table, math.radians(alpha_deg))
     curve.set_ylim(bottom=0.0)
     curve.set_xlim(0.0, alpha_deg)
@@ -160,7 +160,7 @@ def _draw_imposed(axes: Axes, table: PaperTable, alpha: float) -> None:
 def half_angles(campaign: Campaign) -> Figure:
     """Figure 20: critical thickness against the half angle of embrace."""
     table = campaign.tables["table4"]
-    figure, (curve, error) = plt.subplots(2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2))
+    figure, (curve, error) = plt.subplots(2, 1, figsize=(5.2, 6.2), sharex=True, height_ratios=(3, 2))
     for name, heading in THEORIES.items():
         alpha = np.linspace(1e-3, theory.limits(name)["alpha_limit"] * (1.0 - 1e-12), 600)
         color, dashes = CURVES[name]

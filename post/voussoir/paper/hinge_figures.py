@@ -23,7 +23,7 @@ def block_numbers(campaign: Campaign) -> Figure:
     """Figure 10: hinge angle against the number of blocks, for two thicknesses."""
     tables = {"ours, elastic": campaign.results("figure9").cases, "ours, rigid": campaign.results("figure10").cases}
     thicknesses = np.unique(tables["ours, rigid"]["thickness_ratio"])
-    figure, grid = plt.subplots(len(thicknesses), 1, figsize=(6.8, 7.8), sharex=True, layout="constrained")
+    figure, grid = plt.subplots(len(thicknesses), 1, figsize=(5.2, 7.0), sharex=True, layout="constrained")
     for axes, eta, word in zip(grid, thicknesses, ("Heyman's", "that of CCR")):
         cases = {name: table.where(thickness_ratio=eta) for name, table in tables.items()}
         blocks = cases["ours, rigid"]["blocks"]
@@ -70,7 +70,7 @@ def _draw_hinges(axes: Axes, table: Table, name: str) -> None:
 def half_angles(campaign: Campaign) -> Figure:
     """Figure 19: hinge angle against the half angle of embrace."""
     table = campaign.tables["table4"]
-    figure, axes = plt.subplots(figsize=(6.8, 4.8))
+    figure, axes = plt.subplots(figsize=(5.2, 4.6))
     for name, heading in THEORIES.items():
         alpha = np.linspace(1e-3, theory.limits(name)["alpha_limit"] * (1.0 - 1e-12), 800)
         color, dashes = CURVES[name]

@@ -27,8 +27,8 @@ def friction_modes(campaign: Campaign) -> Figure:
 def _friction_title(row: Row) -> str:
     mu = math.tan(math.radians(row["friction_deg"]))
     return (
-        f"$\\varphi$ = {row['friction_deg']:g}° ($\\mu$ = {mu:.3f}): {row['collapse_mode']}, "
-        f"sliding share {row['sliding_share']:.3f}"
+        f"$\\varphi$ = {row['friction_deg']:g}° ($\\mu$ = {mu:.3f}):\n"
+        f"{row['collapse_mode']}, sliding share {row['sliding_share']:.3f}"
     )
 
 
@@ -42,7 +42,7 @@ def block_numbers(campaign: Campaign) -> Figure:
     run = campaign.results("figure9")
     ratios = list(dict.fromkeys(run.cases["thickness_ratio"].tolist()))
     groups = [run.cases.where(thickness_ratio=ratio)["case"].tolist() for ratio in ratios]
-    figure = plt.figure(figsize=(9.0, 5.6 * len(groups)), layout="constrained")
+    figure = plt.figure(figsize=(5.6, 4.2 * len(groups)), layout="constrained")
     parts = figure.subfigures(len(groups), 1, hspace=0.03)
     for part, ratio, numbers, word in zip(parts, ratios, groups, ("Heyman's", "that of CCR")):
         gallery(run, numbers, 3, _blocks_title, size=3.5, into=part)
@@ -58,7 +58,7 @@ def _blocks_title(row: Row) -> str:
 
 def imposed_at_90(campaign: Campaign) -> Figure:
     """Figure 12: four blocks, half angle 90 degrees."""
-    return _imposed(campaign.results("figure12"), 4)
+    return _imposed(campaign.results("figure12"), 3)
 
 
 def imposed_at_140(campaign: Campaign) -> Figure:
@@ -92,14 +92,14 @@ def case_of_joint(run: Results, beta: float) -> int:
 
 
 def _sample(run: Results, beta: float) -> Figure:
-    figure = gallery(run, [case_of_joint(run, beta)], 1, imposed_title, size=8.0, width=6.4)
+    figure = gallery(run, [case_of_joint(run, beta)], 1, imposed_title, size=7.0, width=4.8)
     return mark_legend(figure)
 
 
 def half_angles(campaign: Campaign) -> Figure:
     """Figure 18: blocks of 5 degrees, half angles from 45 to 145 degrees."""
     run = campaign.results("figure18")
-    figure = gallery(run, list(run.cases["case"]), 5, _half_angle_title, size=3.0, width=10.5)
+    figure = gallery(run, list(run.cases["case"]), 3, _half_angle_title, size=2.5)
     return mark_legend(figure)
 
 
@@ -120,7 +120,7 @@ def _angles(hinges: tuple[float, ...]) -> str:
 
 
 def gallery(
-    run: Results, numbers: list[int], columns: int, title: Callable[[Row], str], size: float, width: float = 9.0,
+    run: Results, numbers: list[int], columns: int, title: Callable[[Row], str], size: float, width: float = 5.6,
     together: bool = False, into: SubFigure | None = None
 ) -> Figure:
     """Last pictures of some cases side by side; those of one row are of one shape, so that they stand in line.
@@ -132,7 +132,7 @@ def gallery(
     shapes = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]
     rows = [slice(first, first + columns) for first in range(0, len(numbers), columns)]
     tallest = [max(shapes[row]) for row in rows]
-    heights = [width / columns * shape + 0.3 for shape in tallest]
+    heights = [width / columns * shape + 0.4 for shape in tallest]
     figure = into or plt.figure(figsize=(width, sum(heights)), layout="constrained")
     grid = figure.subplots(len(rows), columns, height_ratios=heights, squeeze=False)
     for axes in grid.flat[len(numbers) :]:

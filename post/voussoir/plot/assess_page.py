@@ -28,7 +28,8 @@ h1{font-size:1.6rem;margin:0 0 .3rem}h2{font-size:1.15rem;margin:1.4rem 0 .4rem;
 table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.2rem .6rem .2rem 0;vertical-align:top}
 tr{border-bottom:1px solid #ddd}td{overflow-wrap:anywhere}th{white-space:nowrap}
 @media screen and (max-width:40rem){td,th{display:block;padding-bottom:0}}
-figure{margin:.6rem 0;break-inside:avoid}svg{width:100%;height:auto}figcaption{font-size:.9rem;color:#555}
+figure{margin:.6rem 0;break-inside:avoid}svg{width:100%;max-width:38rem;height:auto}
+figcaption{font-size:.9rem;color:#555}
 pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f5f5f2;padding:.7rem;font-size:.85rem}
 .note{font-size:.9rem;color:#555}@page{size:A4;margin:14mm}
 @media print{body{margin:0;padding:0;font-size:10pt;max-width:none}h2{break-after:avoid;margin:.7rem 0 .2rem}

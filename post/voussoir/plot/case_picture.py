@@ -29,7 +29,7 @@ MANY = 100
 #: Displacements above this share of the picture's size are seen without magnification
 SEEN = 0.02
 #: Width of a figure, and its least and greatest height [inch]
-WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 8.0, 2.4, 7.5
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 5.2, 1.8, 5.2
 
 #: What the marks mean where nothing collapses
 TOUCHES = {
@@ -91,7 +91,7 @@ def draw_case(
     else:
         draw_scale(axes, low, high)
     axes.set_title(title, fontsize=10.5)
-    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9)
+    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), fontsize=9)
     return figure
 
 
@@ -300,7 +300,7 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
     centre = {block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports}
     long = np.hypot(*(joints[f"{axis}_extrados"] - joints[f"{axis}_intrados"] for axis in "xy"))
     usual = np.median(long[long > 0.0]) if np.any(long > 0.0) else size
-    length = min(SLIP_LENGTH * size, 0.5 * float(usual))
+    length, few = min(SLIP_LENGTH * size, 0.5 * float(usual)), len(joints) <= MANY
     for joint in slides:
         way = np.array([joints["slides_x"][joint], joints["slides_y"][joint]])
         normal = np.array([-way[1], way[0]])
@@ -314,7 +314,8 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
             start = middle + side * (0.3 * length * normal - 0.5 * length * way)
             axes.annotate(
                 "", start + side * length * way, start, zorder=7,
-                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0})
+                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3 if few else 0.9, "shrinkA": 0,
+                            "shrinkB": 0, "mutation_scale": 10 if few else 6})
     if not len(slides):
         return []
     words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"

@@ -95,7 +95,7 @@ def _missing(cases: Table, found: Table) -> str:
 
 
 def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
-    figure = Picture(figsize=(6.4, 4.4), layout="constrained")
+    figure = Picture(figsize=(5.2, 3.9), layout="constrained")
     axes = figure.subplots()
     exact = False
     for number, (label, rows) in enumerate(groups):
@@ -121,7 +121,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
 
 def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, other: str) -> Figure:
     """Curves too many for marks: their colour tells the second parameter."""
-    figure = Picture(figsize=(6.8, 4.4), layout="constrained")
+    figure = Picture(figsize=(5.4, 3.9), layout="constrained")
     axes = figure.subplots()
     values = [float(rows[other][0]) for _, rows in groups]
     scale = ScalarMappable(Normalize(min(values), max(values)), "viridis")

@@ -81,7 +81,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
             raise ChartError(f"expected a swept column of numbers, got '{column}'; name another")
         strength, share, fit = _of_verdicts(run.cases.take(decided), column)
         left, label = len(run.cases) - int(decided.sum()), column.replace("_", " ")
-    figure = Picture(figsize=(6.4, 4.4), layout="constrained")
+    figure = Picture(figsize=(5.2, 3.9), layout="constrained")
     axes = figure.subplots()
     axes.plot(strength, share, "o", color=INK[0], label="computed", zorder=3, clip_on=False)
     if fit:

@@ -13,7 +13,7 @@ from voussoir.results import Results, Table
 #: Factors are drawn up to so many times the least one
 HEADROOM = 6.0
 #: Width of what is drawn, height of the diagram, least and greatest height of the blocks [inch]
-WIDTH, HEIGHT, LOWEST, HIGHEST = 7.2, 3.0, 0.7, 4.0
+WIDTH, HEIGHT, LOWEST, HIGHEST = 4.6, 2.6, 0.5, 3.0
 
 
 def draw_positions(run: Results, cases: Table, worst: float | None = None) -> Figure:

@@ -19,7 +19,7 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
     """Figure 4: eta(beta) of the semicircle, with the three conditions of figure 3."""
     alpha = math.radians(alpha_deg)
     beta, eta, _ = theory.critical(alpha, "ccr")
-    figure, axes = plt.subplots(figsize=(6.4, 4.2))
+    figure, axes = plt.subplots(figsize=(5.0, 3.6))
     draw_curve(axes, alpha, "ccr", color=INK[0])
     for share, word in (
         (1.2, "super-critical:\nno hinge"), (1.0, "critical:\none hinge"), (0.7, "sub-critical:\ntwo hinges"),
@@ -45,7 +45,7 @@ def curves() -> Figure:
         limits["alpha_limit"]: "$A_l = 2/3$",
     }
     plain = np.radians([60, 75, 90, 100, 110, 120, 140, 145, 149])
-    figure, axes = plt.subplots(figsize=(6.8, 5.4))
+    figure, axes = plt.subplots(figsize=(5.2, 4.8))
     for alpha in sorted([*plain, *marked]):
         special = alpha in marked
         draw_curve(
@@ -82,7 +82,7 @@ def curves_at_140() -> Figure:
 def compared_curves(alpha_deg: float) -> Figure:
     """eta(beta) with the weight on the centre line and where it is, their tops, and Heyman's point."""
     alpha = math.radians(alpha_deg)
-    figure, axes = plt.subplots(figsize=(6.4, 4.4))
+    figure, axes = plt.subplots(figsize=(5.0, 3.9))
     _compare(axes, alpha)
     axes.set_xlim(0, alpha_deg)
     axes.set_ylim(bottom=0)

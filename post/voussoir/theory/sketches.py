@@ -97,13 +97,13 @@ def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1
     """Figure 3: lines of thrust of a super-critical, the critical and a sub-critical semicircle."""
     alpha = math.radians(alpha_deg)
     beta, critical, _ = theory.critical(alpha, "ccr")
-    figure, panels = plt.subplots(1, len(shares), figsize=(10.5, 2.9))
+    figure, panels = plt.subplots(1, len(shares), figsize=(5.4, 1.8))
     for axes, share in zip(panels, shares):
         eta = share * critical
         draw_arch(axes, alpha, eta)
         draw_thrust(axes, alpha, eta, "ccr")
         kind = "critical" if share == 1 else "super-critical" if share > 1 else "sub-critical"
-        axes.set_title(f"{kind}: $\\eta$ = {eta:.6f}", fontsize=10)
+        axes.set_title(f"{kind}:\n$\\eta$ = {eta:.6f}", fontsize=9.5)
         if share == 1:
             draw_hinges(axes, on_circle(1 + eta / 2 * np.array([1, -1, 1]), np.array([0.0, beta, alpha])))
     return figure
