@@ -99,19 +99,24 @@ contains
       !> How the motion ends, one of motion_end
       integer, intent(out) :: end
       type(coulomb_state_t) :: moved, last
-      integer :: last_end, most_pivots
+      integer :: fall, last_end, most_pivots
 
       most_pivots = equations%most_pivots
       equations%most_pivots = few_pivots
       gained = merge(left, width, left < nudge)
+      fall = motion_end%unsettled
       do
          call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
          if (end == motion_end%unsettled) then
+            ! what does not settle falls as it does by a little more
+            end = fall
+            if (fall /= motion_end%unsettled) exit
             gained = wider*gained
             call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, &
                & moved, end)
          end if
          if (end == motion_end%balanced .or. end == motion_end%unsettled) exit
+         fall = end
          if (.not. gained > nudge) exit
          gained = max(nudge, narrower*gained)
       end do

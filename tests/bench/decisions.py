@@ -22,6 +22,8 @@ from random_assemblies import make_pushed
 
 SHARES = (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 5.0)
 FLOWS = ("associated", "coulomb")
+#: Seconds that a deck may take
+PATIENCE = 100
 
 
 def run(dda: Path, folder: Path, flow: str, task: str) -> tuple[list[dict[str, str]], float]:
@@ -30,7 +32,11 @@ def run(dda: Path, folder: Path, flow: str, task: str) -> tuple[list[dict[str, s
     (folder / "deck.nml").write_text(
         f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis flow = '{flow}' /\n"
         f"&output joints = .false., blocks = .false. /\n{task}\n")
-    done = subprocess.run([dda, "run", "deck.nml", "--quiet"], cwd=folder, capture_output=True, check=False)
+    try:
+        done = subprocess.run([dda, "run", "deck.nml", "--quiet"], cwd=folder, capture_output=True, check=False,
+                              timeout=PATIENCE)
+    except subprocess.TimeoutExpired as slow:
+        raise RuntimeError(f"SLOW: {flow}, {task}: expected an answer in {PATIENCE} s, got none") from slow
     if done.returncode not in (0, 3):  # 3: a case is undecided
         raise RuntimeError(done.stderr.decode())
     with (folder / "deck" / "results.csv").open(newline="") as table:

@@ -148,3 +148,14 @@ def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> Non
     loads = ", ".join(repr(critical * share) for share in shares)
     decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
     assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
+
+
+def test_a_jump_that_settles_by_no_small_push_is_a_fall(tmp_path: Path) -> None:
+    """A slope of 21 blocks, friction 43.8 degrees: a push of 1e-6 never settles, one of 2.5e-6 falls without end."""
+    text = block_text(*make_pushed(94067))
+    (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 1e4 /")
+    critical = float(found["critical"])
+    assert 0.0 < critical < 1.0 and int(found["factorisations"]) < 1000
+    loads = ", ".join(repr(critical * share) for share in (0.9, 0.999, 1.001, 1.1, 5.0))
+    decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
+    assert [row["verdict"] for row in decided] == [*2 * ["stable"], *3 * ["collapsed"]]
