@@ -16,6 +16,7 @@ submodule (dda_decision) dda_decide
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph
    use dda_settings, only : flow_rule
+   use dda_step_context, only : run_t
    use dda_verdict, only : outcome_t, verdict
    implicit none
 
@@ -185,11 +186,13 @@ contains
       type(settings_t), intent(in) :: settings
       type(decision_t), intent(in) :: decision
       type(album_t), intent(inout) :: album
-      type(march_t) :: march
+      type(run_t) :: run
 
       album = blank_album(album)
-      call keep_pictures(settings, decision%system, decision%contacts, march, 0.0_wp, .false., &
-         & album)
+      run%settings = settings
+      run%system = decision%system
+      run%contacts = decision%contacts
+      call keep_pictures(run, .false., album)
    end subroutine show_end
 
    !> Decide by steps to rest or collapse

@@ -28,109 +28,111 @@ contains
 
    !> Begin with the rows of blocks that go on as they are
    module procedure foresee_curves
-      real(wp) :: motion(size(step%state%motion, 1), size(step%state%motion, 2)), error
+      real(wp), dimension(size(run%step%state%motion, 1), size(run%step%state%motion, 2)) :: motion
+      real(wp) :: error
 
-      motion = step%dt*packed_velocity(system, size(motion, 1))
-      step%curve = 0.0_wp*contacts%gap
-      step%state%increment = 0.0_wp
-      call see_curves(settings, system, contacts, motion, step, error)
-      call take_turned_rows(system, motion, contacts, step)
+      motion = run%step%dt*packed_velocity(run%system, size(motion, 1))
+      run%step%curve = 0.0_wp*run%contacts%gap
+      run%step%state%increment = 0.0_wp
+      call see_curves(run, motion, error)
+      call take_turned_rows(run, motion)
    end procedure foresee_curves
 
    !> Settle the contacts again with rows of the motion that was found
    module procedure follow_curves
       type(step_state_t) :: last
-      real(wp) :: curve(3, size(contacts%joint)), size_of, error
+      real(wp) :: curve(3, size(run%contacts%joint)), size_of, error
       type(joint_springs_t) :: springs
       integer :: pass
 
-      size_of = sqrt(minval(system%area, mask=system%equation > 0))
-      do pass = 0, max_passes
-         call see_curves(settings, system, contacts, step%state%motion, step, error)
-         if (error <= max(left_over*size_of, merge(of_many, of_unseen, step%state%many &
-            & .and. .not. step%state%swept)*step%state%unseen) .or. pass == max_passes) return
-         last = step%state
-         curve = step%curve
-         springs = contacts%springs
-         step%state%multiplier = step%state%force
-         step%state%again = .true.
-         call take_turned_rows(system, last%motion, contacts, step)
-         call take_springs(equations)
-         call settle_in_time(settings, (equations%fixed%target), equations, contacts%springs, &
-            & step%state, in_vain=error <= jammed*size_of)
-         if (step%state%settled) cycle
-         if (error > jammed*size_of) return
-         ! blocks that jam where they turn: what they lie in one another is left
-         step%state = last
-         step%curve = curve
-         contacts%springs = springs
-         return
-      end do
+      size_of = sqrt(minval(run%system%area, mask=run%system%equation > 0))
+      associate (step => run%step, state => run%step%state)
+         do pass = 0, max_passes
+            call see_curves(run, state%motion, error)
+            if (error <= max(left_over*size_of, merge(of_many, of_unseen, state%many &
+               & .and. .not. state%swept)*state%unseen) .or. pass == max_passes) return
+            last = state
+            curve = step%curve
+            springs = run%contacts%springs
+            state%multiplier = state%force
+            state%again = .true.
+            call take_turned_rows(run, last%motion)
+            call take_springs(run%equations)
+            call settle_in_time(run%settings, (run%equations%fixed%target), run%equations, &
+               & run%contacts%springs, state, in_vain=error <= jammed*size_of)
+            if (state%settled) cycle
+            if (error > jammed*size_of) return
+            ! blocks that jam where they turn: what they lie in one another is left
+            state = last
+            step%curve = curve
+            run%contacts%springs = springs
+            return
+         end do
+      end associate
    end procedure follow_curves
 
    !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
-   pure subroutine see_curves(settings, system, contacts, motion, step, error)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
+   pure subroutine see_curves(run, motion, error)
+      !> The run; gaps, blocks and joints at the end of its step are set
+      type(run_t), intent(inout) :: run
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> The step; its gaps, blocks and joints are set
-      type(step_context_t), intent(inout) :: step
       !> The largest at closed contacts, and depth that open ones do not tell [m]
       real(wp), intent(out) :: error
       real(wp) :: told
       integer :: j, k
 
-      step%after = displaced_blocks(system, settings, motion)
-      step%joint = contacts%joint
-      step%end_gap = 0.0_wp*contacts%gap
-      error = 0.0_wp
-      do j = 1, size(step%joint)
-         call place_joint(step%after, step%after%moved, step%joint(j), step%end_gap(:, j))
-         do k = 1, step%joint(j)%n_contact
-            told = contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
-            associate (gap => step%end_gap(k, j))
-               error = max(error, merge(min(-gap, told - gap), abs(gap - told), &
-                  & step%state%face(j)%open(k)))
-            end associate
+      associate (step => run%step)
+         step%after = displaced_blocks(run%system, run%settings, motion)
+         step%joint = run%contacts%joint
+         step%end_gap = 0.0_wp*run%contacts%gap
+         error = 0.0_wp
+         do j = 1, size(step%joint)
+            call place_joint(step%after, step%after%moved, step%joint(j), step%end_gap(:, j))
+            do k = 1, step%joint(j)%n_contact
+               told = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
+               associate (gap => step%end_gap(k, j))
+                  error = max(error, merge(min(-gap, told - gap), abs(gap - told), &
+                     & step%state%face(j)%open(k)))
+               end associate
+            end do
          end do
-      end do
+      end associate
    end subroutine see_curves
 
    !> Rows half way of a motion, and trial forces to begin with; what strain lets them lack of the
    !> gaps at the end are curves
-   pure subroutine take_turned_rows(system, motion, contacts, step)
-      type(block_system_t), intent(in) :: system
+   pure subroutine take_turned_rows(run, motion)
+      !> The run, with joints and gaps after the motion; curves and trial forces are set
+      type(run_t), intent(inout) :: run
       real(wp), intent(in) :: motion(:, :)
-      type(contacts_t), intent(inout) :: contacts
-      !> The step, with joints and gaps after the motion; its curves and trial forces are set
-      type(step_context_t), intent(inout) :: step
-      type(joint_t) :: joint(size(step%joint))
+      type(joint_t) :: joint(size(run%contacts%joint))
       real(wp) :: told(3, size(joint))
       integer :: e, j, side
 
-      do j = 1, size(joint)
-         joint(j) = half_way(contacts%joint(j), step%joint(j))
-      end do
-      call place_rows(system, (system%motion + step%after%motion)/2.0_wp, joint, &
-         & contacts%springs%row)
-      do j = 1, size(joint)
-         do side = 1, 2
-            e = contacts%springs%equation(side, j)
-            if (e > 0) contacts%springs%row(3, :, side, j) = contacts%springs%row(3, :, side, j) &
-               & *turn_ratio(motion(3, e))
+      associate (step => run%step, springs => run%contacts%springs, gap => run%contacts%gap)
+         do j = 1, size(joint)
+            joint(j) = half_way(run%contacts%joint(j), step%joint(j))
          end do
-      end do
-      told = relative_displacement(contacts%springs, motion)
-      do j = 1, size(joint)
-         associate (n => joint(j)%n_contact)
-            step%curve(:, j) = 0.0_wp
-            step%curve(:n, j) = step%end_gap(:n, j) - contacts%gap(:n, j) - told(:n, j)
-         end associate
-         step%state%start(:, j) = step%state%multiplier(:, j) - contacts%springs%stiffness(j) &
-            & *([contacts%gap(1:2, j), 0.0_wp] + step%curve(:, j))
-      end do
+         call place_rows(run%system, (run%system%motion + step%after%motion)/2.0_wp, joint, &
+            & springs%row)
+         do j = 1, size(joint)
+            do side = 1, 2
+               e = springs%equation(side, j)
+               if (e > 0) springs%row(3, :, side, j) = springs%row(3, :, side, j) &
+                  & *turn_ratio(motion(3, e))
+            end do
+         end do
+         told = relative_displacement(springs, motion)
+         do j = 1, size(joint)
+            associate (n => joint(j)%n_contact)
+               step%curve(:, j) = 0.0_wp
+               step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
+            end associate
+            step%state%start(:, j) = step%state%multiplier(:, j) - springs%stiffness(j) &
+               & *([gap(1:2, j), 0.0_wp] + step%curve(:, j))
+         end do
+      end associate
    end subroutine take_turned_rows
 
    !> A joint half way between where it is before and after a step

@@ -1,12 +1,10 @@
 !> Energy balance of a dynamic run
 module dda_energy
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
-   use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
    use dda_settings, only : settings_t
-   use dda_step_context, only : energy_t, step_context_t
+   use dda_step_context, only : energy_t, run_t, step_context_t
    use dda_step_state, only : equations_t
    implicit none
    private
@@ -27,55 +25,48 @@ contains
 
    !> Energies after a step, and what it took and brought added to what the steps before did; what
    !> is left unexplained is numerical dissipation. A step of no length begins the audit
-   pure subroutine audit_step(settings, system, equations, contacts, step, time, energy)
-      type(settings_t), intent(in) :: settings
-      !> The blocks after the step
-      type(block_system_t), intent(in) :: system
-      type(equations_t), intent(in) :: equations
-      !> The contacts after the step
-      type(contacts_t), intent(in) :: contacts
-      type(step_context_t), intent(in) :: step
-      !> Time after it [s]
-      real(wp), intent(in) :: time
-      !> Energies before the step in, after it out
-      type(energy_t), intent(inout) :: energy
-      type(energy_t) :: before
+   pure subroutine audit_step(run)
+      !> The run after the step, but for its energies
+      type(run_t), intent(inout) :: run
+      real(wp) :: before
 
-      before = energy
-      call store_energy(settings, system, equations, contacts, energy)
-      energy%time = time
-      if (.not. step%dt > 0.0_wp) return
-      call spend_energy(settings, equations, step, energy)
-      energy%numerical = before%numerical + total(before) - total(energy)
+      before = total(run%march%energy)
+      call store_energy(run)
+      run%march%energy%time = run%march%time
+      if (.not. run%step%dt > 0.0_wp) return
+      call spend_energy(run%settings, run%equations, run%step, run%march%energy)
+      associate (energy => run%march%energy)
+         energy%numerical = energy%numerical + before - total(energy)
+      end associate
    end subroutine audit_step
 
    !> Energy that is in the blocks, in the springs of the joints, and in bars
-   pure subroutine store_energy(settings, system, equations, contacts, energy)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(equations_t), intent(in) :: equations
-      type(contacts_t), intent(in) :: contacts
-      type(energy_t), intent(inout) :: energy
+   pure subroutine store_energy(run)
+      type(run_t), intent(inout) :: run
       real(wp) :: d(3, 3)
       integer :: b, e
 
-      energy%kinetic = kinetic_energy(equations, packed_velocity(system, size(equations%weight, 1)))
-      energy%gravity = 0.0_wp
-      energy%elastic = 0.0_wp
-      if (.not. settings%current) energy%contact = &
-         & sum(sum(contacts%force**2, dim=1)/contacts%springs%stiffness)/2.0_wp
-      do b = 1, size(system%equation)
-         e = system%equation(b)
-         if (e == 0) cycle
-         d = elasticity_matrix(system%materials(system%material(b)))
-         associate (motion => system%motion(:, b))
-            energy%gravity = energy%gravity - dot_product(equations%weight(1:2, e), motion(1:2))
-            energy%elastic = energy%elastic + system%area(b)*(dot_product(motion(4:6), &
-               & system%initial_stress(:, b) + matmul(d, motion(4:6))/2.0_wp))
-         end associate
-      end do
-      if (allocated(system%bar)) energy%elastic = energy%elastic &
-         & + sum(system%bar%force**2/settings%boundary%bar%stiffness)/2.0_wp
+      associate (system => run%system, equations => run%equations, contacts => run%contacts, &
+         & energy => run%march%energy)
+         energy%kinetic = kinetic_energy(equations, &
+            & packed_velocity(system, size(equations%weight, 1)))
+         energy%gravity = 0.0_wp
+         energy%elastic = 0.0_wp
+         if (.not. run%settings%current) energy%contact = &
+            & sum(sum(contacts%force**2, dim=1)/contacts%springs%stiffness)/2.0_wp
+         do b = 1, size(system%equation)
+            e = system%equation(b)
+            if (e == 0) cycle
+            d = elasticity_matrix(system%materials(system%material(b)))
+            associate (motion => system%motion(:, b))
+               energy%gravity = energy%gravity - dot_product(equations%weight(1:2, e), motion(1:2))
+               energy%elastic = energy%elastic + system%area(b)*(dot_product(motion(4:6), &
+                  & system%initial_stress(:, b) + matmul(d, motion(4:6))/2.0_wp))
+            end associate
+         end do
+         if (allocated(system%bar)) energy%elastic = energy%elastic &
+            & + sum(system%bar%force**2/run%settings%boundary%bar%stiffness)/2.0_wp
+      end associate
    end subroutine store_energy
 
    !> Add what a step brought in and took

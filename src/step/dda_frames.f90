@@ -9,8 +9,7 @@ module dda_frames
    use dda_friction_cone, only : joint_face_t
    use dda_energy, only : audit_t
    use dda_kinds, only : wp
-   use dda_settings, only : settings_t
-   use dda_step_context, only : march_t
+   use dda_step_context, only : run_t
    implicit none
    private
 
@@ -106,20 +105,18 @@ contains
    end function blank_album
 
    !> Keep a picture if one is due, and where the measured points are
-   pure subroutine keep_pictures(settings, system, contacts, march, farthest, last, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      !> Largest motion of a point in the last step [m]
-      real(wp), intent(in) :: farthest
+   pure subroutine keep_pictures(run, last, album)
+      type(run_t), intent(in) :: run
       !> Whether the run has ended here, with a step that has been offered
       logical, intent(in) :: last
       type(album_t), intent(inout) :: album
 
-      call keep_frame(system, contacts, march%steps, march%time, march%displacement, farthest, &
-         & last, album)
-      if (.not. last) call keep_track(system, settings%current, march%steps, march%time, album)
+      associate (march => run%march)
+         call keep_frame(run%system, run%contacts, march%steps, march%time, march%displacement, &
+            & run%step%farthest, last, album)
+         if (.not. last) call keep_track(run%system, run%settings%current, march%steps, &
+            & march%time, album)
+      end associate
    end subroutine keep_pictures
 
    !> Whether a picture is due
@@ -161,7 +158,9 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       integer, intent(in) :: step
-      real(wp), intent(in) :: time, displacement, farthest
+      real(wp), intent(in) :: time, displacement
+      !> Largest motion of a point in the last step [m]
+      real(wp), intent(in) :: farthest
       logical, intent(in) :: last
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)

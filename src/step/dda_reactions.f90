@@ -3,13 +3,10 @@ module dda_reactions
    use dda_block_system, only : block_system_t
    use dda_boundary, only : boundary_t
    use dda_contact_types, only : joint_t
-   use dda_contacts, only : contacts_t
    use dda_deformation, only : moved_point
    use dda_frames, only : album_t
    use dda_kinds, only : wp
-   use dda_settings, only : settings_t
-   use dda_step_context, only : step_context_t
-   use dda_step_state, only : equations_t
+   use dda_step_context, only : run_t
    use dda_vector, only : cross
    implicit none
    private
@@ -99,37 +96,34 @@ contains
 
    !> Keep the reactions of a dynamic step: the mean over it of what changes the momentum of the
    !> blocks
-   pure subroutine keep_reactions(settings, system, contacts, equations, step, album)
-      type(settings_t), intent(in) :: settings
-      !> The blocks after the step
-      type(block_system_t), intent(in) :: system
-      !> The contacts after the step
-      type(contacts_t), intent(in) :: contacts
-      type(equations_t), intent(in) :: equations
-      type(step_context_t), intent(in) :: step
+   pure subroutine keep_reactions(run, album)
+      !> The run after the step
+      type(run_t), intent(in) :: run
       type(album_t), intent(inout) :: album
       real(wp) :: force(2), place(2)
       integer :: h, i, k
 
       if (.not. allocated(album%support)) return
-      if (allocated(step%impulse)) then
-         album%reaction_now = forces_of_blocks(system, contacts%joint, step%impulse, album%support)
-      else
-         album%reaction_now = forces_of_blocks(system, contacts%joint, contacts%force, &
-            & album%support)
-      end if
-      do k = 1, size(equations%fixed%point)
-         h = equations%fixed%point(k)
-         i = findloc(album%support(2, :), h, dim=1)
-         force = 0.0_wp
-         force(equations%fixed%axis(k)) = equations%fixed%force(k)
-         if (allocated(step%held_impulse)) force(equations%fixed%axis(k)) = step%held_impulse(k)
-         associate (held => settings%boundary%held(h))
-            place = held%point
-            if (settings%current) place = moved_point(held%point, &
-               & system%centroid(:, held%block), system%motion(:, held%block))
-         end associate
-         album%reaction_now(:, i) = album%reaction_now(:, i) + [force, cross(place, force)]
-      end do
+      associate (system => run%system, joint => run%contacts%joint, step => run%step, &
+         & fixed => run%equations%fixed)
+         if (allocated(step%impulse)) then
+            album%reaction_now = forces_of_blocks(system, joint, step%impulse, album%support)
+         else
+            album%reaction_now = forces_of_blocks(system, joint, run%contacts%force, album%support)
+         end if
+         do k = 1, size(fixed%point)
+            h = fixed%point(k)
+            i = findloc(album%support(2, :), h, dim=1)
+            force = 0.0_wp
+            force(fixed%axis(k)) = fixed%force(k)
+            if (allocated(step%held_impulse)) force(fixed%axis(k)) = step%held_impulse(k)
+            associate (held => run%settings%boundary%held(h))
+               place = held%point
+               if (run%settings%current) place = moved_point(held%point, &
+                  & system%centroid(:, held%block), system%motion(:, held%block))
+            end associate
+            album%reaction_now(:, i) = album%reaction_now(:, i) + [force, cross(place, force)]
+         end do
+      end associate
    end subroutine keep_reactions
 end module dda_reactions

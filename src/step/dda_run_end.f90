@@ -1,33 +1,72 @@
 !> How a run begins and ends, and what its outcome says
 submodule (dda_forward) dda_run_end
+   use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned
+   use dda_contact_detection, only : raise_springs
    use dda_energy, only : audit_step
    use dda_load_clock, only : has_path
-   use dda_step_interval, only : first_interval
-   use dda_verdict, only : still_moves_away
+   use dda_step_interval, only : first_interval, measure_scales
+   use dda_verdict, only : neighbours_of, still_moves_away
    implicit none
 
 contains
 
+   !> Equations, scales and first step of a run
+   module procedure begin_run
+      call raise_springs(run%settings, run%system, run%contacts)
+      call new_equations(run%system, run%contacts%springs, run%settings, run%equations)
+      run%neighbours = neighbours_of(run%contacts%joint)
+      call begin_step(run)
+      if (present(onward)) call go_on(onward, run)
+      if (run%march%steps > 0) return
+      call first_interval(run, error)
+      run%contacts%face = run%step%state%face
+      if (run%settings%dynamic) then
+         call audit_step(run)
+      else if (run%settings%current .and. run%contacts%springs%give) then
+         run%march%drowned = is_drowned(run%system, run%contacts%joint, run%contacts%springs, &
+            & run%equations)
+      end if
+   end procedure begin_run
+
+   !> Take over the march of a run that goes on, and the forces at its held points; points that are
+   !> held otherwise than before begin without force. Scales are those of the run as it is now
+   pure subroutine go_on(onward, run)
+      type(march_t), intent(in) :: onward
+      type(run_t), intent(inout) :: run
+
+      if (onward%steps > 0) then
+         run%march = onward
+         call measure_scales(run)
+         run%march%dt = min(run%march%dt, run%march%longest)
+      end if
+      if (.not. allocated(onward%held_force)) return
+      if (size(onward%held_force) == size(run%equations%fixed%force)) &
+         & run%equations%fixed%force = onward%held_force
+   end subroutine go_on
+
    !> What the end of a run says
    module procedure conclude
-      outcome%rest_tolerance = settings%rest_tolerance
-      if (march%free_acceleration > 0.0_wp) then
-         outcome%acceleration_ratio = acceleration/march%free_acceleration
-         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
-      end if
-      outcome%has_path = has_path(march%clock)
-      outcome%path_time = march%clock%now
-      outcome%jumps = march%jumps
-      outcome%largest_jump = march%largest_jump
-      outcome%steps = march%steps
-      outcome%passes = march%passes
+      associate (march => run%march)
+         outcome%rest_tolerance = run%settings%rest_tolerance
+         if (march%free_acceleration > 0.0_wp) then
+            outcome%acceleration_ratio = run%step%acceleration/march%free_acceleration
+            outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
+         end if
+         outcome%has_path = has_path(march%clock)
+         outcome%path_time = march%clock%now
+         outcome%jumps = march%jumps
+         outcome%largest_jump = march%largest_jump
+         outcome%steps = march%steps
+         outcome%passes = march%passes
+         outcome%factorisations = run%equations%factorisations
+      end associate
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
-      else if (settings%dynamic) then
-         call conclude_in_time(settings, march, outcome)
-      else if (outcome%verdict /= verdict%stable .and. march%drowned) then
+      else if (run%settings%dynamic) then
+         call conclude_in_time(run, outcome)
+      else if (outcome%verdict /= verdict%stable .and. run%march%drowned) then
          ! rounding may throw a block, but it does not balance one
          outcome%verdict = verdict%undecided
          outcome%reason = "round-off of coordinates loads a small block with more than its " &
@@ -38,32 +77,20 @@ contains
    end procedure conclude
 
    !> What the end of a dynamic run says
-   pure subroutine conclude_in_time(settings, march, outcome)
-      type(settings_t), intent(in) :: settings
-      type(march_t), intent(in) :: march
+   pure subroutine conclude_in_time(run, outcome)
+      type(run_t), intent(in) :: run
       type(outcome_t), intent(inout) :: outcome
 
       if (outcome%verdict == verdict%collapsed) return
-      if (still_moves_away(settings, march)) then
+      if (still_moves_away(run%settings, run%march)) then
          outcome%verdict = verdict%undecided
          outcome%reason = "the blocks still move away at the end of the run; give a longer duration"
-      else if (march%time >= settings%duration) then
+      else if (run%march%time >= run%settings%duration) then
          outcome%verdict = verdict%completed
       else
          outcome%verdict = verdict%undecided
          outcome%reason = "step limit reached before the end of the run"
       end if
    end subroutine conclude_in_time
-
-   !> Scales and first step of a run that begins, and its energy
-   module procedure begin_run
-      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
-      contacts%face = step%state%face
-      if (settings%dynamic) then
-         call audit_step(settings, system, equations, contacts, step, 0.0_wp, march%energy)
-      else if (settings%current .and. contacts%springs%give) then
-         march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
-      end if
-   end procedure begin_run
 
 end submodule dda_run_end

@@ -1,8 +1,9 @@
 !> Whether a try of a step counts, and what the next try changes if it does not
 submodule (dda_step) dda_step_check
    use dda_block_inertia, only : kinetic_energy, packed_velocity
+   use dda_block_system, only : block_system_t
    use dda_contact_transfer, only : renew_contacts
-   use dda_contact_types, only : joint_springs_t
+   use dda_contacts, only : contacts_t
    use dda_parting_line, only : block_gap
    use dda_spring_products, only : relative_displacement
    use dda_step_context, only : near_gap
@@ -29,32 +30,41 @@ contains
    module procedure check_motion
       logical :: searched
 
-      searched = contacts%searched .and. settings%current
-      outcome = check_length(settings, march, step)
-      if (outcome%accepted .and. searched) outcome = check_margins(system, contacts, march, step)
-      if (.not. (settings%dynamic .and. settings%current)) return
-      if (outcome%accepted) outcome = check_impact(settings, system, contacts, equations, step)
-      if (outcome%accepted .and. searched) outcome = check_axes(system, contacts, march, step)
+      searched = run%contacts%searched .and. run%settings%current
+      outcome = check_length(run)
+      if (outcome%accepted .and. searched) outcome = check_margins(run)
+      if (.not. in_time(run)) return
+      if (outcome%accepted) outcome = check_impact(run)
+      if (outcome%accepted .and. searched) outcome = check_axes(run)
    end procedure check_motion
 
    !> Check the velocities of a try
-   module procedure check_end_velocities
-      outcome = step_outcome_t(accepted=step%has_velocity, dt=step%dt)
-      if (.not. outcome%accepted) outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
-      if (outcome%accepted .and. contacts%searched) &
-         & outcome = check_penetration(settings, system, contacts, march, step)
-   end procedure check_end_velocities
+   module procedure check_velocities
+      outcome = step_outcome_t(accepted=run%step%has_velocity, dt=run%step%dt)
+      if (.not. outcome%accepted) outcome = half_step(run)
+      if (outcome%accepted .and. run%contacts%searched) outcome = check_penetration(run)
+   end procedure check_velocities
+
+   !> Try half the step
+   pure type(step_outcome_t) function half_step(run)
+      type(run_t), intent(in) :: run
+
+      half_step = step_outcome_t(dt=run%step%dt/2.0_wp, was_cut=.true.)
+   end function half_step
 
    !> Change for the next try what the checks ask for
    module procedure retry
-      if (outcome%dt < step%dt) step%choices = 0
-      march%dt = outcome%dt
-      step%was_cut = step%was_cut .or. outcome%was_cut
-      step%renews = outcome%beyond_margin .or. outcome%wrong_axes
-      if (outcome%beyond_margin) call widen_margins(system, step%state%motion, march%reach)
-      if (.not. outcome%wrong_axes) return
-      step%choices = step%choices + 1
-      step%travel = travel_by(system, step%state%motion)
+      associate (step => run%step)
+         if (outcome%dt < step%dt) step%choices = 0
+         run%march%dt = outcome%dt
+         step%was_cut = step%was_cut .or. outcome%was_cut
+         step%renews = outcome%beyond_margin .or. outcome%wrong_axes
+         if (outcome%beyond_margin) &
+            & call widen_margins(run%system, step%state%motion, run%march%reach)
+         if (.not. outcome%wrong_axes) return
+         step%choices = step%choices + 1
+         step%travel = travel_by(run%system, step%state%motion)
+      end associate
    end procedure retry
 
    !> Check the separating axes of a settled step
@@ -65,47 +75,46 @@ contains
 
       entered = .false.
       held_off = .false.
-      do j = 1, size(contacts%joint)
-         associate (block => contacts%joint(j)%block)
-            if (.not. all(contacts%search%outline%convex(block))) cycle
-            matters = no_matter*sqrt(minval(system%area(block)))
-            gap = block_gap(system%first_vertex, step%after%moved, block)
-            if (gap > matters .and. .not. all(step%state%face(j)%open)) held_off = .true.
-            if (gap > -matters) cycle
-            if (gap < block_gap(system%first_vertex, system%moved, block) - matters) &
-               & entered = .true.
-         end associate
-      end do
-      outcome%dt = step%dt
-      outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
-      outcome%accepted = .not. outcome%wrong_axes
-      if (outcome%wrong_axes .or. .not. entered .or. step%dt <= shortest*march%longest) return
-      outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+      associate (system => run%system, step => run%step)
+         do j = 1, size(run%contacts%joint)
+            associate (block => run%contacts%joint(j)%block)
+               if (.not. all(run%contacts%search%outline%convex(block))) cycle
+               matters = no_matter*sqrt(minval(system%area(block)))
+               gap = block_gap(system%first_vertex, step%after%moved, block)
+               if (gap > matters .and. .not. all(step%state%face(j)%open)) held_off = .true.
+               if (gap > -matters) cycle
+               if (gap < block_gap(system%first_vertex, system%moved, block) - matters) &
+                  & entered = .true.
+            end associate
+         end do
+         outcome%dt = step%dt
+         outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
+         outcome%accepted = .not. outcome%wrong_axes
+         if (outcome%accepted .and. entered .and. step%dt > shortest*run%march%longest) &
+            & outcome = half_step(run)
+      end associate
    end procedure check_axes
 
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, by another edge than that of their contact, where a block with a notch is one of
    !> the two
-   pure type(step_outcome_t) function check_penetration(settings, system, contacts, march, step)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
+   pure type(step_outcome_t) function check_penetration(run) result(outcome)
+      type(run_t), intent(in) :: run
       type(block_system_t) :: after
       type(contacts_t) :: found
       logical :: breaks
 
-      check_penetration = step_outcome_t(accepted=.true., dt=step%dt)
-      if (all(contacts%search%outline%convex) .or. step%dt <= shortest*march%longest) return
-      after = system
-      found = contacts
-      call update_contacts(step, settings, found, breaks)
-      call update_blocks(step, settings, after)
-      call renew_contacts(after, travel_of(after, settings, march), march%reach, &
-         & settings%penalty_ratio, settings%n_dof, found)
-      if (depth(after, found) > max(deep, 1.1_wp*depth(system, contacts))) &
-         & check_penetration = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+      outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
+      if (all(run%contacts%search%outline%convex) &
+         & .or. run%step%dt <= shortest*run%march%longest) return
+      after = run%system
+      found = run%contacts
+      call update_contacts(run%step, run%settings, found, breaks)
+      call update_blocks(run%step, run%settings, after)
+      call renew_contacts(after, travel_of(after, run%settings, run%march), run%march%reach, &
+         & run%settings%penalty_ratio, run%settings%n_dof, found)
+      if (depth(after, found) > max(deep, 1.1_wp*depth(run%system, run%contacts))) &
+         & outcome = half_step(run)
    end function check_penetration
 
    !> How deep the deepest corner is, over the size of the smaller block
@@ -125,34 +134,33 @@ contains
 
    !> Check that no open contact closes fast within the step
    module procedure check_impact
-      real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
+      real(wp), dimension(3, size(run%contacts%joint)) :: speed, acceleration
       real(wp) :: near, earliest, least, meeting, time
       integer :: j, k
 
-      outcome = step_outcome_t(accepted=.true., dt=step%dt)
-      associate (velocity => packed_velocity(system, &
-         & size(step%state%motion, 1)))
-         speed = relative_displacement(contacts%springs, velocity)
-         least = merge(0.0_wp, notable, settings%restitution > 0.0_wp) &
-            & *(kinetic_energy(equations, velocity) &
-            & + sum(equations%mass(1, 1, :))*step%slowest_impact**2/8.0_wp)
+      associate (velocity => packed_velocity(run%system, size(run%step%state%motion, 1)))
+         speed = relative_displacement(run%contacts%springs, velocity)
+         least = merge(0.0_wp, notable, run%settings%restitution > 0.0_wp) &
+            & *(kinetic_energy(run%equations, velocity) &
+            & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
       end associate
-      acceleration = relative_displacement(contacts%springs, free_accelerations(equations))
+      acceleration = relative_displacement(run%contacts%springs, free_accelerations(run%equations))
       earliest = huge(earliest)
-      do j = 1, size(contacts%joint)
-         near = near_gap(system, contacts%joint(j)%block)
-         do k = 1, contacts%joint(j)%n_contact
-            if (step%state%face(j)%open(k) .or. contacts%gap(k, j) <= near) cycle
-            time = falling_time(contacts%gap(k, j) - near/2.0_wp, -speed(k, j), -acceleration(k, j))
-            meeting = -speed(k, j) - acceleration(k, j)*min(time, step%dt)
-            if (meeting <= step%slowest_impact) cycle
-            if (meeting**2 < 2.0_wp*least*ease_of(contacts%springs, equations, k, j)) cycle
+      do j = 1, size(run%contacts%joint)
+         near = near_gap(run%system, run%contacts%joint(j)%block)
+         do k = 1, run%contacts%joint(j)%n_contact
+            if (run%step%state%face(j)%open(k) .or. run%contacts%gap(k, j) <= near) cycle
+            time = falling_time(run%contacts%gap(k, j) - near/2.0_wp, -speed(k, j), &
+               & -acceleration(k, j))
+            meeting = -speed(k, j) - acceleration(k, j)*min(time, run%step%dt)
+            if (meeting <= run%step%slowest_impact) cycle
+            if (meeting**2 < 2.0_wp*least*ease_of(run, k, j)) cycle
             earliest = min(earliest, time)
          end do
       end do
-      if (earliest > 2.0_wp*step%dt) return
-      outcome%accepted = .false.
-      outcome%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
+      outcome = step_outcome_t(accepted=earliest > 2.0_wp*run%step%dt, dt=run%step%dt)
+      if (.not. outcome%accepted) &
+         & outcome%dt = merge(earliest, run%step%dt/2.0_wp, earliest < 0.999_wp*run%step%dt)
    end procedure check_impact
 
    !> Accelerations of the blocks if nothing touched them
@@ -171,10 +179,8 @@ contains
    end function free_accelerations
 
    !> How easily an impact at a contact moves its two blocks
-   pure real(wp) function ease_of(springs, equations, k, j) result(ease)
-      !> The springs, for what the contact sees of the blocks
-      type(joint_springs_t), intent(in) :: springs
-      type(equations_t), intent(in) :: equations
+   pure real(wp) function ease_of(run, k, j) result(ease)
+      type(run_t), intent(in) :: run
       !> Which contact of the joint
       integer, intent(in) :: k
       !> Number of the joint
@@ -183,10 +189,10 @@ contains
 
       ease = 0.0_wp
       do side = 1, 2
-         e = springs%equation(side, j)
+         e = run%contacts%springs%equation(side, j)
          if (e == 0) cycle
          do i = 1, 3
-            ease = ease + springs%row(i, k, side, j)**2/equations%mass(i, i, e)
+            ease = ease + run%contacts%springs%row(i, k, side, j)**2/run%equations%mass(i, i, e)
          end do
       end do
    end function ease_of

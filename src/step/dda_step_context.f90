@@ -1,14 +1,18 @@
-!> What one step finds out; made new for each step
+!> What a run holds: blocks, contacts and equations, what it carries from step to step, and what one
+!> step finds out
 module dda_step_context
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_load_clock, only : load_clock_t
-   use dda_step_state, only : step_state_t
+   use dda_settings, only : settings_t
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
 
-   public :: energy_t, march_t, step_context_t, step_outcome_t, near_gap
+   public :: energy_t, march_t, run_state_t, run_t, step_context_t, step_outcome_t
+   public :: in_time, near_gap
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
    type :: energy_t
@@ -82,6 +86,8 @@ module dda_step_context
       real(wp), allocatable :: travel(:, :)
       !> Whether the contacts must be placed, or searched, for the next try
       logical :: renews = .false.
+      !> The contacts at the end of the step before, where a search must not go by an earlier one
+      type(contacts_t), allocatable :: kept
       !> How often the separating axes were chosen by the motion of a try
       integer :: choices = 0
       !> Whether the step counts
@@ -168,10 +174,55 @@ module dda_step_context
       type(energy_t) :: energy
    end type march_t
 
+   !> What the next step of a run begins with
+   type :: run_state_t
+      !> The blocks
+      type(block_system_t) :: system
+      !> The contacts
+      type(contacts_t) :: contacts
+      !> What is carried on beside them
+      type(march_t) :: march
+   end type run_state_t
+
+   !> A rest on the path of a static run, to return to
+   type :: rest_t
+      !> The run there
+      type(run_state_t) :: state
+      !> Forces of the springs at held points: (n_spring) [N/m]
+      real(wp), allocatable :: held_force(:)
+      !> Pictures kept so far
+      integer :: n_frame = 0
+      !> Steps so far of which the measured points are kept
+      integer :: n_track = 0
+      !> Displacement or time at which the next picture is due [m or s]
+      real(wp) :: due = 0.0_wp
+   end type rest_t
+
+   !> All that a run holds
+   type, extends(run_state_t) :: run_t
+      !> How it goes
+      type(settings_t) :: settings
+      !> The equations of a step
+      type(equations_t) :: equations
+      !> The step
+      type(step_context_t) :: step
+      !> The last rest on a path; not allocated before the first
+      type(rest_t), allocatable :: rest
+      !> The pairs of blocks that touched at the beginning: (2, n_pair)
+      integer, allocatable :: neighbours(:, :)
+   end type run_t
+
    !> A contact is closed if its gap is below this share of the smaller block
    real(wp), parameter :: near = 1.0e-10_wp
 
 contains
+
+   !> Whether blocks move in time: forces are then multipliers, and impacts change velocities
+   pure logical function in_time(run)
+      type(run_t), intent(in) :: run
+
+      in_time = run%settings%dynamic .and. run%settings%current
+   end function in_time
 
    !> Gap below which two blocks count as touching
    pure real(wp) function near_gap(system, pair)

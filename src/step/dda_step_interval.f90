@@ -8,13 +8,12 @@ module dda_step_interval
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
    use dda_friction_cone, only : cone_t, joint_face_t
-   use dda_contact_types, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path, new_load_clock
    use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t, step_outcome_t
-   use dda_step_state, only : equations_t, step_state_t
+   use dda_step_context, only : march_t, run_t, step_context_t, step_outcome_t
+   use dda_step_state, only : equations_t
    implicit none
    private
 
@@ -53,99 +52,113 @@ module dda_step_interval
 
 contains
 
-   !> Scales of the problem and the length of the first step: long enough that inertia does not
-   !> hide the elastic motion, which is found by gluing all joints
-   pure subroutine first_interval(system, springs, settings, equations, state, march, error)
-      type(block_system_t), intent(in) :: system
-      type(joint_springs_t), intent(in) :: springs
-      type(settings_t), intent(in) :: settings
-      !> The equations; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      !> The step's state; its motion becomes that of the glued system, its faces those to
-      !> begin with
-      type(step_state_t), intent(inout) :: state
-      type(march_t), intent(out) :: march
+   !> Scales of the problem and the length of the first step
+   pure subroutine first_interval(run, error)
+      !> The run; its march begins, the motion of the step becomes that of the glued system, its
+      !> faces those to begin with
+      type(run_t), intent(inout) :: run
       !> Allocated if the system cannot be solved even with all joints glued
       type(error_t), allocatable, intent(out) :: error
-      type(cone_t) :: glued(size(springs%stiffness))
-      type(joint_face_t) :: closed(size(springs%stiffness))
-      real(wp) :: mean_mass, stiffest
 
-      if (.not. settings%dynamic) march%clock = new_load_clock(settings)
-      if (has_path(march%clock)) march%time = march%clock%now
-      call measure_scales(system, settings, equations, march)
-      if (settings%dynamic) then
-         march%dt = march%longest
-         call fit_interval(settings, largest_motion(system, &
-            & packed_velocity(system, size(equations%weight, 1))), march)
-         return
+      if (.not. run%settings%dynamic) run%march%clock = new_load_clock(run%settings)
+      if (has_path(run%march%clock)) run%march%time = run%march%clock%now
+      call measure_scales(run)
+      if (run%settings%dynamic) then
+         run%march%dt = run%march%longest
+         call fit_interval(run%settings, largest_motion(run%system, &
+            & packed_velocity(run%system, size(run%equations%weight, 1))), run%march)
+      else
+         call first_static_interval(run, error)
       end if
-      mean_mass = sum(equations%mass(1, 1, :)/real(size(equations%mass, 3), wp))
-      stiffest = maxval(system%materials%young)
-      if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
-      march%longest = longest_static_step(mean_mass, stiffest)
-      march%dt = march%longest
-      call assemble_first_loads(system, settings, march, equations)
-      call solve_faces(equations, springs, glued, closed, state%start, state%motion)
-      if (.not. equations%factor%usable) then
-         call fatal_error(error, "stiffness matrix is singular even with all joints closed")
-         return
-      end if
-      call change_faces(equations, springs, state)
-      march%free_acceleration = free_acceleration(system, equations)
-      march%last_acceleration = march%free_acceleration
-      march%elastic_motion = max(largest_motion(system, state%motion), &
-         & least_of_strain*straining_motion(system, state%motion))
-      if (falls_glued(equations, state%motion, march%dt) .and. size(springs%stiffness) > 0) &
-         & march%elastic_motion = min(march%elastic_motion, (1.0_wp + settings%penalty_ratio) &
-         & *sum(norm2(equations%felt(1:2, :), dim=1))/minval(springs%stiffness))
-      march%elastic_motion = max(march%elastic_motion, longest_give(equations%bars, &
-         & sum(norm2(equations%felt(1:2, :), dim=1))))
-      if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
-         & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
-      if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> Length of the first static step: long enough that inertia does not hide the elastic motion,
+   !> which is found by gluing all joints
+   pure subroutine first_static_interval(run, error)
+      type(run_t), intent(inout) :: run
+      type(error_t), allocatable, intent(out) :: error
+      type(cone_t) :: glued(size(run%contacts%joint))
+      type(joint_face_t) :: closed(size(run%contacts%joint))
+      real(wp) :: stiffest
+
+      associate (march => run%march, springs => run%contacts%springs, &
+         & equations => run%equations, state => run%step%state)
+         stiffest = maxval(run%system%materials%young)
+         if (size(glued) > 0) stiffest = maxval(springs%stiffness)
+         march%longest = longest_static_step(sum(equations%mass(1, 1, :) &
+            & /real(size(equations%mass, 3), wp)), stiffest)
+         march%dt = march%longest
+         call assemble_first_loads(run)
+         call solve_faces(equations, springs, glued, closed, state%start, state%motion)
+         if (.not. equations%factor%usable) then
+            call fatal_error(error, "stiffness matrix is singular even with all joints closed")
+            return
+         end if
+         call change_faces(equations, springs, state)
+         march%free_acceleration = free_acceleration(run%system, equations)
+         march%last_acceleration = march%free_acceleration
+         march%elastic_motion = elastic_motion(run)
+         if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
+            & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
+         if (run%settings%time_step > 0.0_wp) &
+            & march%dt = min(march%longest, run%settings%time_step)
+      end associate
+   end subroutine first_static_interval
+
+   !> The scale of elastic motion, once the glued system has moved [m]
+   pure real(wp) function elastic_motion(run)
+      type(run_t), intent(in) :: run
+      real(wp) :: whole
+
+      associate (springs => run%contacts%springs, equations => run%equations, &
+         & motion => run%step%state%motion)
+         whole = sum(norm2(equations%felt(1:2, :), dim=1))
+         elastic_motion = max(largest_motion(run%system, motion), &
+            & least_of_strain*straining_motion(run%system, motion))
+         if (falls_glued(equations, motion, run%march%dt) .and. size(springs%stiffness) > 0) &
+            & elastic_motion = min(elastic_motion, (1.0_wp + run%settings%penalty_ratio)*whole &
+            & /minval(springs%stiffness))
+         elastic_motion = max(elastic_motion, longest_give(equations%bars, whole))
+      end associate
+   end function elastic_motion
 
    !> The blocks with the loads that scales are measured by: those of the beginning, or the first
    !> that come where there are none. Points that are led do not move
-   pure subroutine assemble_first_loads(system, settings, march, equations)
-      type(block_system_t), intent(in) :: system
-      type(settings_t), intent(in) :: settings
-      !> The march, for the length of the step and its clock
-      type(march_t), intent(in) :: march
-      type(equations_t), intent(inout) :: equations
+   pure subroutine assemble_first_loads(run)
+      type(run_t), intent(inout) :: run
       type(settings_t) :: unled
       integer :: i
 
-      call assemble_blocks(system, settings, march%dt, equations, march%clock%now)
-      if (any(abs(equations%outer) > 0.0_wp)) return
-      unled = settings
-      if (allocated(unled%boundary%held)) unled%boundary%held%path = history_t()
-      do i = 2, size(march%clock%bend)
-         call assemble_blocks(system, unled, march%dt, equations, march%clock%bend(i))
+      associate (clock => run%march%clock, equations => run%equations)
+         call assemble_blocks(run%system, run%settings, run%march%dt, equations, clock%now)
          if (any(abs(equations%outer) > 0.0_wp)) return
-      end do
+         unled = run%settings
+         if (allocated(unled%boundary%held)) unled%boundary%held%path = history_t()
+         do i = 2, size(clock%bend)
+            call assemble_blocks(run%system, unled, run%march%dt, equations, clock%bend(i))
+            if (any(abs(equations%outer) > 0.0_wp)) return
+         end do
+      end associate
    end subroutine assemble_first_loads
 
-   !> Scales of the problem; they do not change as it goes on
-   pure subroutine measure_scales(system, settings, equations, march)
-      type(block_system_t), intent(in) :: system
-      type(settings_t), intent(in) :: settings
-      type(equations_t), intent(in) :: equations
-      !> Receives the scales, and of a dynamic run the longest step
-      type(march_t), intent(inout) :: march
+   !> Scales of the problem, which do not change as it goes on, and of a dynamic run the longest
+   !> step
+   pure subroutine measure_scales(run)
+      type(run_t), intent(inout) :: run
       integer :: e
 
-      do e = 1, size(equations%mass, 3)
-         march%free_acceleration = max(march%free_acceleration, &
-            & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
-      end do
-      march%last_acceleration = march%free_acceleration
-      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
-      if (settings%current) march%rounding = feigned_motion(system)
-      march%allowed_motion = settings%max_displacement_ratio &
-         & *sqrt(minval(system%area, mask=system%equation > 0))
-      if (settings%dynamic) march%longest = dynamic_step(settings, march)
+      associate (march => run%march, system => run%system, equations => run%equations)
+         do e = 1, size(equations%mass, 3)
+            march%free_acceleration = max(march%free_acceleration, &
+               & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
+         end do
+         march%last_acceleration = march%free_acceleration
+         march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
+         if (run%settings%current) march%rounding = feigned_motion(system)
+         march%allowed_motion = run%settings%max_displacement_ratio &
+            & *sqrt(minval(system%area, mask=system%equation > 0))
+         if (run%settings%dynamic) march%longest = dynamic_step(run%settings, march)
+      end associate
    end subroutine measure_scales
 
    !> Longest static step: its inertia must not drown in the rounding of the stiffness
@@ -251,26 +264,24 @@ contains
 
    !> Check that a try has settled and, where blocks move, has not moved too far for a linear step
    !> (Shi: df24)
-   pure type(step_outcome_t) function check_length(settings, march, step) result(outcome)
-      type(settings_t), intent(in) :: settings
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
+   pure type(step_outcome_t) function check_length(run) result(outcome)
+      type(run_t), intent(in) :: run
       real(wp) :: factor, limit
 
-      outcome%dt = step%dt
-      outcome%accepted = step%state%settled
+      outcome%dt = run%step%dt
+      outcome%accepted = run%step%state%settled
       if (.not. outcome%accepted) then
-         outcome%dt = cut*step%dt
+         outcome%dt = cut*run%step%dt
          outcome%was_cut = .true.
          return
       end if
-      limit = longest_motion(march)
-      outcome%accepted = .not. settings%current .or. step%farthest <= limit
+      limit = longest_motion(run%march)
+      outcome%accepted = .not. run%settings%current .or. run%step%farthest <= limit
       if (outcome%accepted) return
-      factor = 0.8_wp*sqrt(limit/step%farthest)
+      factor = 0.8_wp*sqrt(limit/run%step%farthest)
       ! what strain alone holds goes as far in a step a little shorter
-      if (step%last_farthest > limit) factor = min(cut, factor)
-      outcome%dt = factor*step%dt
+      if (run%step%last_farthest > limit) factor = min(cut, factor)
+      outcome%dt = factor*run%step%dt
    end function check_length
 
    !> Most that a step may move where blocks move
@@ -282,40 +293,43 @@ contains
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
    !> a step may make, and shrinks where blocks rattle to and fro
-   pure subroutine next_interval(settings, system, step, march)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(step_context_t), intent(in) :: step
-      type(march_t), intent(inout) :: march
-      real(wp) :: factor, alike
+   pure subroutine next_interval(run)
+      type(run_t), intent(inout) :: run
+      real(wp) :: factor, speed
 
-      factor = static_growth(step%acceleration, march%last_acceleration)
-      march%last_acceleration = step%acceleration
-      if (settings%dynamic) then
-         march%dt = march%longest
-         if (step%was_cut) march%dt = min(march%longest, calm_growth*step%dt)
-         if (settings%current) call fit_interval(settings, largest_motion(system, step%velocity), &
-            & march)
-         if (.not. settings%current) call fit_interval(settings, 0.0_wp, march)
-         return
-      end if
-      if (step%was_cut) factor = min(factor, calm_growth)
-      if (settings%current) then
-         if (step%farthest > 0.0_wp) factor = min(growth, &
-            & 0.8_wp*sqrt(longest_motion(march)/step%farthest))
-         if (allocated(march%last_motion)) then
-            alike = sum(march%last_motion*step%state%motion) &
-               & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))
-            if (alike < rattling .and. step%farthest > rattle_share*march%displacement) then
-               factor = 0.1_wp
-            else
-               factor = min(factor, calm_growth)
-            end if
+      associate (march => run%march, step => run%step, settings => run%settings)
+         factor = static_growth(step%acceleration, march%last_acceleration)
+         march%last_acceleration = step%acceleration
+         if (settings%dynamic) then
+            march%dt = march%longest
+            if (step%was_cut) march%dt = min(march%longest, calm_growth*step%dt)
+            speed = 0.0_wp
+            if (settings%current) speed = largest_motion(run%system, step%velocity)
+            call fit_interval(settings, speed, march)
+            return
          end if
-         march%last_motion = step%state%motion
-      end if
-      march%dt = min(march%longest, factor*march%dt)
+         if (step%was_cut) factor = min(factor, calm_growth)
+         if (settings%current) then
+            if (step%farthest > 0.0_wp) &
+               & factor = min(growth, 0.8_wp*sqrt(longest_motion(march)/step%farthest))
+            if (allocated(march%last_motion)) &
+               & factor = merge(0.1_wp, min(factor, calm_growth), rattles(march, step))
+            march%last_motion = step%state%motion
+         end if
+         march%dt = min(march%longest, factor*march%dt)
+      end associate
    end subroutine next_interval
+
+   !> Whether a step goes back on the one before
+   pure logical function rattles(march, step)
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+      real(wp) :: alike
+
+      alike = sum(march%last_motion*step%state%motion) &
+         & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))
+      rattles = alike < rattling .and. step%farthest > rattle_share*march%displacement
+   end function rattles
 
    !> Largest motion of a point at the radius of gyration by the strain of its block
    pure function straining_motion(system, motion) result(largest)

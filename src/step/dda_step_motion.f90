@@ -15,54 +15,63 @@ contains
 
    !> What a step begins with
    module procedure predict
-      contacts%remember = .not. (settings%dynamic .and. settings%current)
-      step%was_cut = .false.
-      step%choices = 0
-      step%renews = settings%current
-      step%longest = march%longest
-      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
-      step%travel = 0.0_wp*system%vertex
-      if (.not. settings%current) return
-      call turn_masses(system, equations)
-      if (contacts%searched) step%travel = travel_of(system, settings, march)
+      run%contacts%remember = .not. in_time(run)
+      associate (step => run%step)
+         step%was_cut = .false.
+         step%choices = 0
+         step%renews = run%settings%current
+         step%longest = run%march%longest
+         step%slowest_impact = 2.0_wp*run%march%free_acceleration*run%march%longest
+         step%travel = 0.0_wp*run%system%vertex
+         if (.not. run%settings%current) return
+         call turn_masses(run%system, run%equations)
+         if (.not. run%contacts%searched) return
+         step%travel = travel_of(run%system, run%settings, run%march)
+         if (run%contacts%remember) step%kept = run%contacts
+      end associate
    end procedure predict
-
-   !> The motion of one try, measured
-   module procedure find_motion
-      logical :: in_time
-
-      in_time = settings%dynamic .and. settings%current
-      step%dt = march%dt
-      if (in_time) call stiffen_contacts(system, step%dt, contacts)
-      if (in_time) call take_springs(equations)
-      call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      step%state%unseen = step%state%fineness*unseen*march%free_acceleration*step%dt**2
-      call assemble_blocks(system, settings, step%dt, equations, &
-         & merge(march%time, march%clock%now, settings%dynamic))
-      if (in_time) call foresee_curves(settings, system, contacts, step)
-      call settle_joints(settings, equations, contacts%springs, step%state)
-      if (in_time .and. step%state%settled) &
-         & call follow_curves(settings, system, contacts, equations, step)
-      march%passes = march%passes + step%state%passes
-      step%last_farthest = step%farthest
-      if (step%state%settled) step%farthest = largest_motion(system, step%state%motion)
-   end procedure find_motion
 
    !> Contacts where the blocks are now
    module procedure place_contacts
       integer, allocatable :: before(:, :)
 
-      if (contacts%searched) then
-         allocate (before, source=contacts%springs%equation)
-         if (allocated(kept)) contacts = kept
-         if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
-         call renew_contacts(system, travel, march%reach, settings%penalty_ratio, &
-            & settings%n_dof, contacts)
-         call renew_springs(before, contacts%springs, equations)
-      else
-         call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
-         call take_springs(equations)
-      end if
+      associate (system => run%system, settings => run%settings)
+         if (run%contacts%searched) then
+            allocate (before, source=run%contacts%springs%equation)
+            if (run%contacts%remember) run%contacts = run%step%kept
+            if (.not. allocated(run%march%reach)) &
+               & run%march%reach = first_reach(system, settings, run%march)
+            call renew_contacts(system, run%step%travel, run%march%reach, settings%penalty_ratio, &
+               & settings%n_dof, run%contacts)
+            call renew_springs(before, run%contacts%springs, run%equations)
+         else
+            call follow_contacts(system, settings%penalty_ratio, settings%n_dof, run%contacts)
+            call take_springs(run%equations)
+         end if
+      end associate
    end procedure place_contacts
+
+   !> Equations of the blocks, and the forces that their joints begin with
+   module procedure assemble
+      run%step%dt = run%march%dt
+      if (in_time(run)) call stiffen_contacts(run)
+      call begin_step(run)
+      run%step%state%unseen = run%step%state%fineness*unseen*run%march%free_acceleration &
+         & *run%step%dt**2
+      call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
+         & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
+      if (in_time(run)) call foresee_curves(run)
+   end procedure assemble
+
+   !> Contact forces and motion of one try
+   module procedure solve_contacts
+      associate (step => run%step)
+         call settle_joints(run%settings, run%equations, run%contacts%springs, step%state)
+         if (in_time(run) .and. step%state%settled) call follow_curves(run)
+         run%march%passes = run%march%passes + step%state%passes
+         step%last_farthest = step%farthest
+         if (step%state%settled) step%farthest = largest_motion(run%system, step%state%motion)
+      end associate
+   end procedure solve_contacts
 
 end submodule dda_step_motion

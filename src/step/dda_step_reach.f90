@@ -1,11 +1,10 @@
 !> How far corners move in a step, so that nothing is met that was not looked for
 module dda_step_reach
    use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
-   use dda_step_context, only : march_t, step_context_t, step_outcome_t
+   use dda_step_context, only : march_t, run_t, step_context_t, step_outcome_t
    implicit none
    private
 
@@ -57,29 +56,27 @@ contains
 
    !> Check that no corner moves beyond the reach of its block, or so far that a block may pass by
    !> what it meets
-   pure type(step_outcome_t) function check_margins(system, contacts, march, step) result(outcome)
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
-      real(wp) :: way(size(system%area)), farthest
-      logical :: may_meet(size(system%area))
+   pure type(step_outcome_t) function check_margins(run) result(outcome)
+      type(run_t), intent(in) :: run
+      real(wp) :: way(size(run%system%area)), farthest
+      logical :: may_meet(size(run%system%area))
       integer :: j
 
-      outcome%dt = step%dt
-      way = corner_motion(system, step%state%motion)
+      outcome%dt = run%step%dt
+      way = corner_motion(run%system, run%step%state%motion)
       may_meet = .false.
-      do j = 1, size(contacts%joint)
-         may_meet(contacts%joint(j)%block) = .true.
+      do j = 1, size(run%contacts%joint)
+         may_meet(run%contacts%joint(j)%block) = .true.
       end do
-      farthest = maxval(way, mask=may_meet .and. system%equation > 0)
-      outcome%accepted = .not. farthest > 2.0_wp*too_far*march%allowed_motion
-      if (.not. outcome%accepted) then
-         outcome%dt = step%dt*max(0.1_wp, 0.8_wp*too_far*march%allowed_motion/farthest)
-         return
-      end if
-      outcome%beyond_margin = any(way > march%reach)
+      farthest = maxval(way, mask=may_meet .and. run%system%equation > 0)
+      associate (far => too_far*run%march%allowed_motion)
+         outcome%accepted = .not. farthest > 2.0_wp*far
+         if (.not. outcome%accepted) then
+            outcome%dt = run%step%dt*max(0.1_wp, 0.8_wp*far/farthest)
+            return
+         end if
+      end associate
+      outcome%beyond_margin = any(way > run%march%reach)
       outcome%accepted = .not. outcome%beyond_margin
    end function check_margins
 

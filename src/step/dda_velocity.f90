@@ -16,6 +16,7 @@ submodule (dda_step) dda_velocity
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
+   use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_springs_t, place_rows
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_friction_cone, only : joint_face_t
@@ -36,198 +37,206 @@ submodule (dda_step) dda_velocity
    !> Energy that counts as rounding, over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
 
+   !> What the end of a step asks of velocities
+   type :: impact_t
+      !> Springs of the joints where they are after the step
+      type(joint_springs_t) :: springs
+      !> Contacts that are closed there: (2, n_joint)
+      logical, allocatable :: closed(:, :)
+      !> Speeds at which they must part: (2, n_joint) [m/s]
+      real(wp), allocatable :: part(:, :)
+      !> Forces borne up to an impact that ends the step; none where there is none: (3, n_joint)
+      !> [N/m]
+      real(wp), allocatable :: borne(:, :)
+      !> Velocities by constant acceleration: (n_dof, n_equation)
+      real(wp), allocatable :: steady(:, :)
+      !> Blocks without strain rates: (n_block)
+      logical, allocatable :: follows(:)
+   end type impact_t
+
 contains
 
    !> Velocities of the blocks at the end of a settled step
-   module procedure settle_velocities
-      logical :: closed(2, size(contacts%joint))
-      real(wp) :: part(2, size(contacts%joint)), borne(3, size(contacts%joint)), less
-      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2))
-      real(wp) :: allowed, before, share
-      type(joint_springs_t) :: springs
+   module procedure solve_impacts
+      type(impact_t) :: impact
+      real(wp) :: allowed, before, less, share
       integer :: try
 
-      springs = contacts%springs
-      call place_rows(system, step%after%motion, step%joint, springs%row)
-      closed = closed_contacts(system, contacts, step)
-      steady = 2.0_wp/step%dt*step%state%motion &
-         & - packed_velocity(system, size(step%state%motion, 1))
-      call see_impacts(settings, system, contacts, closed, relative_displacement(springs, steady), &
-         & step, part, borne)
-      before = kinetic_energy(equations, steady)
-      allowed = before - sum(step%state%force*step%state%increment)
-      less = least_less
-      do try = 0, max_tries
-         if (try == max_tries) part = 0.0_wp
-         call settle_impulses(settings, system, contacts, springs, closed, part, borne, steady, &
-            & equations, step)
-         if (.not. step%has_velocity) return
-         if (kinetic_energy(equations, step%velocity) <= allowed + energy_noise*before) exit
-         if (.not. any(part > 0.0_wp)) exit
-         part = (1.0_wp - less)*part
-         less = min(20.0_wp*less, 0.2_wp)
-      end do
-      share = 0.0_wp
-      if (any(closed)) call hold_energy(equations, steady, allowed + energy_noise*before, &
-         & step%velocity, share)
-      step%impulse = (1.0_wp - share)*step%impulse + share*step%state%force
-      step%held_impulse = (1.0_wp - share)*step%held_impulse + share*equations%fixed%force
-      step%impact = before - kinetic_energy(equations, step%velocity)
-   end procedure settle_velocities
+      call see_impacts(run, impact)
+      associate (step => run%step, equations => run%equations)
+         before = kinetic_energy(equations, impact%steady)
+         allowed = before - sum(step%state%force*step%state%increment) + energy_noise*before
+         less = least_less
+         do try = 0, max_tries
+            if (try == max_tries) impact%part = 0.0_wp
+            call solve_rates(run, impact)
+            if (.not. step%has_velocity) return
+            if (kinetic_energy(equations, step%velocity) <= allowed) exit
+            if (.not. any(impact%part > 0.0_wp)) exit
+            impact%part = (1.0_wp - less)*impact%part
+            less = min(20.0_wp*less, 0.2_wp)
+         end do
+         share = 0.0_wp
+         if (any(impact%closed)) &
+            & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
+         step%impulse = (1.0_wp - share)*step%impulse + share*step%state%force
+         step%held_impulse = (1.0_wp - share)*step%held_impulse + share*equations%fixed%force
+         step%impact = before - kinetic_energy(equations, step%velocity)
+      end associate
+   end procedure solve_impacts
 
-   !> Velocities for given speeds at which the contacts must part
-   pure subroutine settle_impulses(settings, system, contacts, after, closed, part, borne, &
-      & steady, equations, step)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Their springs where the contacts are after it
-      type(joint_springs_t), intent(in) :: after
-      !> Contacts that are closed: (2, n_joint)
-      logical, intent(in) :: closed(:, :)
-      !> The speeds: (2, n_joint) [m/s]
-      real(wp), intent(in) :: part(:, :)
-      !> Forces borne up to an impact that ends the step: (3, n_joint) [N/m]
-      real(wp), intent(in) :: borne(:, :)
-      !> Velocities by constant acceleration: (n_dof, n_equation)
-      real(wp), intent(in) :: steady(:, :)
-      type(equations_t), intent(inout) :: equations
-      type(step_context_t), intent(inout) :: step
-      type(step_state_t) :: state
-      type(joint_springs_t) :: springs
-      logical :: follows(size(system%equation))
-      real(wp) :: held_force(size(equations%fixed%force))
-      integer :: j
+   !> Which contacts are closed at the end of a step, and which of them have met there, faster than
+   !> weight makes resting contacts meet: they must part with restitution times that speed, and up
+   !> to then contacts that were closed before the step have borne their forces
+   pure subroutine see_impacts(run, impact)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(out) :: impact
+      real(wp) :: opening(3, size(run%contacts%joint))
+      logical :: has_impact
+      integer :: j, k
 
-      follows = strain_follows(system, step%longest)
-      held_force = equations%fixed%force
-      call assemble_rates(settings, system, follows, after, step%state%force - borne, steady, &
-         & step, equations)
-      state = step%state
-      ! what a speed leaves of a gap counts as in the longest step
-      state%fineness = step%state%fineness*finer*step%dt/step%longest
-      state%unseen = 10.0_wp*step%state%unseen
-      state%rates = .true.
-      state%multiplier = state%force - borne
-      springs = after
-      do j = 1, size(contacts%joint)
-         springs%stiffness(j) = over_inertia*joint_mass(system, contacts%joint(j)%block)/step%dt**2
-         call keep_closed(closed(:, j), follows(contacts%joint(j)%block), j, springs, state)
-         state%start(1:2, j) = state%start(1:2, j) + springs%stiffness(j)*step%dt*part(:, j)
+      impact%springs = run%contacts%springs
+      call place_rows(run%system, run%step%after%motion, run%step%joint, &
+         & impact%springs%row)
+      impact%closed = closed_contacts(run)
+      impact%steady = 2.0_wp/run%step%dt*run%step%state%motion &
+         & - packed_velocity(run%system, size(run%step%state%motion, 1))
+      impact%follows = strain_follows(run%system, run%step%longest)
+      opening = relative_displacement(impact%springs, impact%steady)
+      allocate (impact%part(2, size(opening, 2)), impact%borne(3, size(opening, 2)), source=0.0_wp)
+      has_impact = .false.
+      do j = 1, size(opening, 2)
+         do k = 1, 2
+            if (.not. impact%closed(k, j)) cycle
+            if (run%step%state%face(j)%open(k)) then
+               if (-opening(k, j) <= run%step%slowest_impact) cycle
+               has_impact = .true.
+               impact%part(k, j) = -run%settings%restitution*opening(k, j)
+            else if (run%contacts%gap(k, j) &
+               & <= near_gap(run%system, run%contacts%joint(j)%block)) then
+               impact%borne([k, 3], j) = run%step%state%force([k, 3], j)
+            end if
+         end do
       end do
-      call take_springs(equations)
-      call settle_in_time(settings, step%dt*equations%fixed%rate, equations, springs, state)
-      state%force = state%force + borne
-      ! half of the forces of the motion have acted as they did
-      step%held_impulse = equations%fixed%force + held_force/2.0_wp
-      step%impulse = state%force
-      equations%fixed%force = held_force
-      step%has_velocity = state%settled
-      if (.not. step%has_velocity) return
-      step%velocity = state%motion/step%dt
-      call keep_moment(system, contacts, after, equations, state%force, step)
-   end subroutine settle_impulses
+      if (.not. has_impact) impact%borne = 0.0_wp
+   end subroutine see_impacts
 
    !> Contacts that are closed at the end of a step: those that carry a force, and those without a
    !> gap
-   pure function closed_contacts(system, contacts, step) result(closed)
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(step_context_t), intent(in) :: step
+   pure function closed_contacts(run) result(closed)
+      type(run_t), intent(in) :: run
       !> For each contact of each joint: (2, n_joint)
-      logical :: closed(2, size(contacts%joint))
+      logical :: closed(2, size(run%contacts%joint))
       integer :: j, k
 
       closed = .false.
-      do j = 1, size(contacts%joint)
-         do k = 1, contacts%joint(j)%n_contact
-            closed(k, j) = .not. step%state%face(j)%open(k) .or. contacts%gap(k, j) &
-               & + step%state%increment(k, j) + step%curve(k, j) &
-               & <= near_gap(system, contacts%joint(j)%block)
+      do j = 1, size(closed, 2)
+         do k = 1, run%contacts%joint(j)%n_contact
+            closed(k, j) = .not. run%step%state%face(j)%open(k) .or. run%contacts%gap(k, j) &
+               & + run%step%state%increment(k, j) + run%step%curve(k, j) &
+               & <= near_gap(run%system, run%contacts%joint(j)%block)
          end do
       end do
    end function closed_contacts
 
-   !> Contacts that have met at the very end of the step, faster than weight makes resting contacts
-   !> meet: they must part with restitution times that speed, and up to then contacts that were
-   !> closed before the step have borne their forces
-   pure subroutine see_impacts(settings, system, contacts, closed, opening, step, part, borne)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Contacts that are closed at its end: (2, n_joint)
-      logical, intent(in) :: closed(:, :)
-      !> How fast the contacts open without impacts, and the joints slip: (3, n_joint) [m/s]
-      real(wp), intent(in) :: opening(:, :)
-      type(step_context_t), intent(in) :: step
-      real(wp), intent(out) :: part(:, :)
-      !> The forces; none where there is no impact: (3, n_joint) [N/m]
-      real(wp), intent(out) :: borne(:, :)
-      logical :: has_impact
-      integer :: j, k
+   !> Velocities for given speeds at which the contacts must part
+   pure subroutine solve_rates(run, impact)
+      type(run_t), intent(inout) :: run
+      type(impact_t), intent(in) :: impact
+      type(step_state_t) :: state
+      type(joint_springs_t) :: springs
+      real(wp) :: held_force(size(run%equations%fixed%force))
 
-      part = 0.0_wp
-      borne = 0.0_wp
-      has_impact = .false.
-      do j = 1, size(contacts%joint)
-         do k = 1, 2
-            if (.not. closed(k, j)) cycle
-            if (step%state%face(j)%open(k)) then
-               if (-opening(k, j) > step%slowest_impact) then
-                  has_impact = .true.
-                  part(k, j) = -settings%restitution*opening(k, j)
-               end if
-            else if (contacts%gap(k, j) <= near_gap(system, contacts%joint(j)%block)) then
-               borne([k, 3], j) = step%state%force([k, 3], j)
-            end if
-         end do
-      end do
-      if (.not. has_impact) borne = 0.0_wp
-   end subroutine see_impacts
+      held_force = run%equations%fixed%force
+      call assemble_rates(run, impact)
+      call begin_rates(run, impact, springs, state)
+      associate (step => run%step, fixed => run%equations%fixed)
+         call settle_in_time(run%settings, step%dt*fixed%rate, run%equations, springs, state)
+         step%impulse = state%force + impact%borne
+         ! half of the forces of the motion have acted as they did
+         step%held_impulse = fixed%force + held_force/2.0_wp
+         fixed%force = held_force
+         step%has_velocity = state%settled
+         if (.not. step%has_velocity) return
+         step%velocity = state%motion/step%dt
+      end associate
+      call keep_moment(run, impact%springs)
+   end subroutine solve_rates
 
    !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M/dt v - B1' f
-   pure subroutine assemble_rates(settings, system, follows, springs, force, steady, step, &
-      & equations)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
+   pure subroutine assemble_rates(run, impact)
+      type(run_t), intent(inout) :: run
+      type(impact_t), intent(in) :: impact
+      integer :: e, i, j
+
+      associate (dt => run%step%dt, equations => run%equations, springs => impact%springs)
+         equations%base = (1.0_wp/dt + damping_rate(run%settings, dt)/2.0_wp)/dt*equations%mass
+         if (size(equations%dashpot) > 0) &
+            & equations%base = equations%base + equations%dashpot/(2.0_wp*dt)
+         do e = 1, size(impact%steady, 2)
+            equations%load(:, e) = dt*matmul(equations%base(:, :, e), impact%steady(:, e))
+         end do
+         do j = 1, size(run%contacts%joint)
+            call add_load(springs, springs%cone(j), joint_face_t(), &
+               & impact%borne(:, j) - run%step%state%force(:, j), j, equations%load)
+         end do
+         do i = 1, size(equations%fixed%point)
+            e = equations%fixed%equation(i)
+            call turn_fixed_row(run%system, run%settings, i, run%step%state%motion(:, e), &
+               & equations%fixed, equations%load(:, e))
+         end do
+         call drop_strain_rates(run%system%equation, impact%follows, equations)
+         call couple_bars(equations%bars, equations%matrix%pair, .false., equations%matrix%coupling)
+         call add_fixed_springs(equations%fixed, dt*equations%fixed%rate, equations%base, &
+            & equations%load)
+         call take_springs(equations)
+      end associate
+   end subroutine assemble_rates
+
+   !> No rates of strains that follow their load
+   pure subroutine drop_strain_rates(equation, follows, equations)
+      !> Equation of each block, 0 for a fixed one: (n_block)
+      integer, intent(in) :: equation(:)
       !> Blocks without strain rates: (n_block)
       logical, intent(in) :: follows(:)
-      !> Springs of the joints after the step
-      type(joint_springs_t), intent(in) :: springs
-      !> Forces that are taken back: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      real(wp), intent(in) :: steady(:, :)
-      type(step_context_t), intent(in) :: step
       type(equations_t), intent(inout) :: equations
-      integer :: b, e, i, j
+      integer :: b, e
 
-      equations%base = (1.0_wp/step%dt + damping_rate(settings, step%dt)/2.0_wp)/step%dt &
-         & *equations%mass
-      if (size(equations%dashpot) > 0) &
-         & equations%base = equations%base + equations%dashpot/(2.0_wp*step%dt)
-      do e = 1, size(steady, 2)
-         equations%load(:, e) = step%dt*matmul(equations%base(:, :, e), steady(:, e))
-      end do
-      do j = 1, size(force, 2)
-         call add_load(springs, springs%cone(j), joint_face_t(), -force(:, j), j, equations%load)
-      end do
-      do i = 1, size(equations%fixed%point)
-         e = equations%fixed%equation(i)
-         call turn_fixed_row(system, settings, i, step%state%motion(:, e), equations%fixed, &
-            & equations%load(:, e))
-      end do
+      if (size(equations%load, 1) < 6) return
       do b = 1, size(follows)
-         e = system%equation(b)
-         if (size(steady, 1) < 6 .or. e == 0 .or. .not. follows(b)) cycle
+         e = equation(b)
+         if (e == 0 .or. .not. follows(b)) cycle
          equations%base(4:, :3, e) = 0.0_wp
          equations%base(:3, 4:, e) = 0.0_wp
          call hold_rigidly(e, equations%fixed)
          equations%load(4:, e) = 0.0_wp
       end do
-      call couple_bars(equations%bars, equations%matrix%pair, .false., equations%matrix%coupling)
-      call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
-         & equations%load)
-   end subroutine assemble_rates
+   end subroutine drop_strain_rates
+
+   !> Springs and forces that the search for velocities begins with
+   pure subroutine begin_rates(run, impact, springs, state)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(in) :: impact
+      type(joint_springs_t), intent(out) :: springs
+      type(step_state_t), intent(out) :: state
+      integer :: j
+
+      springs = impact%springs
+      state = run%step%state
+      ! what a speed leaves of a gap counts as in the longest step
+      state%fineness = state%fineness*finer*run%step%dt/run%step%longest
+      state%unseen = 10.0_wp*state%unseen
+      state%rates = .true.
+      state%multiplier = state%force - impact%borne
+      do j = 1, size(run%contacts%joint)
+         associate (pair => run%contacts%joint(j)%block)
+            springs%stiffness(j) = over_inertia*joint_mass(run%system, pair)/run%step%dt**2
+            call keep_closed(impact%closed(:, j), impact%follows(pair), j, springs, state)
+         end associate
+         state%start(1:2, j) = state%start(1:2, j) &
+            & + springs%stiffness(j)*run%step%dt*impact%part(:, j)
+      end do
+   end subroutine begin_rates
 
    !> Springs of one joint that only its closed contacts feel, and only motions without strain where
    !> strain has no rate
@@ -264,64 +273,63 @@ contains
 
    !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
    !> may lie off one line. The two blocks give back what that brings in by one change of spin
-   pure subroutine keep_moment(system, contacts, after, equations, force, step)
-      type(block_system_t), intent(in) :: system
-      !> The contacts before the step, with the springs that half of the impulses have acted by
-      type(contacts_t), intent(in) :: contacts
-      !> The springs after it, which the other half acts by
+   pure subroutine keep_moment(run, after)
+      !> The run, with the springs that half of the impulses have acted by; spins are changed
+      type(run_t), intent(inout) :: run
+      !> The springs after the step, which the other half acts by
       type(joint_springs_t), intent(in) :: after
-      type(equations_t), intent(in) :: equations
-      !> The forces of that half: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> The step; its spins are changed
-      type(step_context_t), intent(inout) :: step
-      real(wp) :: change(size(step%velocity, 2)), half_way(6, size(system%area)), moment
+      real(wp) :: change(size(run%step%velocity, 2)), half_way(6, size(run%system%area)), moment
       integer :: j, pair(2)
 
       change = 0.0_wp
-      half_way = (system%motion + step%after%motion)/2.0_wp
-      do j = 1, size(contacts%joint)
-         pair = after%equation(:, j)
-         if (any(pair == 0)) cycle
-         moment = step%dt/sum(equations%mass(3, 3, pair)) &
-            & *(excess(contacts%springs, j, step%state%force(:, j), half_way) &
-            & + excess(after, j, force(:, j) - step%state%force(:, j), step%after%motion))
-         change(pair) = change(pair) - moment
-      end do
-      step%velocity(3, :) = step%velocity(3, :) + change
-
-   contains
-
-      !> Moment of the forces of a joint on both its blocks
-      pure real(wp) function excess(springs, j, force, motion)
-         type(joint_springs_t), intent(in) :: springs
-         integer, intent(in) :: j
-         !> Its forces: (3) [N/m]
-         real(wp), intent(in) :: force(3)
-         !> How the blocks have moved: (6, n_block)
-         real(wp), intent(in) :: motion(:, :)
-         real(wp) :: turn(3)
-         integer :: b, side
-
-         excess = 0.0_wp
-         do side = 1, 2
-            b = contacts%joint(j)%block(side)
-            turn = matmul(springs%row(1:3, :, side, j), force)
-            excess = excess + turn(3) + cross(system%centroid(:, b) + motion(1:2, b), turn(1:2))
+      associate (step => run%step)
+         half_way = (run%system%motion + step%after%motion)/2.0_wp
+         do j = 1, size(run%contacts%joint)
+            pair = after%equation(:, j)
+            if (any(pair == 0)) cycle
+            moment = step%dt/sum(run%equations%mass(3, 3, pair)) &
+               & *(excess(run, run%contacts%springs, j, step%state%force(:, j), half_way) &
+               & + excess(run, after, j, step%impulse(:, j) - step%state%force(:, j), &
+               & step%after%motion))
+            change(pair) = change(pair) - moment
          end do
-      end function excess
+         step%velocity(3, :) = step%velocity(3, :) + change
+      end associate
    end subroutine keep_moment
+
+   !> Moment of the forces of a joint on both its blocks
+   pure real(wp) function excess(run, springs, j, force, motion)
+      type(run_t), intent(in) :: run
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: j
+      !> Its forces: (3) [N/m]
+      real(wp), intent(in) :: force(3)
+      !> How the blocks have moved: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      real(wp) :: turn(3)
+      integer :: b, side
+
+      excess = 0.0_wp
+      do side = 1, 2
+         b = run%contacts%joint(j)%block(side)
+         turn = matmul(springs%row(1:3, :, side, j), force)
+         excess = excess + turn(3) + cross(run%system%centroid(:, b) + motion(1:2, b), turn(1:2))
+      end do
+   end function excess
 
    !> Springs of contacts whose forces are multipliers
    module procedure stiffen_contacts
       integer :: j
 
-      do j = 1, size(contacts%joint)
-         contacts%springs%stiffness(j) = max(contacts%springs%stiffness(j), &
-            & over_inertia*joint_mass(system, contacts%joint(j)%block)/dt**2)
-         contacts%trial(:, j) = contacts%force(:, j) &
-            & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
-      end do
+      associate (contacts => run%contacts)
+         do j = 1, size(contacts%joint)
+            contacts%springs%stiffness(j) = max(contacts%springs%stiffness(j), &
+               & over_inertia*joint_mass(run%system, contacts%joint(j)%block)/run%step%dt**2)
+            contacts%trial(:, j) = contacts%force(:, j) &
+               & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
+         end do
+      end associate
+      call take_springs(run%equations)
    end procedure stiffen_contacts
 
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]

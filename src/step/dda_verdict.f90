@@ -11,14 +11,12 @@ module dda_verdict
    use dda_bar_springs, only : bar_energies
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_contact_types, only : joint_springs_t, joint_t
+   use dda_contact_types, only : joint_t
    use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_kinds, only : pi, wp
-   use dda_load_clock, only : has_path
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
-   use dda_step_state, only : equations_t
+   use dda_step_context, only : march_t, run_t, step_context_t
    implicit none
    private
 
@@ -189,28 +187,28 @@ contains
    end function tests_collapse
 
    !> Whether the blocks have gone as far as means collapse; keeps how far they have
-   pure subroutine has_collapsed(settings, system, march, collapsed)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      !> The march; receives how far the blocks have gone
-      type(march_t), intent(inout) :: march
+   pure subroutine has_collapsed(run, collapsed)
+      type(run_t), intent(inout) :: run
       !> Whether they have collapsed
       logical, intent(out) :: collapsed
       real(wp) :: displacement
 
       collapsed = .false.
-      if (.not. tests_collapse(settings)) return
-      march%progress = 0.0_wp
-      if (settings%collapse_rotation > 0.0_wp) &
-         & march%progress = maxval(abs(system%motion(3, :)))/settings%collapse_rotation
-      if (settings%collapse_displacement > 0.0_wp) then
-         displacement = march%displacement
-         if (settings%collapse_point > 0) displacement = displacement_of_point(settings, system)
-         march%progress = max(march%progress, displacement/settings%collapse_displacement)
-      end if
-      collapsed = march%progress >= 1.0_wp
-      if (march%time <= late*settings%duration) &
-         & march%early_progress = max(march%early_progress, march%progress)
+      if (.not. tests_collapse(run%settings)) return
+      associate (settings => run%settings, march => run%march)
+         march%progress = 0.0_wp
+         if (settings%collapse_rotation > 0.0_wp) march%progress &
+            & = maxval(abs(run%system%motion(3, :)))/settings%collapse_rotation
+         if (settings%collapse_displacement > 0.0_wp) then
+            displacement = march%displacement
+            if (settings%collapse_point > 0) &
+               & displacement = displacement_of_point(settings, run%system)
+            march%progress = max(march%progress, displacement/settings%collapse_displacement)
+         end if
+         collapsed = march%progress >= 1.0_wp
+         if (march%time <= late*settings%duration) &
+            & march%early_progress = max(march%early_progress, march%progress)
+      end associate
    end subroutine has_collapsed
 
    !> Displacement of the measured point that is asked for [m]
@@ -236,33 +234,26 @@ contains
          & still_moves_away = march%progress > march%early_progress + growth
    end function still_moves_away
 
-   !> Energies and acceleration of a settled step
-   pure subroutine measure_step(system, springs, equations, force_before, step)
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      type(joint_springs_t), intent(in) :: springs
-      type(equations_t), intent(in) :: equations
-      !> Joint forces before the step: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force_before(:, :)
-      !> The step; its measures are set
-      type(step_context_t), intent(inout) :: step
+   !> Energies and acceleration of a settled step, before it is carried over
+   pure subroutine measure_step(run)
+      type(run_t), intent(inout) :: run
       real(wp) :: bar(2)
-      integer :: b, e, nd
+      integer :: b, e
 
-      call measure_balance(system, springs, equations, step)
-      nd = size(equations%weight, 1)
-      associate (motion => step%state%motion)
+      call measure_balance(run%system, run%contacts%springs, run%equations, run%step)
+      associate (system => run%system, equations => run%equations, step => run%step, &
+         & motion => run%step%state%motion)
          bar = bar_energies(equations%bars, motion)
          step%work = sum(equations%outer*motion) - bar(2)
          step%kinetic = 0.0_wp
-         step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
-            & /(2.0_wp*springs%stiffness)) + bar(1)
+         step%stored = sum(sum(step%state%force**2 - run%contacts%force**2, dim=1) &
+            & /(2.0_wp*run%contacts%springs%stiffness)) + bar(1)
          do b = 1, size(system%equation)
             e = system%equation(b)
             if (e == 0) cycle
             step%kinetic = step%kinetic &
                & + quadratic(equations%mass(:, :, e), motion(:, e))*2.0_wp/step%dt**2
-            if (nd < 6) cycle
+            if (size(motion, 1) < 6) cycle
             step%stored = step%stored &
                & + quadratic(equations%elastic(4:6, 4:6, e), motion(4:6, e))/2.0_wp &
                & + system%area(b)*dot_product(motion(4:6, e), system%stress(:, b))
@@ -289,63 +280,85 @@ contains
 
    !> Judge a static run by its last two steps.
    !> It stands if the joint forces balance the full load of every block but for a negligible share,
-   !> and its strains. It falls if the blocks have fallen far beyond any elastic motion, and the
-   !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
-   !> where a displacement that means collapse is set, if a corner has moved as far. What rests once
-   !> a block has fallen does not stand
+   !> and its strains. It falls if a step proves so; or, where a displacement means collapse, if a
+   !> corner has moved as far. What rests once a block has fallen does not stand
    pure integer function judge_verdict(march, step, settings)
       !> The march, with the acceleration of the step before
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
-      logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
-      logical :: goes_on, is_certain, stores_nothing
-      real(wp) :: far, fall, moved
-      integer :: steps
+      logical :: at_rest, falls, goes_on
+      real(wp) :: far, moved
 
-      far = settings%collapse_displacement
+      far = far_away(march, settings)
       moved = march%displacement
-      if (settings%current .and. .not. far > 0.0_wp) then
-         far = collapse_multiple*max(march%elastic_motion, march%rounding)
-         moved = march%moved
-         ! on a path blocks may leap to another rest
-         if (march%begun > 0) far = max(far, march%allowed_motion/settings%max_displacement_ratio)
+      if (settings%current .and. .not. settings%collapse_displacement > 0.0_wp) moved = march%moved
+      ! blocks that slip far into a notch come to rest there
+      goes_on = settings%collapse_displacement > 0.0_wp &
+         & .or. step%acceleration > slowing*march%last_acceleration
+      falls = proves_fall(march, step, settings)
+      if (far > 0.0_wp) falls = moved > far .and. goes_on
+      at_rest = is_at_rest(march, step, settings)
+      judge_verdict = verdict%undecided
+      if (march%has_fallen .and. (at_rest .or. .not. settings%collapse_displacement > 0.0_wp)) then
+         judge_verdict = verdict%collapsed
+      else if (at_rest) then
+         judge_verdict = verdict%stable
+      else if (falls .and. march%steps - march%begun >= 2) then
+         judge_verdict = verdict%collapsed
       end if
-      steps = march%steps - march%begun
-      at_rest = step%residue <= settings%rest_tolerance .and. step%strain_residue <= unstrained
+   end function judge_verdict
+
+   !> Displacement that means collapse; 0 where none does [m]
+   pure real(wp) function far_away(march, settings)
+      type(march_t), intent(in) :: march
+      type(settings_t), intent(in) :: settings
+
+      far_away = settings%collapse_displacement
+      if (.not. settings%current .or. far_away > 0.0_wp) return
+      far_away = collapse_multiple*max(march%elastic_motion, march%rounding)
+      ! on a path blocks may leap to another rest
+      if (march%begun > 0) &
+         & far_away = max(far_away, march%allowed_motion/settings%max_displacement_ratio)
+   end function far_away
+
+   !> Whether the forces of a step balance all loads. Where blocks move, a step that comes to rest
+   !> has only proven the shape it started from
+   pure logical function is_at_rest(march, step, settings)
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+      type(settings_t), intent(in) :: settings
+
+      is_at_rest = step%residue <= settings%rest_tolerance .and. step%strain_residue <= unstrained
+      if (settings%current) is_at_rest = is_at_rest .and. march%steps - march%begun >= 2 &
+         & .and. step%farthest <= max(still*march%displacement, march%resolution, &
+         & min(march%rounding, barely*march%displacement))
+   end function is_at_rest
+
+   !> Whether a step proves a fall: blocks have fallen far beyond any elastic motion, and the loads'
+   !> work turns into speed alone, or acceleration is steady while no energy is stored
+   pure logical function proves_fall(march, step, settings)
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+      type(settings_t), intent(in) :: settings
+      logical :: far_beyond_elastic, is_certain, is_steady, stores_nothing
+      real(wp) :: fall
+
       fall = march%free_acceleration*step%dt**2/2.0_wp
       ! what slides must itself have moved that far, for joints settle in their slips for a while
       far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
          & .and. (step%farthest >= march%elastic_motion .or. .not. slides(step)) &
          & .or. (step%was_cut .or. step%dt >= march%longest) &
          & .and. fall >= beyond_any*march%elastic_motion
-      all_work_is_speed = step%kinetic > 0.999_wp*step%work
-      most_work_is_speed = step%kinetic > 0.9_wp*step%work
-      steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
-      stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
       ! what drives the blocks must be more than what the bounds of friction are off by, and speed
       ! without work is rounding
       is_certain = step%kinetic > 2.0_wp*step%state%unsettled_work &
          & .and. (step%kinetic < 1.1_wp*step%work .or. allocated(settings%boundary%held))
-      ! blocks that slip far into a notch come to rest there
-      goes_on = settings%collapse_displacement > 0.0_wp &
-         & .or. step%acceleration > slowing*march%last_acceleration
-      ! where blocks move, a step that comes to rest has only proven the shape it started from
-      if (settings%current) at_rest = at_rest .and. steps >= 2 &
-         & .and. step%farthest <= max(still*march%displacement, march%resolution, &
-         & min(march%rounding, barely*march%displacement))
-      judge_verdict = verdict%undecided
-      if (march%has_fallen .and. (at_rest .or. .not. settings%collapse_displacement > 0.0_wp)) then
-         judge_verdict = verdict%collapsed
-      else if (at_rest) then
-         judge_verdict = verdict%stable
-      else if (far > 0.0_wp) then
-         if (moved > far .and. steps >= 2 .and. goes_on) judge_verdict = verdict%collapsed
-      else if (steps >= 2 .and. far_beyond_elastic) then
-         if (is_certain .and. (all_work_is_speed .or. steady .and. (most_work_is_speed &
-            & .or. stores_nothing))) judge_verdict = verdict%collapsed
-      end if
-   end function judge_verdict
+      is_steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
+      stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
+      proves_fall = far_beyond_elastic .and. is_certain .and. (step%kinetic > 0.999_wp*step%work &
+         & .or. is_steady .and. (step%kinetic > 0.9_wp*step%work .or. stores_nothing))
+   end function proves_fall
 
    !> Whether a joint slides at the end of a step
    pure logical function slides(step)

@@ -7,12 +7,13 @@ module scene_step
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
+   use dda_step_context, only : run_t
    use dda_step_state, only : equations_t, step_state_t
    use scene_model, only : add_block, add_joint, model_t, rectangle, scene_of, turned
    implicit none
    private
 
-   public :: begin, energy, unbalance, wall
+   public :: begin, begin_run, energy, unbalance, wall
 
 contains
 
@@ -40,6 +41,22 @@ contains
       state%face = scene%contacts%face
       state%cone = scene%contacts%springs%cone
    end subroutine begin
+
+   !> A run of a scene at the beginning of a step
+   pure subroutine begin_run(scene, dt, run)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> The run
+      type(run_t), intent(out) :: run
+
+      run%settings = scene%settings
+      run%system = scene%system
+      run%contacts = scene%contacts
+      run%step%dt = dt
+      call begin(scene, dt, run%equations, run%step%state)
+   end subroutine begin_run
 
    !> What a step minimises: half the motion's stiffness and inertia, less the work of the loads,
    !> and for each joint the function of the trial force whose gradient is the admissible force,
