@@ -86,7 +86,7 @@ contains
       real(wp), intent(inout) :: bound(:)
       type(step_state_t), intent(inout) :: state
       real(wp), dimension(size(bound)) :: best, change, next
-      real(wp) :: least
+      real(wp) :: largest, least
       type(anderson_t) :: known
       integer :: correction, stale
       logical :: resolved
@@ -101,22 +101,17 @@ contains
          if (.not. state%settled) return
          change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
             & springs%cone%limit < huge(1.0_wp))
+         largest = maxval(abs(change))
          state%unsettled_work = sum(abs(change*state%increment(3, :)))
-         if (maxval(abs(change)) <= tolerance .or. resolved) return
-         stale = stale + 1
-         if (maxval(abs(change)) < least) then
-            least = maxval(abs(change))
-            best = bound
-            stale = 0
-         end if
+         if (largest <= tolerance .or. resolved) return
+         stale = merge(0, stale + 1, largest < least)
+         if (stale == 0) best = bound
+         least = min(least, largest)
          if (stale > max_stale) exit
-         resolved = stale >= memory .and. least <= force_noise(equations, springs, state)
-         if (resolved) then
-            bound = best
-            cycle
-         end if
          call accelerate(known, bound, change, next)
          bound = max(0.0_wp, next)
+         resolved = stale >= memory .and. least <= force_noise(equations, springs, state)
+         if (resolved) bound = best
       end do
       state%settled = .false.
    end subroutine follow_bounds

@@ -36,15 +36,29 @@ module dda_open_close
    !> Changes of faces before Newton's method takes over where blocks make no chain
    integer, parameter :: few_changes = 1
 
+   !> A line of motions
+   type :: line_t
+      !> Openings and slips where it begins: (3, n_joint) [m]
+      real(wp), allocatable :: from(:, :)
+      !> Their growth by the whole way: (3, n_joint) [m]
+      real(wp), allocatable :: rate(:, :)
+      !> Slope of the energy of blocks and bars where it begins
+      real(wp) :: slope = 0.0_wp
+      !> Its growth by the whole way
+      real(wp) :: curvature = 0.0_wp
+   end type line_t
+
 contains
 
-   !> Newton's method on the step's energy from the motion of the state, to the lowest point of each
-   !> direction. That corrects what the blocks lack in balance, so that its rounding is small; a
-   !> motion in balance is the answer even where rounding lets no face agree
-   pure subroutine iterate_newton(equations, springs, state)
+   !> Newton's method on the step's energy from a motion, to the lowest point of each direction.
+   !> That corrects what the blocks lack in balance, so that its rounding is small; a motion in
+   !> balance is the answer even where rounding lets no face agree
+   pure subroutine iterate_newton(equations, springs, start, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: start(:, :)
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face)), from(size(state%motion, 1), size(state%motion, 2))
@@ -52,16 +66,13 @@ contains
       integer :: pass
       logical :: balanced
 
+      state%motion = start
       do pass = 1, max_newton
          from = state%motion
          call joint_forces(springs, state)
          call find_unbalance(equations, springs, state, direction, balanced)
-         call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
-         state%passes = state%passes + 1
-         if (.not. equations%factor%usable) return
-         call disagreement(springs, state, gap, wanted)
-         state%settled = maxval(gap) <= force_noise(equations, springs, state)
-         if (state%settled) return
+         call keep_faces(equations, springs, state, gap, wanted)
+         if (state%settled .or. .not. equations%factor%usable) return
          state%motion = from
          state%settled = balanced
          if (state%settled) return
@@ -114,20 +125,20 @@ contains
       real(wp), intent(in) :: from(:, :), direction(:, :)
       !> 1 is the whole way
       real(wp) :: factor
-      real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
-      real(wp) :: slope_zero, curvature, low, high, slope_low, slope_high, slope
+      type(line_t) :: line
+      real(wp) :: low, high, slope_low, slope_high, slope
       integer :: pass
 
-      start = relative_displacement(springs, from)
-      rate = relative_displacement(springs, direction)
-      call block_slope(equations, from, direction, slope_zero, curvature)
-      call find_bracket(low, high, slope_low, slope_high)
+      line%from = relative_displacement(springs, from)
+      line%rate = relative_displacement(springs, direction)
+      call block_slope(equations, from, direction, line%slope, line%curvature)
+      call find_bracket(springs, state, line, low, high, slope_low, slope_high)
       factor = high
       do pass = 1, 60
          if (.not. slope_high > slope_low) exit
          factor = low - slope_low*(high - low)/(slope_high - slope_low)
          if (mod(pass, 3) == 0) factor = (low + high)/2.0_wp
-         slope = slope_of(factor)
+         slope = slope_at(springs, state, line, factor)
          if (slope < 0.0_wp) then
             low = factor
             slope_low = slope
@@ -135,45 +146,49 @@ contains
             high = factor
             slope_high = slope
          end if
-         if (high - low <= 1.0e-14_wp*high .or. abs(slope) <= 1.0e-15_wp*abs(slope_zero)) exit
+         if (high - low <= 1.0e-14_wp*high .or. abs(slope) <= 1.0e-15_wp*abs(line%slope)) exit
       end do
-
-   contains
-
-      !> A part of the way at whose end the slope has risen above zero
-      pure subroutine find_bracket(low, high, slope_low, slope_high)
-         !> Both ends, and the slopes there
-         real(wp), intent(out) :: low, high, slope_low, slope_high
-
-         low = 0.0_wp
-         slope_low = slope_of(low)
-         high = 1.0_wp
-         slope_high = slope_of(high)
-         do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
-            low = high
-            slope_low = slope_high
-            high = 2.0_wp*high
-            slope_high = slope_of(high)
-         end do
-      end subroutine find_bracket
-
-      !> Slope of the energy along the direction
-      pure function slope_of(way) result(slope)
-         !> How far along the direction
-         real(wp), intent(in) :: way
-         real(wp) :: slope, force(3), shift(3)
-         type(joint_face_t) :: face
-         integer :: j
-
-         slope = slope_zero + way*curvature
-         do j = 1, size(rate, 2)
-            shift = springs%shift(:, j)
-            call project(state%cone(j), shift + state%start(:, j) &
-               & - springs%stiffness(j)*(start(:, j) + way*rate(:, j)), force, face)
-            slope = slope - dot_product(force - shift, rate(:, j))
-         end do
-      end function slope_of
    end function lowest_point
+
+   !> A part of the way at whose end the slope has risen above zero
+   pure subroutine find_bracket(springs, state, line, low, high, slope_low, slope_high)
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(in) :: state
+      type(line_t), intent(in) :: line
+      !> Both ends, and the slopes there
+      real(wp), intent(out) :: low, high, slope_low, slope_high
+
+      low = 0.0_wp
+      slope_low = slope_at(springs, state, line, low)
+      high = 1.0_wp
+      slope_high = slope_at(springs, state, line, high)
+      do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
+         low = high
+         slope_low = slope_high
+         high = 2.0_wp*high
+         slope_high = slope_at(springs, state, line, high)
+      end do
+   end subroutine find_bracket
+
+   !> Slope of the energy on a line
+   pure function slope_at(springs, state, line, way) result(slope)
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(in) :: state
+      type(line_t), intent(in) :: line
+      !> How far along it
+      real(wp), intent(in) :: way
+      real(wp) :: slope, force(3), shift(3)
+      type(joint_face_t) :: face
+      integer :: j
+
+      slope = line%slope + way*line%curvature
+      do j = 1, size(line%rate, 2)
+         shift = springs%shift(:, j)
+         call project(state%cone(j), shift + state%start(:, j) &
+            & - springs%stiffness(j)*(line%from(:, j) + way*line%rate(:, j)), force, face)
+         slope = slope - dot_product(force - shift, line%rate(:, j))
+      end do
+   end function slope_at
 
    !> Slope of the energy of blocks and bars along a direction, and how it grows
    pure subroutine block_slope(equations, from, direction, slope, curvature)
@@ -217,7 +232,6 @@ contains
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1
-      state%settled = .false.
       best = 0.0_wp
       least = huge(least)
       do change = 1, most + 1
@@ -227,26 +241,14 @@ contains
             peaks = .false.
             since = change
          end if
-         call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
-         state%passes = state%passes + 1
+         call keep_faces(equations, springs, state, gap, wanted)
          if (.not. equations%factor%usable) return
-         call disagreement(springs, state, gap, wanted)
-         state%settled = maxval(gap) <= force_noise(equations, springs, state)
          if (state%settled) exit
-         if (maxval(gap) < least) then
-            least = maxval(gap)
-            best = state%motion
-         end if
-         if (peaks) then
-            where (is_peak(equations, springs, gap)) state%face = wanted
-         else
-            where (gap >= (1.0_wp - tie)*maxval(gap)) state%face = wanted
-         end if
+         if (maxval(gap) < least) best = state%motion
+         least = min(least, maxval(gap))
+         where (is_peak(equations, springs, gap, peaks)) state%face = wanted
       end do
-      if (.not. state%settled) then
-         state%motion = best
-         call iterate_newton(equations, springs, state)
-      end if
+      if (.not. state%settled) call iterate_newton(equations, springs, best, state)
       if (state%settled) call joint_forces(springs, state)
    end subroutine iterate_open_close
 
@@ -261,20 +263,42 @@ contains
 
       call disagreement(springs, state, gap, wanted)
       if (maxval(gap) <= force_noise(equations, springs, state)) return
-      where (is_peak(equations, springs, gap)) state%face = wanted
+      where (is_peak(equations, springs, gap, .true.)) state%face = wanted
    end subroutine change_faces
 
-   !> Joints that disagree more than all others of their two blocks
-   pure function is_peak(equations, springs, gap)
+   !> The motion if every joint keeps to its face, and whether all forces are admissible then
+   pure subroutine keep_faces(equations, springs, state, gap, wanted)
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      !> The step; its motion is set, unless the factor is not usable
+      type(step_state_t), intent(inout) :: state
+      !> Disagreement: (n_joint) [N/m]
+      real(wp), intent(out) :: gap(:)
+      !> Face that each joint ought to have: (n_joint)
+      type(joint_face_t), intent(out) :: wanted(:)
+
+      call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
+      state%passes = state%passes + 1
+      state%settled = .false.
+      if (.not. equations%factor%usable) return
+      call disagreement(springs, state, gap, wanted)
+      state%settled = maxval(gap) <= force_noise(equations, springs, state)
+   end subroutine keep_faces
+
+   !> Joints that disagree more than all others of their two blocks, or than all others
+   pure function is_peak(equations, springs, gap, of_blocks)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> Disagreement: (n_joint) [N/m]
       real(wp), intent(in) :: gap(:)
+      !> Whether other joints of its two blocks alone count
+      logical, intent(in) :: of_blocks
       !> The joints: (n_joint)
       logical :: is_peak(size(gap))
       real(wp) :: highest, threshold
       integer :: e, j, k, side
 
+      is_peak = gap >= (1.0_wp - tie)*maxval(gap)
+      if (.not. of_blocks) return
       threshold = notable*maxval(gap)
       do j = 1, size(gap)
          is_peak(j) = gap(j) >= threshold

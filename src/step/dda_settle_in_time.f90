@@ -219,11 +219,7 @@ contains
       type(step_state_t), intent(inout) :: state
       !> Whether it is no matter if this does not end; then little is tried
       logical, intent(in), optional :: in_vain
-      real(wp), dimension(size(springs%stiffness)) :: bound, change, next, wrong
-      logical :: glued(size(springs%stiffness))
-      real(wp) :: opening(3, size(springs%stiffness)), least
-      type(anderson_t) :: known
-      integer :: correction
+      real(wp) :: opening(3, size(springs%stiffness))
 
       opening = state%start - state%multiplier
       if (settings%flow == flow_rule%associated) then
@@ -238,40 +234,60 @@ contains
             if (in_vain) return
          end if
       end if
+      call settle_bounds(settings, target, opening, equations, springs, state)
+   end subroutine settle_in_time
+
+   !> Settle the multipliers for bounds of friction that follow their normal forces
+   pure subroutine settle_bounds(settings, target, opening, equations, springs, state)
+      type(settings_t), intent(in) :: settings
+      real(wp), intent(in) :: target(:)
+      !> Trial forces at the beginning without multipliers: (3, n_joint) [N/m]
+      real(wp), intent(in) :: opening(:, :)
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(inout) :: state
+      real(wp), dimension(size(springs%stiffness)) :: bound, change, next, now, wrong
+      logical :: glued(size(springs%stiffness))
+      real(wp) :: least
+      type(anderson_t) :: known
+      integer :: correction
+
       glued = .not. springs%cone%limit < huge(1.0_wp)
       state%force = state%multiplier
-      bound = bounds_now()
+      bound = friction_of(springs, state)
       least = huge(least)
       do correction = 1, max_corrections
          state%cone%friction = 0.0_wp
          state%cone%limit = bound
          call settle_multipliers(settings, target, opening, equations, springs, state)
          if (.not. state%settled) return
-         change = bounds_now() - bound
+         now = friction_of(springs, state)
+         change = now - bound
          wrong = 0.0_wp
          where (state%face%slip /= 0 .or. abs(state%force(3, :)) > bound + change) &
             & wrong = abs(change)
          if (maxval(wrong) <= fine*equations%force_scale) return
          least = min(least, maxval(wrong))
          call accelerate(known, merge(0.0_wp, bound, glued), merge(0.0_wp, change, glued), next)
-         bound = max(0.0_wp, merge(bounds_now(), next, glued))
+         bound = max(0.0_wp, merge(now, next, glued))
       end do
       state%settled = least <= coarse_bound*equations%force_scale
+   end subroutine settle_bounds
 
-   contains
+   !> What friction allows with the normal forces as they are; joints that cannot slide can part
+   pure function friction_of(springs, state) result(bound)
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(in) :: state
+      !> The bounds: (n_joint) [N/m]
+      real(wp) :: bound(size(springs%stiffness))
+      integer :: j
 
-      !> What friction allows with the normal forces as they are; joints that cannot slide can part
-      pure function bounds_now() result(now)
-         !> The bounds: (n_joint) [N/m]
-         real(wp) :: now(size(glued))
-         integer :: j
-
-         now = coulomb_bound(springs, state)
-         do j = 1, size(now)
-            if (glued(j) .and. all(state%face(j)%open)) now(j) = 0.0_wp
-         end do
-      end function bounds_now
-   end subroutine settle_in_time
+      bound = coulomb_bound(springs, state)
+      do j = 1, size(bound)
+         if (.not. springs%cone(j)%limit < huge(1.0_wp) .and. all(state%face(j)%open)) &
+            & bound(j) = 0.0_wp
+      end do
+   end function friction_of
 
    !> Sweep the contacts, and in a motion with them the bars
    pure subroutine sweep_with_bars(equations, springs, state)
@@ -303,7 +319,6 @@ contains
    pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: target(:)
-      !> Trial forces at the beginning without multipliers: (3, n_joint) [N/m]
       real(wp), intent(in) :: opening(:, :)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
