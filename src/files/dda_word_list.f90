@@ -1,15 +1,17 @@
-!> A text as words between blanks, each with its line, taken one after the other
+!> A text as words between blanks, each with its line, taken one after the other. What takes or
+!> checks them does nothing after an error: the first one stays
 module dda_word_list
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : read_number, to_text
+   use dda_warnings, only : add_warning, warnings_t
    implicit none
    private
 
-   public :: word_list_t, split_words, words_left, this_word, this_row, take_number, &
-      & take_property, take_whole
-   public :: take_word_numbers, take_material, largest_coordinate, quoted
+   public :: word_list_t, split_words, words_left, this_word, this_row, take_number
+   public :: take_property, take_whole, take_word_numbers, take_material, largest_coordinate
+   public :: quoted, check_number, warn_of_rest
 
    !> Largest coordinate, so that no square overflows
    real(wp), parameter :: largest_coordinate = 1.0e15_wp
@@ -119,11 +121,12 @@ contains
       character(len=*), intent(in) :: what
       !> The number
       real(wp), intent(out) :: value
-      !> The end of the text, or no number
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, the end of the text, or no number
+      type(error_t), allocatable, intent(inout) :: error
       logical :: ok
 
       value = 0.0_wp
+      if (allocated(error)) return
       if (words%next > words%n) then
          call fatal_error(error, "expected "//what//", got the end of the text; add it", &
             & words%file, this_row(words))
@@ -144,8 +147,8 @@ contains
       real(wp), intent(in) :: bound
       !> The numbers: (n)
       real(wp), intent(out) :: value(:)
-      !> What is wrong with the first bad one
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, or what is wrong with the first bad one
+      type(error_t), allocatable, intent(inout) :: error
       integer :: i, row
 
       value = 0.0_wp
@@ -166,8 +169,8 @@ contains
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       real(wp), intent(out) :: value
-      !> Another one, or none
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, another number, or none
+      type(error_t), allocatable, intent(inout) :: error
       real(wp), parameter :: most = 1.0e30_wp
       integer :: row
 
@@ -188,8 +191,8 @@ contains
       integer, intent(in) :: high
       !> The number
       integer, intent(out) :: value
-      !> The end of the text, or no such number
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, the end of the text, or no such number
+      type(error_t), allocatable, intent(inout) :: error
       real(wp) :: number
       integer :: row
 
@@ -211,8 +214,35 @@ contains
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       integer, intent(out) :: value
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
 
       call take_whole(words, what, 1, largest_material, value, error)
    end subroutine take_material
+
+   !> Refuse a number that breaks a rule
+   pure subroutine check_number(fits, rule, value, file, row, error)
+      !> Whether it keeps the rule
+      logical, intent(in) :: fits
+      !> The rule, such as: the unit mass must be above 0
+      character(len=*), intent(in) :: rule
+      real(wp), intent(in) :: value
+      character(len=*), intent(in) :: file
+      !> Line of the file
+      integer, intent(in) :: row
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (fits .or. allocated(error)) return
+      call fatal_error(error, rule//", got "//to_text(value)//"; correct it", file, row)
+   end subroutine check_number
+
+   !> Warn of words that were not taken
+   pure subroutine warn_of_rest(words, taken, warnings)
+      type(word_list_t), intent(in) :: words
+      !> What stands before them
+      character(len=*), intent(in) :: taken
+      type(warnings_t), intent(inout) :: warnings
+
+      if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
+         & //taken//": "//quoted(this_word(words)), words%file, this_row(words))
+   end subroutine warn_of_rest
 end module dda_word_list

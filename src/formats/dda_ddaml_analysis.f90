@@ -1,11 +1,11 @@
 !> Analysis files in DDAML, the XML form
 submodule (dda_read_limerick) dda_ddaml_analysis
    use dda_ddaml_form, only : analysis_form, check_elements, find_part
-   use dda_ddaml_material, only : choose, number_attribute, read_history, read_joint, &
-      & read_material, whole_attribute
+   use dda_ddaml_material, only : choose, element_error, element_words, number_attribute, &
+      & read_history, read_joint, read_material, whole_attribute
    use dda_kinds, only : wp
    use dda_plain_files, only : check_steps
-   use dda_word_list, only : quoted, split_words, take_property, word_list_t
+   use dda_word_list, only : quoted, take_property, word_list_t
    use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
       & first_child, next_sibling
    implicit none
@@ -95,7 +95,7 @@ contains
             & error)
       case ("Gravity")
          call choose(tree, at, "flag", "yes", "no", turned_on, error)
-         if (turned_on .and. .not. allocated(error)) call read_gravity(tree, at, analysis, error)
+         if (turned_on) call read_gravity(tree, at, analysis, error)
       case ("Autotimestep")
          call choose(tree, at, "flag", "yes", "no", analysis%auto_time_step, error)
       case ("Planestrain")
@@ -117,7 +117,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       type(limerick_analysis_t), intent(inout) :: analysis
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: tolerance(2) = ["Normaltolerance", "Sheartolerance "]
       integer :: child, i
 
@@ -126,9 +126,8 @@ contains
       if (child > 0) call whole_attribute(tree, child, "val", 1, analysis%gravity_steps, error)
       do i = 1, 2
          child = find_child(tree, at, trim(tolerance(i)))
-         if (child > 0 .and. .not. allocated(error)) &
-            & call number_attribute(tree, child, "val", 0.0_wp, analysis%gravity_tolerance(i), &
-            & error)
+         if (child > 0) call number_attribute(tree, child, "val", 0.0_wp, &
+            & analysis%gravity_tolerance(i), error)
       end do
    end subroutine read_gravity
 
@@ -180,10 +179,9 @@ contains
       integer :: k
 
       property = 0.0_wp
-      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words)
+      call element_words(tree, at, words)
       do k = 1, 3
          call take_property(words, "the "//trim(what(k))//" of bolts", property(k), error)
-         if (allocated(error)) return
       end do
    end subroutine read_bolt
 
@@ -274,11 +272,10 @@ contains
       integer :: i
 
       do i = 1, size(wanted)
-         if (find_child(tree, part, trim(wanted(i))) > 0) cycle
-         call fatal_error(error, "expected the element "//trim(wanted(i))//" in Analysis, got " &
-            & //"none; add it", tree%file, tree%element(part)%row)
-         return
+         if (find_child(tree, part, trim(wanted(i))) == 0) call element_error(tree, part, &
+            & "expected the element "//trim(wanted(i))//" in Analysis, got none; add it", error)
       end do
+      if (allocated(error)) return
       if (find_child(tree, part, "Autopenalty") == 0) call add_warning(warnings, "expected " &
          & //"Autopenalty, got none: using flag=""no"" with pfactor=""50""", &
          & tree%file, tree%element(part)%row)

@@ -1,11 +1,11 @@
 !> Geometry files in DDAML, the XML form
 submodule (dda_read_limerick) dda_ddaml_geometry
    use dda_ddaml_form, only : check_elements, find_part, geometry_form
-   use dda_ddaml_material, only : attribute_words
+   use dda_ddaml_material, only : attribute_words, element_words
    use dda_kinds, only : wp
    use dda_line_model, only : add_bolt, add_entity, new_entities, new_line_model
-   use dda_word_list, only : largest_coordinate, quoted, split_words, take_material, take_number, &
-      & take_property, take_word_numbers, this_row, this_word, word_list_t, words_left
+   use dda_word_list, only : check_number, largest_coordinate, take_material, take_number, &
+      & take_property, take_word_numbers, warn_of_rest, word_list_t
    use dda_xml_tree, only : attribute_place, first_child, next_sibling
    implicit none
 
@@ -92,15 +92,14 @@ contains
       integer, intent(in) :: at
       !> The ratio
       real(wp), intent(inout) :: ratio
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
 
       call attribute_words(tree, at, "distance", words, error)
-      if (.not. allocated(error)) call take_number(words, "the edge-node distance", ratio, error)
-      if (allocated(error)) return
-      if (ratio < 0.0_wp .or. ratio > 0.5_wp) call fatal_error(error, &
-         & "the edge-node distance must be from 0 to 0.5, got "//to_text(ratio)//"; correct it", &
-         & tree%file, tree%element(at)%row)
+      call take_number(words, "the edge-node distance", ratio, error)
+      call check_number(ratio >= 0.0_wp .and. ratio <= 0.5_wp, &
+         & "the edge-node distance must be from 0 to 0.5", ratio, tree%file, &
+         & tree%element(at)%row, error)
    end subroutine read_ratio
 
    !> Read the elements of a list
@@ -142,9 +141,8 @@ contains
          call read_entity(tree, at, type_is%none, bolt, warnings, error)
          property = -1.0_wp
          do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
-            if (.not. allocated(error)) call attribute_words(tree, at, trim(name(k)), words, error)
-            if (.not. allocated(error)) call take_property(words, "the "//trim(name(k)) &
-               & //" of a bolt", property(k), error)
+            call attribute_words(tree, at, trim(name(k)), words, error)
+            call take_property(words, "the "//trim(name(k))//" of a bolt", property(k), error)
          end do
          if (allocated(error)) return
          call add_bolt(model, bolt%place(:, bolt%n), property, bolt%row(bolt%n))
@@ -158,34 +156,26 @@ contains
       integer, intent(in) :: at, type
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
       real(wp) :: place(4)
-      integer :: material
+      integer :: material, n
 
-      associate (element => tree%element(at))
+      associate (name => tree%element(at)%name)
          material = merge(0, 1, type == type_is%none)
          if (type == type_is%material .or. type == type_is%material_or_first &
             & .and. attribute_place(tree, at, "type") > 0) then
             call attribute_words(tree, at, "type", words, error)
-            if (.not. allocated(error)) &
-               & call take_material(words, "the type of "//element%name, material, error)
-            if (allocated(error)) return
+            call take_material(words, "the type of "//name, material, error)
          end if
-         call split_words(element%text, tree%file, element%text_row, words)
-         if (element%name == "Point") then
-            call take_word_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
-               & place(:2), error)
-            place(3:4) = place(1:2)
-         else
-            call take_word_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
-               & place, error)
-         end if
+         n = merge(2, 4, name == "Point")
+         call element_words(tree, at, words)
+         call take_word_numbers(words, "a coordinate of "//name, largest_coordinate, place(:n), &
+            & error)
          if (allocated(error)) return
-         if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
-            & //"coordinates of "//element%name//": "//quoted(this_word(words)), &
-            & tree%file, this_row(words))
-         call add_entity(entities, place, material, element%row)
+         if (n == 2) place(3:4) = place(1:2)
+         call warn_of_rest(words, "coordinates of "//name, warnings)
+         call add_entity(entities, place, material, tree%element(at)%row)
       end associate
    end subroutine read_entity
 

@@ -1,4 +1,5 @@
-!> Attributes of elements of DDAML, and the materials and loads that an analysis file says by them
+!> Attributes and words of elements of DDAML, and the materials and loads that an analysis file says
+!> by them. What reads them does nothing after an error: the first one stays
 module dda_ddaml_material
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -6,14 +7,14 @@ module dda_ddaml_material
    use dda_plain_files, only : check_joint, check_material, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_whole, take_word_numbers, this_row, &
-      & this_word, word_list_t, words_left
+   use dda_word_list, only : check_number, quoted, split_words, take_whole, take_word_numbers, &
+      & this_row, warn_of_rest, word_list_t
    use dda_xml_tree, only : attribute_of, find_child, xml_tree_t
    implicit none
    private
 
-   public :: attribute_words, choose, number_attribute, whole_attribute, read_material
-   public :: read_joint, read_history
+   public :: attribute_words, choose, element_error, element_words, number_attribute
+   public :: read_material, read_joint, read_history, whole_attribute
 
    !> Largest whole number
    integer, parameter :: largest_whole = 1000000000
@@ -31,17 +32,39 @@ contains
       !> Name of the attribute
       character(len=*), intent(in) :: name
       type(word_list_t), intent(out) :: words
-      !> It is not there
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, or it is not there
+      type(error_t), allocatable, intent(inout) :: error
 
-      associate (element => tree%element(at))
-         call split_words(attribute_of(tree, at, name), tree%file, element%row, words)
-         words%row = element%row
-         if (words%n /= 1) call fatal_error(error, "expected the attribute "//name &
-            & //" with one value in "//quoted(element%name)//", got " &
-            & //quoted(attribute_of(tree, at, name))//"; write one value", tree%file, element%row)
-      end associate
+      call split_words(attribute_of(tree, at, name), tree%file, tree%element(at)%row, words)
+      words%row = tree%element(at)%row
+      if (words%n /= 1) call element_error(tree, at, "expected the attribute "//name &
+         & //" with one value in "//quoted(tree%element(at)%name)//", got " &
+         & //quoted(attribute_of(tree, at, name))//"; write one value", error)
    end subroutine attribute_words
+
+   !> The words inside an element
+   pure subroutine element_words(tree, at, words, also_blank)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at
+      type(word_list_t), intent(out) :: words
+      !> Characters that part words besides blanks
+      character(len=*), intent(in), optional :: also_blank
+
+      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
+         & also_blank)
+   end subroutine element_words
+
+   !> An error that speaks of an element, unless there is one already
+   pure subroutine element_error(tree, at, message, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at
+      !> What was expected, what was found
+      character(len=*), intent(in) :: message
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (.not. allocated(error)) &
+         & call fatal_error(error, message, tree%file, tree%element(at)%row)
+   end subroutine element_error
 
    !> Read an attribute that chooses between two meanings
    pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
@@ -54,15 +77,15 @@ contains
       character(len=*), intent(in) :: word_for_no
       !> The choice
       logical, intent(out) :: yes
-      !> Another word, or none
-      type(error_t), allocatable, intent(out) :: error
+      !> An earlier one, another word, or none
+      type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: word
 
       word = attribute_of(tree, at, name)
       yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
-      if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
-         & //" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
-         & //word_for_no//", got "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
+      if (.not. yes .and. word /= word_for_no) call element_error(tree, at, "the attribute " &
+         & //name//" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
+         & //word_for_no//", got "//quoted(word)//"; choose one", error)
    end subroutine choose
 
    !> Read an attribute that is a number
@@ -74,17 +97,16 @@ contains
       real(wp), intent(in) :: low
       !> The number
       real(wp), intent(inout) :: value
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
       real(wp) :: number(1)
 
       call attribute_words(tree, at, name, words, error)
-      if (.not. allocated(error)) &
-         & call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
+      call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
       if (allocated(error)) return
       value = number(1)
-      if (value < low) call fatal_error(error, "the attribute "//name//" must be "//to_text(low) &
-         & //" or more, got "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
+      call check_number(value >= low, "the attribute "//name//" must be "//to_text(low) &
+         & //" or more", value, tree%file, tree%element(at)%row, error)
    end subroutine number_attribute
 
    !> Read an attribute that is a whole number
@@ -96,12 +118,11 @@ contains
       integer, intent(in) :: low
       !> The number
       integer, intent(inout) :: value
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
 
       call attribute_words(tree, at, name, words, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the attribute "//name, low, largest_whole, value, error)
+      call take_whole(words, "the attribute "//name, low, largest_whole, value, error)
    end subroutine whole_attribute
 
    !> Read a Blockmaterial
@@ -117,28 +138,20 @@ contains
 
       call read_child(tree, at, "Unitmass", .true., one, warnings, error)
       material%density = one(1)
-      if (.not. allocated(error)) call read_child(tree, at, "Youngsmod", .true., one, warnings, &
-         & error)
+      call read_child(tree, at, "Youngsmod", .true., one, warnings, error)
       material%young = one(1)
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Poissonratio", .true., one, warnings, error)
+      call read_child(tree, at, "Poissonratio", .true., one, warnings, error)
       material%poisson = one(1)
       one = min(material%density, largest_value)*gravity
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Unitweight", .false., one, warnings, error)
+      call read_child(tree, at, "Unitweight", .false., one, warnings, error)
       material%unit_weight = one(1)
       if (.not. allocated(error)) call check_weight(tree, at, gravity, material, warnings)
       unused = 0.0_wp
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Damping", .false., unused, warnings, error)
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Istress", .false., material%stress, warnings, error)
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Ivelocity", .false., material%velocity, warnings, error)
-      if (.not. allocated(error)) &
-         & call read_child(tree, at, "Istrain", .false., material%strain, warnings, error)
-      if (.not. allocated(error)) &
-         & call check_material(material, tree%file, tree%element(at)%row, error)
+      call read_child(tree, at, "Damping", .false., unused, warnings, error)
+      call read_child(tree, at, "Istress", .false., material%stress, warnings, error)
+      call read_child(tree, at, "Ivelocity", .false., material%velocity, warnings, error)
+      call read_child(tree, at, "Istrain", .false., material%strain, warnings, error)
+      call check_material(material, tree%file, tree%element(at)%row, error)
    end subroutine read_material
 
    !> The original weighs a block by unit mass times gravity, whatever the unit weight says
@@ -171,14 +184,12 @@ contains
       call read_child(tree, at, "Friction", .true., one, warnings, error)
       joint%friction_deg = one(1)
       one = 0.0_wp
-      if (.not. allocated(error)) call read_child(tree, at, "Cohesion", .false., one, warnings, &
-         & error)
+      call read_child(tree, at, "Cohesion", .false., one, warnings, error)
       joint%cohesion = one(1)
       one = 0.0_wp
-      if (.not. allocated(error)) call read_child(tree, at, "Tensile", .false., one, warnings, &
-         & error)
+      call read_child(tree, at, "Tensile", .false., one, warnings, error)
       joint%tension = one(1)
-      if (.not. allocated(error)) call check_joint(joint, tree%file, tree%element(at)%row, error)
+      call check_joint(joint, tree%file, tree%element(at)%row, error)
    end subroutine read_joint
 
    !> Read the numbers of an element inside another
@@ -193,24 +204,21 @@ contains
       !> Its numbers; left as they are if it is not there: (n)
       real(wp), intent(inout) :: value(:)
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
-      real(wp) :: number(size(value))
       integer :: child
 
+      if (allocated(error)) return
       child = find_child(tree, at, name)
-      if (child == 0) then
-         if (needed) call fatal_error(error, "expected the element "//name//" in " &
-            & //tree%element(at)%name//", got none; add it", tree%file, tree%element(at)%row)
-         if (needed) value = 0.0_wp
-         return
+      if (child > 0) then
+         call element_words(tree, child, words)
+         call take_word_numbers(words, "a number of "//name, largest_value, value, error)
+         if (.not. allocated(error)) call warn_of_rest(words, "numbers of "//name, warnings)
+      else if (needed) then
+         call element_error(tree, at, "expected the element "//name//" in " &
+            & //tree%element(at)%name//", got none; add it", error)
+         value = 0.0_wp
       end if
-      call split_words(tree%element(child)%text, tree%file, tree%element(child)%text_row, words)
-      call take_word_numbers(words, "a number of "//name, largest_value, number, error)
-      value = number
-      if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
-         & "trailing text ignored after the numbers of "//name//": "//quoted(this_word(words)), &
-         & tree%file, this_row(words))
    end subroutine read_child
 
    !> Read a Loadpoint: records of time and force, parted by semicolons
@@ -224,15 +232,13 @@ contains
       integer :: n, i, row
 
       call attribute_words(tree, at, "numpoints", words, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the attribute numpoints", 1, most_records, n, error)
+      call take_whole(words, "the attribute numpoints", 1, most_records, n, error)
       if (allocated(error)) return
-      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
-         & also_blank=";")
+      call element_words(tree, at, words, also_blank=";")
       if (words%n /= 3*n) then
-         call fatal_error(error, "expected "//to_text(n)//" records of 3 numbers in Loadpoint, " &
-            & //"got "//to_text(words%n)//" numbers; correct numpoints or the records", &
-            & tree%file, tree%element(at)%row)
+         call element_error(tree, at, "expected "//to_text(n)//" records of 3 numbers in " &
+            & //"Loadpoint, got "//to_text(words%n)//" numbers; correct numpoints or the records", &
+            & error)
          return
       end if
       allocate (history%record(3, n))

@@ -7,9 +7,10 @@ module dda_plain_files
    use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
       & new_line_model
    use dda_text, only : to_text
-   use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : largest_coordinate, quoted, split_words, take_material, take_number, &
-      & take_property, take_whole, take_word_numbers, this_row, this_word, word_list_t, words_left
+   use dda_warnings, only : warnings_t
+   use dda_word_list, only : check_number, largest_coordinate, split_words, take_material, &
+      & take_number, take_property, take_whole, take_word_numbers, this_row, warn_of_rest, &
+      & word_list_t, words_left
    implicit none
    private
 
@@ -54,54 +55,39 @@ contains
       model%file = file
       call split_words(text, file, 1, words)
       call take_number(words, "the edge-node distance ratio e00", model%edge_node_ratio, error)
-      if (allocated(error)) return
-      if (model%edge_node_ratio < 0.0_wp .or. model%edge_node_ratio > 0.5_wp) then
-         call fatal_error(error, "the edge-node distance ratio e00 must be from 0 to 0.5, " &
-            & //"got "//to_text(model%edge_node_ratio)//"; correct it", file, words%row(1))
-         return
-      end if
+      call check_number(model%edge_node_ratio >= 0.0_wp .and. model%edge_node_ratio <= 0.5_wp, &
+         & "the edge-node distance ratio e00 must be from 0 to 0.5", model%edge_node_ratio, file, &
+         & words%row(1), error)
       call read_counts(words, n, error)
       if (allocated(error)) return
       model%n_boundary = n%boundary
       call read_records(words, "line", n%lines, 4, .true., model%line, error)
-      if (.not. allocated(error)) call read_records(words, "material line", n%material_lines, 4, &
-         & .true., model%material_line, error)
-      if (.not. allocated(error)) call read_bolts(words, n%bolts, model, error)
-      if (.not. allocated(error)) &
-         & call read_records(words, "fixed point", n%fixed, 4, .false., model%fixed, error)
-      if (.not. allocated(error)) &
-         & call read_records(words, "load point", n%load, 2, .false., model%load, error)
-      if (.not. allocated(error)) &
-         & call read_records(words, "measured point", n%measured, 2, .false., model%measured, error)
-      if (.not. allocated(error)) &
-         & call read_records(words, "hole point", n%hole, 2, .false., model%hole, error)
-      if (allocated(error)) return
-      if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
-         & //"last record: "//quoted(this_word(words)), file, this_row(words))
+      call read_records(words, "material line", n%material_lines, 4, .true., model%material_line, &
+         & error)
+      call read_bolts(words, n%bolts, model, error)
+      call read_records(words, "fixed point", n%fixed, 4, .false., model%fixed, error)
+      call read_records(words, "load point", n%load, 2, .false., model%load, error)
+      call read_records(words, "measured point", n%measured, 2, .false., model%measured, error)
+      call read_records(words, "hole point", n%hole, 2, .false., model%hole, error)
+      if (.not. allocated(error)) call warn_of_rest(words, "last record", warnings)
    end subroutine read_plain_geometry
 
    !> Read how many things there are
    pure subroutine read_counts(words, n, error)
       type(word_list_t), intent(inout) :: words
       type(counts_t), intent(out) :: n
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       integer, parameter :: most = 100000000
 
       call take_whole(words, "the number of lines", 0, most, n%lines, error)
-      if (.not. allocated(error)) call take_whole(words, "the number of boundary lines " &
-         & //"(counted among the lines)", 0, n%lines, n%boundary, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of material lines", 0, most, n%material_lines, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of bolts", 0, most, n%bolts, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of fixed points", 0, most, n%fixed, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of load points", 0, most, n%load, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of measured points", 0, most, n%measured, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of hole points", 0, most, n%hole, error)
+      call take_whole(words, "the number of boundary lines (counted among the lines)", 0, n%lines, &
+         & n%boundary, error)
+      call take_whole(words, "the number of material lines", 0, most, n%material_lines, error)
+      call take_whole(words, "the number of bolts", 0, most, n%bolts, error)
+      call take_whole(words, "the number of fixed points", 0, most, n%fixed, error)
+      call take_whole(words, "the number of load points", 0, most, n%load, error)
+      call take_whole(words, "the number of measured points", 0, most, n%measured, error)
+      call take_whole(words, "the number of hole points", 0, most, n%hole, error)
    end subroutine read_counts
 
    !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
@@ -110,7 +96,7 @@ contains
       !> How many there are
       integer, intent(in) :: n
       type(line_model_t), intent(inout) :: model
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
          & "prestress"]
       real(wp) :: place(4), property(3)
@@ -121,8 +107,8 @@ contains
          call take_word_numbers(words, "a coordinate of bolt "//to_text(i)//" of "//to_text(n), &
             & largest_coordinate, place, error)
          do k = 1, 3
-            if (.not. allocated(error)) call take_property(words, "the "//trim(what(k)) &
-               & //" of bolt "//to_text(i)//" of "//to_text(n), property(k), error)
+            call take_property(words, "the "//trim(what(k))//" of bolt "//to_text(i)//" of " &
+               & //to_text(n), property(k), error)
          end do
          if (allocated(error)) return
          call add_bolt(model, place, property, row)
@@ -140,7 +126,7 @@ contains
       !> Whether a material follows
       logical, intent(in) :: has_material
       type(entities_t), intent(out) :: entities
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: name
       real(wp) :: place(4)
       integer :: i, row, material
@@ -153,8 +139,7 @@ contains
             & place(:n_number), error)
          if (n_number == 2) place(3:4) = place(1:2)
          material = 0
-         if (has_material .and. .not. allocated(error)) &
-            & call take_material(words, "the material of "//name, material, error)
+         if (has_material) call take_material(words, "the material of "//name, material, error)
          if (allocated(error)) return
          call add_entity(entities, place, material, row)
       end do
@@ -168,6 +153,7 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
+      real(wp) :: step(2)
       integer :: kind, n_material, n_joint, row
 
       analysis%file = file
@@ -175,68 +161,45 @@ contains
       call split_words(text, file, 1, words)
       call take_whole(words, "the type of analysis (0 static, 1 dynamic)", 0, 1, kind, error)
       analysis%dynamic = kind == 1
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the number of time steps", 1, most_steps, analysis%max_steps, &
+      call take_whole(words, "the number of time steps", 1, most_steps, analysis%max_steps, error)
+      call take_whole(words, "the number of block materials", 1, most_materials, n_material, error)
+      call take_whole(words, "the number of joint materials", 1, most_materials, n_joint, error)
+      row = this_row(words)
+      call take_word_numbers(words, "the largest displacement ratio", largest_value, step(:1), &
          & error)
-      if (.not. allocated(error)) call take_whole(words, "the number of block materials", 1, &
-         & most_materials, n_material, error)
-      if (.not. allocated(error)) call take_whole(words, "the number of joint materials", 1, &
-         & most_materials, n_joint, error)
-      if (.not. allocated(error)) row = this_row(words)
-      if (.not. allocated(error)) call read_steps(words, analysis, error)
-      if (.not. allocated(error)) call check_steps(analysis, file, row, error)
-      if (.not. allocated(error)) call read_materials(words, n_material, analysis, error)
-      if (.not. allocated(error)) call read_joints(words, n_joint, analysis, error)
+      call take_word_numbers(words, "the largest time step", largest_value, step(2:), error)
+      analysis%max_displacement_ratio = step(1)
+      analysis%time_step = step(2)
+      call check_steps(analysis, file, row, error)
+      call read_materials(words, n_material, analysis, error)
+      call read_joints(words, n_joint, analysis, error)
       if (allocated(error)) return
       analysis%gravity = 0.0_wp
       if (analysis%material(1)%density > 0.0_wp) &
          & analysis%gravity = analysis%material(1)%unit_weight/analysis%material(1)%density
-      if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
-         & //"last record: "//quoted(this_word(words)), file, this_row(words))
+      call warn_of_rest(words, "last record", warnings)
    end subroutine read_plain_analysis
-
-   !> Read the two numbers that bound a step
-   pure subroutine read_steps(words, analysis, error)
-      type(word_list_t), intent(inout) :: words
-      type(limerick_analysis_t), intent(inout) :: analysis
-      type(error_t), allocatable, intent(out) :: error
-      real(wp) :: value(1)
-
-      call take_word_numbers(words, "the largest displacement ratio", largest_value, value, error)
-      if (allocated(error)) return
-      analysis%max_displacement_ratio = value(1)
-      call take_word_numbers(words, "the largest time step", largest_value, value, error)
-      analysis%time_step = value(1)
-   end subroutine read_steps
 
    !> Read the materials of the blocks
    pure subroutine read_materials(words, n, analysis, error)
       type(word_list_t), intent(inout) :: words
       integer, intent(in) :: n
       type(limerick_analysis_t), intent(inout) :: analysis
-      type(error_t), allocatable, intent(out) :: error
-      type(analysis_material_t), allocatable :: list(:)
+      type(error_t), allocatable, intent(inout) :: error
       real(wp) :: value(13)
       integer :: i, row
 
-      if (words_left(words) < 13*n) then
-         call fatal_error(error, "expected "//to_text(n)//" block materials of 13 numbers, " &
-            & //"got "//to_text(words_left(words))//" more words; add what is missing", &
-            & words%file, this_row(words))
-         return
-      end if
-      allocate (list(n))
-      do i = 1, n
+      call check_room(words, "block", n, size(value), error)
+      allocate (analysis%material(merge(0, n, allocated(error))))
+      do i = 1, size(analysis%material)
          row = this_row(words)
          call take_word_numbers(words, "a number of block material "//to_text(i), largest_value, &
             & value, error)
-         if (allocated(error)) return
-         list(i) = analysis_material_t(value(1), value(2), value(3), value(4), value(5:7), &
-            & value(8:10), value(11:13))
-         call check_material(list(i), words%file, row, error)
+         analysis%material(i) = analysis_material_t(value(1), value(2), value(3), value(4), &
+            & value(5:7), value(8:10), value(11:13))
+         call check_material(analysis%material(i), words%file, row, error)
          if (allocated(error)) return
       end do
-      call move_alloc(list, analysis%material)
    end subroutine read_materials
 
    !> Read the materials of the joints
@@ -244,29 +207,37 @@ contains
       type(word_list_t), intent(inout) :: words
       integer, intent(in) :: n
       type(limerick_analysis_t), intent(inout) :: analysis
-      type(error_t), allocatable, intent(out) :: error
-      type(limerick_joint_t), allocatable :: list(:)
+      type(error_t), allocatable, intent(inout) :: error
       real(wp) :: value(3)
       integer :: i, row
 
-      if (words_left(words) < 3*n) then
-         call fatal_error(error, "expected "//to_text(n)//" joint materials of 3 numbers, got " &
-            & //to_text(words_left(words))//" more words; add what is missing", words%file, &
-            & this_row(words))
-         return
-      end if
-      allocate (list(n))
-      do i = 1, n
+      call check_room(words, "joint", n, size(value), error)
+      allocate (analysis%joint(merge(0, n, allocated(error))))
+      do i = 1, size(analysis%joint)
          row = this_row(words)
          call take_word_numbers(words, "a number of joint material "//to_text(i), largest_value, &
             & value, error)
-         if (allocated(error)) return
-         list(i) = limerick_joint_t(value(1), value(2), value(3))
-         call check_joint(list(i), words%file, row, error)
+         analysis%joint(i) = limerick_joint_t(value(1), value(2), value(3))
+         call check_joint(analysis%joint(i), words%file, row, error)
          if (allocated(error)) return
       end do
-      call move_alloc(list, analysis%joint)
    end subroutine read_joints
+
+   !> Whether words are left for all materials, before there is room made for them
+   pure subroutine check_room(words, what, n, n_number, error)
+      type(word_list_t), intent(in) :: words
+      !> What the materials are for
+      character(len=*), intent(in) :: what
+      integer, intent(in) :: n
+      !> Numbers of each
+      integer, intent(in) :: n_number
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (allocated(error) .or. words_left(words) >= n_number*n) return
+      call fatal_error(error, "expected "//to_text(n)//" "//what//" materials of " &
+         & //to_text(n_number)//" numbers, got "//to_text(words_left(words)) &
+         & //" more words; add what is missing", words%file, this_row(words))
+   end subroutine check_room
 
    !> Whether a block material can exist
    pure subroutine check_material(material, file, row, error)
@@ -274,21 +245,16 @@ contains
       character(len=*), intent(in) :: file
       !> Line of the file
       integer, intent(in) :: row
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
 
-      if (.not. material%density > 0.0_wp) then
-         call fatal_error(error, "the unit mass must be above 0, got " &
-            & //to_text(material%density)//"; correct it", file, row)
-      else if (material%unit_weight < 0.0_wp) then
-         call fatal_error(error, "the unit weight must be 0 or more, got " &
-            & //to_text(material%unit_weight)//"; correct it", file, row)
-      else if (.not. material%young > 0.0_wp) then
-         call fatal_error(error, "Young's modulus must be above 0, got " &
-            & //to_text(material%young)//"; correct it", file, row)
-      else if (material%poisson <= -1.0_wp .or. material%poisson >= 0.5_wp) then
-         call fatal_error(error, "Poisson's ratio must be between -1 and 0.5, got " &
-            & //to_text(material%poisson)//"; correct it", file, row)
-      end if
+      call check_number(material%density > 0.0_wp, "the unit mass must be above 0", &
+         & material%density, file, row, error)
+      call check_number(material%unit_weight >= 0.0_wp, "the unit weight must be 0 or more", &
+         & material%unit_weight, file, row, error)
+      call check_number(material%young > 0.0_wp, "Young's modulus must be above 0", &
+         & material%young, file, row, error)
+      call check_number(material%poisson > -1.0_wp .and. material%poisson < 0.5_wp, &
+         & "Poisson's ratio must be between -1 and 0.5", material%poisson, file, row, error)
    end subroutine check_material
 
    !> Whether a joint material can exist
@@ -296,15 +262,13 @@ contains
       type(limerick_joint_t), intent(in) :: joint
       character(len=*), intent(in) :: file
       integer, intent(in) :: row
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
 
-      if (joint%friction_deg < 0.0_wp .or. joint%friction_deg > 90.0_wp) then
-         call fatal_error(error, "the friction angle must be from 0 to 90 degrees, got " &
-            & //to_text(joint%friction_deg)//"; correct it", file, row)
-      else if (joint%cohesion < 0.0_wp .or. joint%tension < 0.0_wp) then
-         call fatal_error(error, "cohesion and tensile strength must be 0 or more, got " &
-            & //to_text(min(joint%cohesion, joint%tension))//"; correct it", file, row)
-      end if
+      call check_number(joint%friction_deg >= 0.0_wp .and. joint%friction_deg <= 90.0_wp, &
+         & "the friction angle must be from 0 to 90 degrees", joint%friction_deg, file, row, error)
+      call check_number(joint%cohesion >= 0.0_wp .and. joint%tension >= 0.0_wp, &
+         & "cohesion and tensile strength must be 0 or more", &
+         & min(joint%cohesion, joint%tension), file, row, error)
    end subroutine check_joint
 
    !> Whether the bounds of a step make sense
@@ -312,16 +276,14 @@ contains
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=*), intent(in) :: file
       integer, intent(in) :: row
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
 
-      if (.not. analysis%max_displacement_ratio > 0.0_wp &
-         & .or. analysis%max_displacement_ratio > 1.0_wp) then
-         call fatal_error(error, "the largest displacement ratio must be above 0 and at most 1, " &
-            & //"got "//to_text(analysis%max_displacement_ratio)//"; correct it", file, row)
-      else if (.not. analysis%time_step > 0.0_wp) then
-         call fatal_error(error, "the largest time step must be above 0, got " &
-            & //to_text(analysis%time_step)//"; correct it", file, row)
-      end if
+      call check_number(analysis%max_displacement_ratio > 0.0_wp &
+         & .and. analysis%max_displacement_ratio <= 1.0_wp, &
+         & "the largest displacement ratio must be above 0 and at most 1", &
+         & analysis%max_displacement_ratio, file, row, error)
+      call check_number(analysis%time_step > 0.0_wp, "the largest time step must be above 0", &
+         & analysis%time_step, file, row, error)
    end subroutine check_steps
 
 end module dda_plain_files
