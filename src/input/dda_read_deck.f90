@@ -25,22 +25,6 @@ module dda_read_deck
 
    interface
 
-      !> Read the values of one key
-      pure module subroutine read_values(scan, first, last, parameter, place, deck, error)
-         type(deck_scan_t), intent(in) :: scan
-         !> First token of the values
-         integer, intent(in) :: first
-         !> Last token; one before the first if there are none
-         integer, intent(in) :: last
-         !> The key, with the item if only that one is set
-         type(parameter_t), intent(in) :: parameter
-         !> Where the key stands
-         type(deck_place_t), intent(in) :: place
-         type(deck_t), intent(inout) :: deck
-         !> Wrong type, wrong number of values, or a value out of range
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine read_values
-
       !> Read all of them
       module subroutine read_ground_records(deck, error)
          !> The deck, checked; receives the records

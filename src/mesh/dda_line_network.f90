@@ -13,7 +13,7 @@ module dda_line_network
    private
 
    public :: crossings_t, find_crossings, add_node, drop_edge, edge_place, join_crossings
-   public :: nearest_node, network_t, new_node_table, node_table_t
+   public :: half_edge_start, nearest_node, network_t, new_node_table, node_table_t
 
    !> Most crossings of a model
    integer, parameter :: max_crossings = 30000000
@@ -376,4 +376,12 @@ contains
          & size(table%first, kind=int64)))
    end function chain_of
 
+   !> Node where a half-edge starts
+   pure integer function half_edge_start(network, half_edge)
+      type(network_t), intent(in) :: network
+      !> Number of the half-edge
+      integer, intent(in) :: half_edge
+
+      half_edge_start = network%edge(2 - mod(half_edge, 2), (half_edge + 1)/2)
+   end function half_edge_start
 end module dda_line_network

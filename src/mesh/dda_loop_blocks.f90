@@ -3,7 +3,7 @@
 submodule (dda_cutting) dda_loop_blocks
    use dda_cut_model, only : edge_pair_t
    use dda_cut_report, only : add_remark, cut_reason
-   use dda_line_network, only : edge_place
+   use dda_line_network, only : edge_place, half_edge_start
    use dda_sort, only : sorted_order
    use dda_vector, only : cross
    implicit none
