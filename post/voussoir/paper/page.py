@@ -48,9 +48,9 @@ summary { cursor: pointer; }
 @media print { @page { margin: 12mm; } body { max-width: none; padding: 0; font-size: 10pt; }
   .wide, pre { overflow: visible; } table { font-size: 7pt; } th, td { padding: 1pt 3pt; }
   th { white-space: normal; } pre { white-space: pre-wrap; } figure, tr, .caption { break-inside: avoid; }
-  figure svg, figure img { max-height: 190mm; width: auto; max-width: 100%; }
-  h2, h3, .caption { break-after: avoid; } #top img { max-width: min(34rem, 100%); }
-.pair { display: block; } }
+  figure svg { width: calc(.85*var(--width)); max-width: 100%; max-height: 150mm; }
+  #top img { max-height: 95mm; width: auto; } nav { break-inside: avoid; } h2 { margin-top: 1.5rem; }
+  h2, h3, .caption { break-after: avoid; } .pair { display: block; } .pair figure + figure { display: none; } }
 """
 
 
