@@ -10,25 +10,29 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from voussoir.bench.deck_runs import read_rows
 from voussoir.bench.stability_scene import BLOCKS, Corners, written_block
 from voussoir.bench.work_precision_runs import FRICTION_DEG, Arch
 from voussoir.dda_program import find_dda
+from voussoir.deck.text import Groups, deck_text
 
 _PEAK = re.compile(r"VmHWM:\s+(\d+) kB")
 #: Thickness over the critical one of the arch that is decided
 THICKER = 1.05
+#: Tables that are left out where nothing else is said
+_BARE = {"joints": False, "blocks": False, "vtu": False}
 #: What is forced in, and the groups of a deck that do it; None: joints found among polygons
-PARTS: tuple[tuple[str, str | None], ...] = (
-    ("nothing: the plan", ""),
-    ("strain: 6 unknowns a block", "&analysis unknowns = 6 /\n"),
-    ("decisions with strain: joints.csv", "&output joints = .true., vtu = .false. /\n"),
-    ("strength that can break", "&joint cohesion = 1e-9 /\n"),
-    ("pictures: vtu", "&output joints = .false., blocks = .false., vtu = .true. /\n"),
-    ("condition", "&output joints = .false., blocks = .false., vtu = .false., condition = .true. /\n"),
+PARTS: tuple[tuple[str, Groups | None], ...] = (
+    ("nothing: the plan", {}),
+    ("strain: 6 unknowns a block", {"analysis": {"unknowns": 6}}),
+    ("decisions with strain: joints.csv", {"output": {"joints": True, "vtu": False}}),
+    ("strength that can break", {"joint": {"friction_deg": FRICTION_DEG, "cohesion": 1e-9}}),
+    ("pictures: vtu", {"output": {**_BARE, "vtu": True}}),
+    ("condition", {"output": {**_BARE, "condition": True}}),
     ("joints searched among polygons", None),
-    ("blocks that move, contacts that follow", "&analysis geometry = 'current' /\n"),
+    ("blocks that move, contacts that follow", {"analysis": {"geometry": "current"}}),
 )
 #: Blocks that move are left out beyond this number of voussoirs: they take minutes
 MOST_MOVING = 100
@@ -62,23 +66,16 @@ def plan_costs(counts: Sequence[int], folder: Path, repeats: int) -> Iterator[Co
                 yield _cost(arch, part, groups, ratio, search, folder, repeats)
 
 
-def _cost(arch: Arch, part: str, groups: str | None, ratio: float, search: bool, folder: Path, repeats: int) -> Cost:
+def _cost(arch: Arch, part: str, more: Groups | None, ratio: float, search: bool, folder: Path, repeats: int) -> Cost:
     """Time, memory and answer of one deck."""
-    written = {"&arch": f"half_angle_deg = 90.0, voussoirs = {arch.voussoirs}"}
-    written["&joint"] = f"friction_deg = {FRICTION_DEG}"
-    written["&output"] = "joints = .false., blocks = .false., vtu = .false."
-    if groups is None:
-        written = {"&scene": f"kind = 'blocks', geometry = '{BLOCKS}'", **written}
-        del written["&arch"]
+    groups: dict[str, Any] = {"arch": {"half_angle_deg": 90.0, "voussoirs": arch.voussoirs}}
+    if more is None:
+        groups = {"scene": {"kind": "blocks", "geometry": BLOCKS}}
     elif search:
-        written["&search"] = "parameter = 'thickness_ratio'"
+        groups["search"] = {"parameter": "thickness_ratio"}
     else:
-        written["&arch"] += f", thickness_ratio = {ratio!r}"
-    if groups:
-        name, _, keys = groups.strip().removesuffix("/").partition(" ")
-        both = name == "&joint"
-        written[name] = f"{written[name]}, {keys}" if both else keys
-    deck = "".join(f"{name} {keys} /\n" for name, keys in written.items())
+        groups["arch"]["thickness_ratio"] = ratio
+    deck = deck_text({**groups, "joint": {"friction_deg": FRICTION_DEG}, "output": _BARE, **(more or {})})
     (folder / "plan.nml").write_text(deck, encoding="utf-8")
     seconds, megabytes = [], []
     for _ in range(repeats):

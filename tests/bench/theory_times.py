@@ -1,6 +1,6 @@
 """Speed of the theory: solutions a second, against NumPy and scipy.optimize.brentq.
 
-Run as ``python3 -m voussoir.bench.theory_times``. The three do the same: hinge, thickness and thrust at given half
+Run as ``PYTHONPATH=build/python python3 tests/bench/theory_times.py``. The three do the same: hinge, thickness and thrust at given half
 angles. NumPy runs the Newton iteration of the Fortran module on whole arrays, with the same stable kernels; brentq
 solves the printed eqs. (1), (24), (23) angle by angle. One process, one core.
 """
@@ -22,7 +22,7 @@ _SERIES_K = 1.0 / np.array([10, 28, 54, 88, 130, 180, 238, 304, 378, 460, 550])
 
 def main() -> None:
     """Measure and print the table."""
-    parser = argparse.ArgumentParser(prog="python3 -m voussoir.bench.theory_times", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--elements", type=int, default=1_000_000, help="half angles for Fortran and NumPy")
     parser.add_argument("--scalar", type=int, default=2000, help="half angles for brentq")
     options = parser.parse_args()
