@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from voussoir import theory
-from voussoir.bench.stability_judge import Critical, Expectation, Refused, Same, Shifted, Verdict
+from voussoir.bench.stability_judge import Critical, Refused, Same, Verdict
 from voussoir.bench.stability_scene import Scene
 
 #: Weight of a cubic metre of the decks' default masonry [N/m3]
@@ -45,12 +45,12 @@ def searched(
     arch = {"voussoirs": 36, "half_angle_deg": 90.0} if arch is None else arch
     exact = exact_thickness(arch, friction_deg)
     deck = {"arch": arch, "joint": {"friction_deg": friction_deg}, **_SEARCH, **others}
-    expectation: Expectation = Critical(exact)
+    expectation = Critical(exact)
     if current:
         deck["analysis"] = {"geometry": "current", **others.get("analysis", {})}
         deck["material"] = {"young": NEARLY_RIGID, **others.get("material", {})}
         elastic = UNIT_WEIGHT * arch.get("radius", 10.0) / deck["material"]["young"]
-        expectation = Shifted(exact, 30.0 * elastic + 1e-7 * (exact or 0.0))
+        expectation = Critical(exact, 30.0 * elastic + 1e-7 * (exact or 0.0))
     return Scene(group, name + (", moving" if current else ""), deck, expectation, guard)
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 
-from voussoir.bench.stability_judge import Critical, Measured, Refused, Shifted, Verdict
+from voussoir.bench.stability_judge import Critical, Measured, Refused, Verdict
 from voussoir.bench.stability_scene import (
     Corners, Scene, block_scene, in_both, rectangle, written_block, written_blocks,
 )
@@ -113,7 +113,7 @@ def _pushed(
 ) -> Iterator[Scene]:
     """A search for the horizontal force over the weight, in both geometries."""
     yield from in_both(
-        group, name, guard, text, Critical(exact), Shifted(exact, accept * exact), joint={"friction_deg": friction_deg},
+        group, name, guard, text, Critical(exact), Critical(exact, accept * exact), joint={"friction_deg": friction_deg},
         material={"unit_weight": WEIGHT}, search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0})
 
 
@@ -255,11 +255,11 @@ def _far_away() -> Iterator[Scene]:
             text = written_block(rectangle(offset - 10.0 * size, offset - size, 20.0 * size, size), "fixed")
             text += written_blocks(rectangle(offset, offset + i * size, size, size) for i in range(3))
             # the corners are rounded to the spacing of numbers at their place
-            near = [Shifted(1.0 / 3.0, bound + 4.0 * math.ulp(offset) / size) for bound in (1e-8, 1e-4)]
+            near = [Critical(1.0 / 3.0, bound + 4.0 * math.ulp(offset) / size) for bound in (1e-8, 1e-4)]
             yield from in_both(
                 "far away", f"three cubes of {size:g} m at {offset:g} m, pushed",
                 "an origin of their own for blocks far away", text, *near, material={"unit_weight": WEIGHT}, **push)
-    near = [Shifted(1.0 / 3.0, bound) for bound in (1e-8, 1e-4)]
+    near = [Critical(1.0 / 3.0, bound) for bound in (1e-8, 1e-4)]
     for scale in (1e-9, 1e-6, 1e6):
         text = written_block([(x * scale, y * scale) for x, y in rectangle(-9, -1, 19, 1)], "fixed")
         text += written_blocks(rectangle(0.0, i * scale, scale, scale) for i in range(3))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from voussoir.bench.stability_blocks import BASE, at_rest, wall
-from voussoir.bench.stability_judge import Critical, Shifted, Verdict
+from voussoir.bench.stability_judge import Critical, Verdict
 from voussoir.bench.stability_motion import moving
 from voussoir.bench.stability_scene import GEOMETRIES, Scene, block_scene, rectangle, written_block, written_blocks
 from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, end
@@ -68,7 +68,7 @@ def _pushed(
     geometry, groups = _geometry(chance)
     return block_scene(
         "random blocks", f"{name}, friction {friction:g}, {geometry}", "", text,
-        Critical(exact) if geometry == "reference" else Shifted(exact, 1e-4), joint={"friction_deg": friction},
+        Critical(exact) if geometry == "reference" else Critical(exact, 1e-4), joint={"friction_deg": friction},
         search={"parameter": "horizontal_coefficient", "low": 0.0, "high": most}, **groups)
 
 
