@@ -1,8 +1,8 @@
 """Speed of the theory: solutions a second, against NumPy and scipy.optimize.brentq.
 
-Run as ``PYTHONPATH=build/python python3 tests/bench/theory_times.py``. The three do the same: hinge, thickness and thrust at given half
-angles. NumPy runs the Newton iteration of the Fortran module on whole arrays, with the same stable kernels; brentq
-solves the printed eqs. (1), (24), (23) angle by angle. One process, one core.
+Run as ``PYTHONPATH=build/python python3 tests/bench/theory_times.py``. The three do the same: hinge, thickness and
+thrust at given half angles. NumPy runs the Newton iteration of the Fortran module on whole arrays, with the same stable
+kernels; brentq solves the printed eqs. (1), (24), (23) angle by angle. One process, one core.
 """
 
 from __future__ import annotations

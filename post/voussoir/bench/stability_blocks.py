@@ -113,8 +113,9 @@ def _pushed(
 ) -> Iterator[Scene]:
     """A search for the horizontal force over the weight, in both geometries."""
     yield from in_both(
-        group, name, guard, text, Critical(exact), Critical(exact, accept * exact), joint={"friction_deg": friction_deg},
-        material={"unit_weight": WEIGHT}, search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0})
+        group, name, guard, text, Critical(exact), Critical(exact, accept * exact),
+        joint={"friction_deg": friction_deg}, material={"unit_weight": WEIGHT},
+        search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0})
 
 
 def _stacks() -> Iterator[Scene]:

@@ -33,7 +33,7 @@ class Expectation(Protocol):
 
 @dataclass(frozen=True)
 class Critical:
-    """A search whose bracket holds the exact value but for what elasticity explains, or that says that there is none."""
+    """A search whose bracket holds the exact value but for what elasticity explains, or which says that none exists."""
 
     exact: float | None  #: Critical value by limit analysis; 0 where everything stands, None where nothing does
     bound: float = 0.0  #: By how much blocks that strain may differ from rigid ones
