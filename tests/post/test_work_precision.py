@@ -14,8 +14,7 @@ from voussoir.bench import limit_lp  # noqa: E402
 from voussoir.bench.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
 from voussoir.bench.work_precision_fronts import Panel, Point, front  # noqa: E402
 from voussoir.bench.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
-from voussoir.bench.work_precision_motion_page import motion_table  # noqa: E402
-from voussoir.bench.work_precision_page import answer_words, draw, front_table, race_table  # noqa: E402
+from voussoir.bench.work_precision_page import answer_words, draw, front_table, motion_table, race_table  # noqa: E402
 from voussoir.bench.work_precision_runs import Arch, Race  # noqa: E402
 from voussoir.bench.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall  # noqa: E402
 from voussoir.command.main import main  # noqa: E402

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import html
 import statistics
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 
+from voussoir.bench.report_tables import markdown, write_csv
 from voussoir.bench.stability_judge import RIGHT, UNDECIDED, WRONG
 
 
@@ -92,24 +92,21 @@ def headline(lines: Sequence[Line]) -> str:
     )
 
 
-def write_csv(lines: Sequence[Line], file: Path) -> None:
+def write_lines(lines: Sequence[Line], file: Path) -> None:
     """Write the table as CSV."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, [field.name for field in fields(Line)], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(asdict(line) for line in lines)
+    write_csv(file, [field.name for field in fields(Line)], map(astuple, lines))
 
 
 def write_markdown(lines: Sequence[Line], file: Path) -> None:
     """Write a table by kind, and every scene that is not right, as Markdown."""
-    text = [f"# Stiff and extreme scenes\n\n**{headline(lines)}**\n"]
-    text.append("| " + " | ".join(_HEADS) + " |\n| --- |" + " ---: |" * (len(_HEADS) - 1))
-    text += ["| " + " | ".join(kind.cells()) + " |" for kind in kinds(lines)]
-    text.append("\n| scene | result | wanted | found | error | reason |\n" + "| --- " * 6 + "|")
-    text += [
-        f"| {line.group}: {line.scene} | {line.result} | {line.wanted} | {line.found} | {line.error} | {line.reason} |"
-        for line in lines
-        if line.result != RIGHT
+    odd = [
+        [f"{line.group}: {line.scene}", line.result, line.wanted, line.found, line.error, line.reason]
+        for line in lines if line.result != RIGHT
+    ]
+    text = [
+        f"# Stiff and extreme scenes\n\n**{headline(lines)}**\n",
+        *markdown(_HEADS, "l" + "r" * (len(_HEADS) - 1), [kind.cells() for kind in kinds(lines)]), "",
+        *markdown(("scene", "result", "wanted", "found", "error", "reason"), "llllll", odd),
     ]
     file.write_text("\n".join(text) + "\n", encoding="utf-8")
 

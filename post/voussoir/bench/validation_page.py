@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import itertools
 from collections.abc import Sequence
+from pathlib import Path
 
+from voussoir.bench.report_tables import markdown, write_csv
 from voussoir.bench.validation_run import Line
 
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
@@ -55,36 +56,25 @@ _TAIL = """
 """
 
 
-def csv_text(lines: Sequence[Line]) -> str:
-    """The table with every digit; columns error_2, error_4 hold the errors in shorter steps."""
+def write_lines(lines: Sequence[Line], file: Path) -> None:
+    """Write the table with every digit; columns error_2, error_4 hold the errors in shorter steps."""
     longest = max((len(line.errors) for line in lines), default=1)
-    shorter = [f"error_{2**k}" for k in range(1, longest)]
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow([*_COLUMNS, *shorter])
-    for line in lines:
-        check = line.check
-        rate = "" if line.rate is None else f"{line.rate:.3f}"
-        row = [line.scene.section, line.scene.name, check.what, line.scene.source]
-        row += [check.exact, line.computed, *line.errors[:1], check.accept, rate]
-        table.writerow([*row, f"{line.seconds:.3f}", _verdict(line), *line.errors[1:]])
-    return text.getvalue()
+    write_csv(file, [*_COLUMNS, *(f"error_{2**k}" for k in range(1, longest))], (
+        [line.scene.section, line.scene.name, line.check.what, line.scene.source, line.check.exact, line.computed,
+         *line.errors[:1], line.check.accept, "" if line.rate is None else f"{line.rate:.3f}", f"{line.seconds:.3f}",
+         _verdict(line), *line.errors[1:]]
+        for line in lines
+    ))
 
 
 def page(lines: Sequence[Line], version: str) -> str:
     """The page of lines in the order of their sections, and of what `dda --version` prints."""
     missed = sum(not line.accepted for line in lines)
     scenes = len({line.scene.name for line in lines})
-    count = f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."
-    text = [_HEAD, count]
-    section = ""
-    for line in lines:
-        if line.scene.section != section:
-            section = line.scene.section
-            text += ["", f"## {section}", ""]
-            text += ["| scene | quantity | exact | computed | error | accepted | rate | time |"]
-            text += ["| --- | --- | --- | --- | --- | --- | --- | --- |"]
-        text.append(_row(line))
+    text = [_HEAD, f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."]
+    heads = ("scene", "quantity", "exact", "computed", "error", "accepted", "rate", "time")
+    for section, own in itertools.groupby(lines, lambda line: line.scene.section):
+        text += ["", f"## {section}", "", *markdown(heads, "l" * len(heads), map(_row, own))]
     return "\n".join(text) + "\n" + _TAIL
 
 
@@ -99,7 +89,7 @@ def _verdict(line: Line) -> str:
     return "ok" if line.accepted else "MISSED"
 
 
-def _row(line: Line) -> str:
+def _row(line: Line) -> list[str]:
     """A row of the page."""
     check = line.check
     if isinstance(check.exact, str):
@@ -111,4 +101,4 @@ def _row(line: Line) -> str:
         cells[3] = f"{cells[3]} **MISSED**".strip()
     rate = "-" if line.rate is None else f"{round(line.rate, 1) + 0.0:.1f}"
     name = f"`{line.scene.name}` ({line.scene.source})"
-    return "| " + " | ".join([name, check.what, *cells, rate, f"{line.seconds:.2f}"]) + " |"
+    return [name, check.what, *cells, rate, f"{line.seconds:.2f}"]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voussoir.bench import work_precision_scenes as scenes
+from voussoir.bench.report_tables import grouped, markdown, write_csv
 from voussoir.bench.work_precision_fronts import Panel, Point, front
+from voussoir.bench.work_precision_motion import MotionPoint, order
 from voussoir.bench.work_precision_runs import Race
 
 if TYPE_CHECKING:
@@ -22,8 +23,8 @@ ALL_DIGITS = 1e-14
 LEAST_ERROR = 1e-16
 #: Colour of words in the axes
 _QUIET = "#555555"
-#: Errors that the table tells the cost of
-GOALS = (1e-1, 1e-3, 1e-6, 1e-9)
+#: Errors that the tables tell the cost of, and that of blocks that move
+GOALS, MOTION_GOALS = (1e-1, 1e-3, 1e-6, 1e-9), (1e-2, 1e-3, 1e-4, 1e-6)
 #: Colour (place in the style's inks), mark and line of each method
 _LOOKS = {
     scenes.RIGID: (1, "o", "-"), scenes.ELASTIC: (0, "s", "-"), scenes.COULOMB: (0, "s", "-"),
@@ -31,72 +32,82 @@ _LOOKS = {
     scenes.INTERIOR: (3, "P", ":")}
 
 
-def write_csv(panels: Sequence[Panel], file: Path) -> None:
+def write_points(panels: Sequence[Panel], file: Path) -> None:
     """Write all points, those behind the fronts too."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["scene", "method", "setting", "answer", "error", "seconds", "on_front"])
-        for panel in panels:
-            best = {id(point) for own in by_method(panel).values() for point in front(own)}
-            for point in panel.points:
-                known = ["" if value is None else repr(value) for value in (point.answer, point.error)]
-                writer.writerow(
-                    [point.scene, point.method, point.setting, *known, repr(point.seconds), int(id(point) in best)]
-                )
-
-
-def by_method(panel: Panel) -> dict[str, list[Point]]:
-    """The points of each method."""
-    methods: dict[str, list[Point]] = {}
-    for point in panel.points:
-        methods.setdefault(point.method, []).append(point)
-    return methods
+    best = {id(point) for panel in panels for own in grouped(panel.points, "method").values() for point in front(own)}
+    write_csv(file, ("scene", "method", "setting", "answer", "error", "seconds", "on_front"), (
+        [point.scene, point.method, point.setting,
+         *("" if value is None else repr(value) for value in (point.answer, point.error)),
+         repr(point.seconds), int(id(point) in best)]
+        for panel in panels for point in panel.points
+    ))
 
 
 def front_table(panels: Sequence[Panel]) -> list[str]:
     """Markdown lines: the least time in which a method reaches an error, a line a class and method."""
-    lines = [
-        "| scene | method | least error " + "".join(f"| error ≤ {goal:g} " for goal in GOALS) + "|",
-        "| --- | --- | ---: " + "| ---: " * len(GOALS) + "|",
-    ]
+    rows = []
     for panel in panels:
-        for method, own in by_method(panel).items():
+        for method, own in grouped(panel.points, "method").items():
             best = front(own)
             least = f"{max(best[-1].error, LEAST_ERROR):.0e}" if best else "no answer"
             reached = [next((point for point in best if point.error <= goal), None) for goal in GOALS]
-            cells = [f"{point.seconds * 1e3:.3g} ms" if point else "-" for point in reached]
-            lines.append(f"| {own[0].scene} | {method} | {least} | " + " | ".join(cells) + " |")
-    return lines
+            times = [f"{point.seconds * 1e3:.3g} ms" if point else "-" for point in reached]
+            rows.append([own[0].scene, method, least, *times])
+    heads = ["scene", "method", "least error", *(f"error ≤ {goal:g}" for goal in GOALS)]
+    return markdown(heads, "llr" + "r" * len(GOALS), rows)
+
+
+_RACE = (
+    "half angle", "voussoirs", "decision us", "right", "search us", "general LP us", "right", "compact LP us", "right",
+    "general / decision", "compact / decision", "search / compact")
 
 
 def race_table(races: Sequence[Race]) -> list[str]:
     """Markdown lines of the decisions' times and their ratios."""
-    lines = [
-        "| half angle | voussoirs | decision us | right | search us | general LP us | right "
-        "| compact LP us | right | general / decision | compact / decision | search / compact |",
-        "| ---: " * 12 + "|",
-    ]
+    rows = []
     for race in races:
-        start = (
-            f"| {race.arch.half_angle_deg:g} | {race.arch.voussoirs} | {race.decision * 1e6:.0f} "
-            f"| {race.right} of 4 | {race.search * 1e6:.0f} "
-        )
+        row = [f"{race.arch.half_angle_deg:g}", str(race.arch.voussoirs), f"{race.decision * 1e6:.0f}",
+               f"{race.right} of 4", f"{race.search * 1e6:.0f}"]
         if race.general is None or race.compact is None:
-            lines.append(start + "| - " * 7 + "|")
-            continue
-        lines.append(
-            start + f"| {race.general * 1e6:.0f} | {race.general_right} of 4 | {race.compact * 1e6:.0f} | "
-            f"{race.compact_right} of 4 | {race.general / race.decision:.0f} | {race.compact / race.decision:.1f} | "
-            f"{race.search / race.compact:.2f} |"
-        )
-    return lines
+            row += ["-"] * 7
+        else:
+            row += [f"{race.general * 1e6:.0f}", f"{race.general_right} of 4", f"{race.compact * 1e6:.0f}",
+                    f"{race.compact_right} of 4", f"{race.general / race.decision:.0f}",
+                    f"{race.compact / race.decision:.1f}", f"{race.search / race.compact:.2f}"]
+        rows.append(row)
+    return markdown(_RACE, "r" * 12, rows)
+
+
+def write_motion(points: Sequence[MotionPoint], file: Path) -> None:
+    """Write all points of blocks that move."""
+    write_csv(file, ("scene", "step", "error", "seconds", "steps"), (
+        [point.scene, repr(point.step), repr(point.error), repr(point.seconds), point.steps] for point in points))
+
+
+def motion_table(points: Sequence[MotionPoint]) -> list[str]:
+    """Markdown lines: order of convergence, and the longest step that reaches each accuracy."""
+    rows = []
+    for scene, own in grouped(points, "scene").items():
+        slope = order(own)
+        errors = [point.error for point in own]
+        rows.append([scene, "rounding at any step" if slope is None else f"{slope:.1f}", f"{max(errors):.1e}",
+                     f"{min(errors):.1e}", *(_cheapest(own, goal) for goal in MOTION_GOALS)])
+    heads = ["scene", "order", "largest error", "least error", *(f"error <= {goal:.0e}" for goal in MOTION_GOALS)]
+    return markdown(heads, "lrrr" + "l" * len(MOTION_GOALS), rows)
+
+
+def _cheapest(points: Sequence[MotionPoint], goal: float) -> str:
+    """The longest step that reaches an accuracy, and its time."""
+    best = max((point for point in points if point.error <= goal), key=lambda point: point.step, default=None)
+    return f"{best.step * 1e3:g} ms: {best.seconds * 1e3:.1f} ms" if best else "none"
 
 
 def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
     """Error against run time: work_precision_arch.svg and so on, a class of scene each, on the same axis of time."""
     from voussoir.plot.figure_style import Picture, house_style, save
 
-    told = [point.seconds for panel in panels for own in by_method(panel).values() for point in front(own)]
+    fronts = [front(own) for panel in panels for own in grouped(panel.points, "method").values()]
+    told = [point.seconds for best in fronts for point in best]
     if not told:
         return []
     span = 10.0 ** math.floor(math.log10(min(told)) - 0.1), 10.0 ** math.ceil(math.log10(max(told)) + 0.2)
@@ -142,7 +153,7 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
     """One panel; gives the lines of its legend, the quickest method first."""
     from voussoir.plot.figure_style import INK
 
-    methods = by_method(panel)
+    methods = grouped(panel.points, "method")
     least = min((point.error for own in methods.values() for point in front(own)), default=0.0)
     decades = 16 if least < 1e-6 else 4
     bottom, top = 10.0**-decades / (6.0 if decades == 16 else 2.0), 2.0

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from voussoir.bench.deck_runs import read_rows
+from voussoir.bench.report_tables import markdown
 from voussoir.bench.stability_scene import BLOCKS, Corners, written_block
 from voussoir.bench.work_precision_runs import FRICTION_DEG, Arch
 from voussoir.dda_program import find_dda
@@ -125,28 +126,24 @@ def _polygons(arch: Arch, ratio: float) -> str:
 
 def cost_table(costs: Sequence[Cost]) -> list[str]:
     """Markdown lines: what each part costs over the plan."""
-    lines = [
-        "| voussoirs | forced in | decision ms | times | MB | search ms | times | MB | answer |",
-        "| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |",
-    ]
     found = {(cost.voussoirs, cost.part, cost.search): cost for cost in costs}
-    plan = PARTS[0][0]
+    heads = ("voussoirs", "forced in", "decision ms", "times", "MB", "search ms", "times", "MB", "answer")
+    rows = []
     for count in dict.fromkeys(cost.voussoirs for cost in costs):
         for part, _ in PARTS:
-            cells = [
-                _cells(found.get((count, part, search)), found.get((count, plan, search))) for search in (False, True)
-            ]
-            if cells[0].strip("| -"):
-                same = _difference(found, count, part)
-                lines.append(f"| {count} | {part} | {cells[0]} | {cells[1]} | {same} |")
-    return lines
+            cells = []
+            for search in (False, True):
+                cells += _cells(found.get((count, part, search)), found.get((count, PARTS[0][0], search)))
+            if set(cells) != {"-"}:
+                rows.append([str(count), part, *cells, _difference(found, count, part)])
+    return markdown(heads, "rlrrrrrrl", rows)
 
 
-def _cells(cost: Cost | None, plan: Cost | None) -> str:
+def _cells(cost: Cost | None, plan: Cost | None) -> list[str]:
     """Time, times that of the plan, memory."""
     if cost is None or plan is None:
-        return "- | - | -"
-    return f"{cost.seconds * 1e3:.3g} | {cost.seconds / plan.seconds:.2f} | {cost.megabytes:.1f}"
+        return ["-"] * 3
+    return [f"{cost.seconds * 1e3:.3g}", f"{cost.seconds / plan.seconds:.2f}", f"{cost.megabytes:.1f}"]
 
 
 def _difference(found: dict[tuple[int, str, bool], Cost], count: int, part: str) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from voussoir.bench.deck_runs import Finished, Row, run_deck
 from voussoir.bench.stability_judge import RIGHT, UNDECIDED, WRONG, judge
-from voussoir.bench.stability_page import Line, headline, write_csv, write_markdown, write_page
+from voussoir.bench.stability_page import Line, headline, write_lines, write_markdown, write_page
 from voussoir.bench.stability_scene import Scene
 from voussoir.bench.stability_scenes import catalogue, random_scenes
 from voussoir.command.options import whole_number
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     find_dda()
     lines = run_scenes(scenes, arguments.out, arguments.jobs, arguments.timeout)
-    write_csv(lines, arguments.out / "stability.csv")
+    write_lines(lines, arguments.out / "stability.csv")
     write_markdown(lines, arguments.out / "stability.md")
     write_page(lines, arguments.out / "stability.html")
     sys.stdout.write(f"{headline(lines)}; tables in {arguments.out}/stability.csv, .md, .html\n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from voussoir.bench.validation_page import csv_text, page, told
+from voussoir.bench.validation_page import page, told, write_lines
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     dda = find_dda()
     lines = _lines(arguments, dda)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / "validation.csv").write_text(csv_text(lines), encoding="utf-8")
+    write_lines(lines, arguments.out / "validation.csv")
     (arguments.out / "validation.md").write_text(page(lines, version_of(dda)), encoding="utf-8")
     return 0 if all(line.accepted for line in lines) else 1
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from voussoir.bench import limit_lp
 from voussoir.bench.work_precision_fronts import CLASSES, Panel, panels
 from voussoir.bench.work_precision_motion import MotionPoint, motion_points
-from voussoir.bench.work_precision_motion_page import motion_table, write_motion_csv
-from voussoir.bench.work_precision_page import draw, front_table, race_table, write_csv
+from voussoir.bench.work_precision_page import draw, front_table, motion_table, race_table, write_motion, write_points
 from voussoir.bench.work_precision_plan import cost_table, plan_costs
 from voussoir.bench.work_precision_runs import Arch, Race, race
 from voussoir.command.options import whole_number
@@ -56,11 +55,11 @@ def run(arguments: argparse.Namespace) -> int:
         races = [race(arch, runs, arguments.repeats) for arch in arches]
     if not arguments.motion and not arguments.race:
         drawn = list(panels(runs, arguments.repeats, arguments.scenes))
-        write_csv(drawn, arguments.out / "work_precision.csv")
+        write_points(drawn, arguments.out / "work_precision.csv")
         draw(drawn, arguments.out)
     if not arguments.race and "motion" in arguments.scenes:
         motion = list(motion_points(runs, arguments.repeats))
-        write_motion_csv(motion, arguments.out / "work_precision_motion.csv")
+        write_motion(motion, arguments.out / "work_precision_motion.csv")
     text = "\n".join(_report(races, drawn, motion)) + "\n"
     (arguments.out / "work_precision.md").write_text(text, encoding="utf-8")
     sys.stdout.write(text)
