@@ -179,9 +179,9 @@ class Results:
 
     folder: Path
     cases: Table
-    joints: Table | None
-    frames: Table | None
-    frame_joints: Table | None
+    joints: Table | None = None
+    frames: Table | None = None
+    frame_joints: Table | None = None
     blocks: Table | None = None
     points: Table | None = None
     reactions: Table | None = None
@@ -315,14 +315,10 @@ class Results:
         joints = self.frame_joints.where(case=number)
         pictures = []
         for frame in np.unique(corners["frame"]):
-            of_frame = corners.where(frame=frame)
-            points = np.column_stack((of_frame["x"], of_frame["y"]))
-            starts = np.flatnonzero(np.diff(of_frame["block"])) + 1
-            pictures.append(
-                Frame(
-                    number=int(frame), step=int(of_frame["step"][0]), time=float(of_frame["time"][0]),
-                    blocks=np.split(points, starts), joints=joints.where(frame=frame))
-            )
+            rows = corners.where(frame=frame)
+            blocks = np.split(np.column_stack((rows["x"], rows["y"])), np.flatnonzero(np.diff(rows["block"])) + 1)
+            step, time = int(rows["step"][0]), float(rows["time"][0])
+            pictures.append(Frame(int(frame), step, time, blocks, joints.where(frame=frame)))
         return pictures
 
     def pvd(self, number: int) -> Path | None:
@@ -357,13 +353,8 @@ def read(folder: str | Path, choice: Choice | None = None) -> Results:
     cases = _read_table(folder / "results.csv", choice)
     if cases is None:
         raise FileNotFoundError(f"no results.csv in {folder}: not a folder written by 'dda run'")
-    if choice is not None:
-        return Results(folder, cases, None, None, None, None, None, None)
-    return Results(
-        folder=folder, cases=cases, joints=_read_table(folder / "joints.csv"),
-        frames=_read_table(folder / "frames.csv"), frame_joints=_read_table(folder / "frame_joints.csv"),
-        blocks=_read_table(folder / "blocks.csv"), points=_read_table(folder / "points.csv"),
-        reactions=_read_table(folder / "reactions.csv"))
+    others = ("joints", "frames", "frame_joints", "blocks", "points", "reactions") if choice is None else ()
+    return Results(folder, cases, **{name: _read_table(folder / f"{name}.csv") for name in others})
 
 
 def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:
