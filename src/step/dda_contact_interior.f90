@@ -13,7 +13,7 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    implicit none
 
    !> What slack and flow begin with at the least, over the size of a force
-   real(wp), parameter :: lift = 1.0e-4_wp, highest = 1.0e-1_wp
+   real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 1.0_wp
    !> Forces across gaps, and by openings, that are left, over the size of a force
    real(wp), parameter :: tolerance = 3.0e-7_wp
    !> How much smaller than usual faces can leave forces before these are rounding
@@ -89,7 +89,7 @@ contains
 
       call pose(equations, springs, view, joint, before, motion, p)
       call begin(springs, view, force, motion, lift, p, x)
-      call iterate(equations, springs, view, p, x, passes)
+      call iterate(equations, springs, view, force, motion, p, x, passes)
       on_faces = x
       call settle_faces(equations, springs, view, p, on_faces, passes, agreed)
       if (agreed) x = on_faces
@@ -97,10 +97,11 @@ contains
    end procedure solve_interior
 
    !> Iterate from slack and flow, as near to the law of contact as that comes
-   pure subroutine iterate(equations, springs, view, p, x, passes)
+   pure subroutine iterate(equations, springs, view, force, motion, p, x, passes)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
+      real(wp), intent(in) :: force(:, :), motion(:, :)
       type(problem_t), intent(inout) :: p
       !> The iterate to begin with, and the best one
       type(interior_t), intent(inout) :: x
@@ -122,12 +123,14 @@ contains
             least = merit
             best = x
          end if
-         if (merit < tolerance .or. waited == patience .or. .not. merit <= huge(merit)) exit
+         if (min(merit, sqrt(mean)/p%size) < tolerance .or. waited == patience &
+            & .or. .not. merit <= huge(merit)) exit
          if (length < stuck .and. near) then
             near = .false.
             waited = 0
             least = huge(least)
-            call begin_afar(equations, springs, view, p, x, mean, merit)
+            call begin(springs, view, force, motion, afar, p, x)
+            call find_rest(equations, springs, view, p, x, mean, merit)
          end if
          p%yield = x%flow/x%slack
          call factor_springs(equations, springs, p)
@@ -137,22 +140,6 @@ contains
       end do
       x = best
    end subroutine iterate
-
-   !> Slack and flow in the middle, farther away from a corner of the bounds
-   pure subroutine begin_afar(equations, springs, view, p, x, mean, merit)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      type(problem_t), intent(inout) :: p
-      type(interior_t), intent(inout) :: x
-      !> Measures of what is left
-      real(wp), intent(out) :: mean, merit
-
-      x%slack = merge(p%size, 1.0_wp, p%bounded)
-      x%flow(:3, :) = merge(p%size*p%unit, 0.0_wp, p%bounded(:3, :))
-      x%flow(4, :) = merge(p%size*p%unit(3, :), 0.0_wp, p%bounded(4, :))
-      call find_rest(equations, springs, view, p, x, mean, merit)
-   end subroutine begin_afar
 
    !> One step from an iterate: a predictor, and a corrector towards equal products
    pure subroutine improve(springs, mean, merit, p, x, length)
@@ -203,7 +190,7 @@ contains
          & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
       p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
       call see_bounds(springs, p, x%force, x%slack)
-      least = p%size*min(highest, max(shallow, 10.0_wp*sum(abs(min(x%slack(:2, :), &
+      least = p%size*max(shallow, min(highest, 10.0_wp*sum(abs(min(x%slack(:2, :), &
          & opening(:2, :)/p%unit(:2, :))), p%given(:2, :)) &
          & /(p%size*real(max(1, count(p%given(:2, :))), wp))))
       do i = 1, size(p%joint)
