@@ -92,9 +92,15 @@ module dda_step
          type(run_t), intent(in) :: run
       end function check_axes
 
+      !> Check a try before it is solved: that nothing meets in it
+      pure type(step_outcome_t) module function check_start(run) result(outcome)
+         type(run_t), intent(in) :: run
+      end function check_start
+
       !> Check that no open contact closes fast within the step, for the speed at that very moment
-      !> counts, and the time that is left after it; a step in which one does ends when the
-      !> two blocks, if nothing else touched them, would be near enough to count as touching
+      !> counts, and the time that is left after it; a step in which one would ends when the
+      !> two blocks, if nothing else touched them, are near enough to count as touching. A solved
+      !> step in which forces have closed one before its time is halved
       pure type(step_outcome_t) module function check_impact(run) result(outcome)
          type(run_t), intent(in) :: run
       end function check_impact
@@ -179,8 +185,11 @@ contains
          if (run%step%renews) call place_contacts(run)
          run%step%state%patient = attempt > hasty_tries
          call assemble(run)
-         call solve_contacts(run)
-         outcome = check_motion(run)
+         outcome = check_start(run)
+         if (outcome%accepted) then
+            call solve_contacts(run)
+            outcome = check_motion(run)
+         end if
          if (outcome%accepted .and. in_time(run)) then
             call solve_impacts(run)
             outcome = check_velocities(run)
@@ -250,6 +259,7 @@ contains
          state%face = run%contacts%face
          state%cone = run%contacts%springs%cone
          state%unsettled_work = 0.0_wp
+         state%settled = .false.
          state%many = .false.
          state%swept = .false.
          state%again = .false.

@@ -26,6 +26,12 @@ submodule (dda_step) dda_step_check
 
 contains
 
+   !> Check a try before it is solved
+   module procedure check_start
+      outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
+      if (in_time(run)) outcome = check_impact(run)
+   end procedure check_start
+
    !> Check the motion of a try
    module procedure check_motion
       logical :: searched
@@ -136,8 +142,10 @@ contains
    module procedure check_impact
       real(wp), dimension(3, size(run%contacts%joint)) :: speed, acceleration
       real(wp) :: near, earliest, least, meeting, time
+      logical :: solved
       integer :: j, k
 
+      solved = run%step%state%settled
       associate (velocity => packed_velocity(run%system, size(run%step%state%motion, 1)))
          speed = relative_displacement(run%contacts%springs, velocity)
          least = merge(0.0_wp, notable, run%settings%restitution > 0.0_wp) &
@@ -149,18 +157,20 @@ contains
       do j = 1, size(run%contacts%joint)
          near = near_gap(run%system, run%contacts%joint(j)%block)
          do k = 1, run%contacts%joint(j)%n_contact
-            if (run%step%state%face(j)%open(k) .or. run%contacts%gap(k, j) <= near) cycle
+            if (run%contacts%gap(k, j) <= near) cycle
+            if (solved .and. run%step%state%face(j)%open(k)) cycle
             time = falling_time(run%contacts%gap(k, j) - near/2.0_wp, -speed(k, j), &
                & -acceleration(k, j))
             meeting = -speed(k, j) - acceleration(k, j)*min(time, run%step%dt)
             if (meeting <= run%step%slowest_impact) cycle
             if (meeting**2 < 2.0_wp*least*ease_of(run, k, j)) cycle
-            earliest = min(earliest, time)
+            ! what meets at the end of a step has met where it should
+            if (.not. solved .or. time > 1.001_wp*run%step%dt) earliest = min(earliest, time)
          end do
       end do
-      outcome = step_outcome_t(accepted=earliest > 2.0_wp*run%step%dt, dt=run%step%dt)
-      if (.not. outcome%accepted) &
-         & outcome%dt = merge(earliest, run%step%dt/2.0_wp, earliest < 0.999_wp*run%step%dt)
+      outcome = step_outcome_t(accepted=earliest > merge(2.0_wp, 0.999_wp, solved)*run%step%dt, &
+         & dt=run%step%dt)
+      if (.not. outcome%accepted) outcome%dt = merge(run%step%dt/2.0_wp, earliest, solved)
    end procedure check_impact
 
    !> Accelerations of the blocks if nothing touched them

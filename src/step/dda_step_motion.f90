@@ -5,7 +5,7 @@ submodule (dda_step) dda_step_motion
    use dda_contact_detection, only : follow_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_step_interval, only : largest_motion
-   use dda_step_reach, only : first_reach, travel_of
+   use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
    implicit none
 
    !> Opening against the law of contact that many blocks may leave, over twice the fall in a step
@@ -29,6 +29,9 @@ contains
          step%travel = travel_of(run%system, run%settings, run%march)
          if (run%contacts%remember) step%kept = run%contacts
       end associate
+      if (.not. in_time(run)) return
+      run%march%reach = first_reach(run%system, run%settings, run%march)
+      call reach_like_neighbours(run%contacts%joint, run%system%equation, run%march%reach)
    end procedure predict
 
    !> Contacts where the blocks are now

@@ -1,6 +1,7 @@
 !> How far corners move in a step, so that nothing is met that was not looked for
 module dda_step_reach
    use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_t
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
@@ -8,7 +9,8 @@ module dda_step_reach
    implicit none
    private
 
-   public :: check_margins, first_reach, next_reach, travel_by, travel_of, widen_margins
+   public :: check_margins, first_reach, next_reach, reach_like_neighbours, travel_by, travel_of
+   public :: widen_margins
 
    !> Least reach of a block over its size: contacts nearer than this are always looked at
    real(wp), parameter :: least_reach = 1.0e-3_wp
@@ -42,6 +44,25 @@ contains
       end do
       where (system%equation == 0) reach = 0.0_wp
    end function first_reach
+
+   !> Let blocks reach as far as those that may strike them
+   pure subroutine reach_like_neighbours(joint, equation, reach)
+      !> The joints of the step before: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> Equation of each block, 0 for a fixed one: (n_block)
+      integer, intent(in) :: equation(:)
+      !> The reach: (n_block) [m]
+      real(wp), intent(inout) :: reach(:)
+      real(wp) :: own(size(reach))
+      integer :: j
+
+      own = reach
+      do j = 1, size(joint)
+         associate (pair => joint(j)%block)
+            where (equation(pair) > 0) reach(pair) = max(reach(pair), maxval(own(pair)))
+         end associate
+      end do
+   end subroutine reach_like_neighbours
 
    !> Reach in the step that follows an accepted one
    pure subroutine next_reach(system, step, march)
