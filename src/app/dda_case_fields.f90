@@ -71,8 +71,7 @@ contains
    !> A number, if it is known
    pure function shown_number(number, width) result(text)
       type(number_t), intent(in) :: number
-      !> Width of its column
-      integer, intent(in) :: width
+      integer, intent(in) :: width  !! Width of its column
       character(len=:), allocatable :: text
 
       text = ""
@@ -81,8 +80,7 @@ contains
 
    !> A number with as many digits as fit
    pure function rounded(value, width) result(text)
-      !> The number
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The number
       integer, intent(in) :: width
       character(len=:), allocatable :: text
       character(len=30) :: buffer
@@ -102,8 +100,7 @@ contains
 
    !> A value of a swept parameter
    pure function shown_value(value, column) result(text)
-      !> The value as the tables have it
-      character(len=*), intent(in) :: value
+      character(len=*), intent(in) :: value  !! The value as the tables have it
       type(column_t), intent(in) :: column
       character(len=:), allocatable :: text
       real(wp) :: number
@@ -122,8 +119,7 @@ contains
 
    !> Angles, parted by blanks, as many as fit
    pure function shown_angles(angle, width) result(text)
-      !> The angles: (n) [deg]
-      real(wp), intent(in) :: angle(:)
+      real(wp), intent(in) :: angle(:)  !! The angles: (n) [deg]
       integer, intent(in) :: width
       character(len=:), allocatable :: text
       character(len=:), allocatable :: next

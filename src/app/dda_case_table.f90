@@ -84,24 +84,20 @@ module dda_case_table
       pure module function field_of(column, row, swept) result(text)
          type(column_t), intent(in) :: column
          type(result_row_t), intent(in) :: row
-         !> Values of the swept parameters: (n)
-         character(len=*), intent(in) :: swept(:)
-         !> The text; empty where the case has nothing
-         character(len=:), allocatable :: text
+         character(len=*), intent(in) :: swept(:)  !! Values of the swept parameters: (n)
+         character(len=:), allocatable :: text     !! The text; empty where the case has nothing
       end function field_of
 
       !> A field in its column, with the gap behind it
       pure module function padded(column, text) result(field)
          type(column_t), intent(in) :: column
-         !> The text
-         character(len=*), intent(in) :: text
+         character(len=*), intent(in) :: text  !! The text
          character(len=:), allocatable :: field
       end function padded
 
       !> A remark in lines that are not wider than the screen, parted by line ends
       pure module function wrapped(text, width) result(lines)
-         !> The remark
-         character(len=*), intent(in) :: text
+         character(len=*), intent(in) :: text  !! The remark
          integer, intent(in) :: width
          character(len=:), allocatable :: lines
       end function wrapped
@@ -114,8 +110,7 @@ contains
    subroutine new_case_table(screen, deck, chosen, table)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
-      !> Cases that will be computed: (n)
-      logical, intent(in) :: chosen(:)
+      logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
       type(case_table_t), intent(out) :: table
 
       table%screen = screen
@@ -131,8 +126,7 @@ contains
    !> The columns that the scenes of a deck have
    pure subroutine choose_columns(deck, column)
       type(deck_t), intent(in) :: deck
-      !> Receives the columns
-      type(column_t), allocatable, intent(inout) :: column(:)
+      type(column_t), allocatable, intent(inout) :: column(:)  !! Receives the columns
       character(len=:), allocatable :: searched
       logical :: arch, falls
       integer :: s
@@ -187,8 +181,7 @@ contains
       type(case_table_t), intent(inout) :: table
       type(deck_t), intent(in) :: deck
       type(result_row_t), intent(in) :: row
-      !> What the user should know beside the row
-      character(len=*), intent(in) :: remark
+      character(len=*), intent(in) :: remark  !! What the user should know beside the row
       integer :: printed
 
       table%awaited(row%number) = .false.
@@ -235,10 +228,8 @@ contains
    !> Put the lines of a case among those that wait
    pure subroutine let_wait(table, number, lines)
       type(case_table_t), intent(inout) :: table
-      !> Number of the case
-      integer, intent(in) :: number
-      !> Its lines
-      character(len=*), intent(in) :: lines
+      integer, intent(in) :: number          !! Number of the case
+      character(len=*), intent(in) :: lines  !! Its lines
       type(waiting_t), allocatable :: longer(:)
       integer :: i
 
@@ -269,8 +260,7 @@ contains
    !> Print the first of what waits
    subroutine print_waiting(table, printed)
       type(case_table_t), intent(inout) :: table
-      !> How many cases
-      integer, intent(in) :: printed
+      integer, intent(in) :: printed  !! How many cases
       character(len=:), allocatable :: head
       integer :: i
 

@@ -37,8 +37,7 @@ contains
    !> Check all decks of the command line
    subroutine check_decks(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of the program
       type(deck_t) :: deck
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
@@ -70,10 +69,8 @@ contains
    !> The tables that a run would write, each with its first line, and its deck.record
    function record_text(deck, stem) result(text)
       type(deck_t), intent(in) :: deck
-      !> Its name without folder and ending
-      character(len=*), intent(in) :: stem
-      !> Lines separated by line ends
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: stem   !! Its name without folder and ending
+      character(len=:), allocatable :: text  !! Lines separated by line ends
       type(result_tables_t) :: tables
       integer :: i
 

@@ -164,11 +164,9 @@ contains
 
    !> Understand the first argument
    pure subroutine take_subcommand(word, command, takes_decks, error)
-      !> The argument
-      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: word  !! The argument
       type(command_t), intent(inout) :: command
-      !> Whether decks and options follow
-      logical, intent(out) :: takes_decks
+      logical, intent(out) :: takes_decks   !! Whether decks and options follow
       type(error_t), allocatable, intent(out) :: error
 
       takes_decks = .false.
@@ -214,8 +212,7 @@ contains
    pure subroutine take_option(argument, length, i, command, error)
       character(len=*), intent(in) :: argument(:)
       integer, intent(in) :: length(:)
-      !> Place of the option in, of its last part out
-      integer, intent(inout) :: i
+      integer, intent(inout) :: i  !! Place of the option in, of its last part out
       type(command_t), intent(inout) :: command
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
@@ -265,8 +262,7 @@ contains
    !> Name of a deck or a topic as it was given, blanks at its end included
    pure function name_of(command, i) result(name)
       type(command_t), intent(in) :: command
-      !> Place of the name
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of the name
       character(len=:), allocatable :: name
 
       name = command%name(i)(:command%name_length(i))

@@ -28,8 +28,7 @@ contains
    !> Cut all files of the command line
    subroutine cut_files(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of the program
       integer :: i, file_status
 
       status = exit_status%success
@@ -42,10 +41,8 @@ contains
    !> Cut one file
    subroutine cut_file(command, name, status)
       type(command_t), intent(in) :: command
-      !> Name of the file
-      character(len=*), intent(in) :: name
-      !> Exit status of this file
-      integer, intent(out) :: status
+      character(len=*), intent(in) :: name  !! Name of the file
+      integer, intent(out) :: status        !! Exit status of this file
       type(line_model_t) :: model
       type(cut_model_t) :: cut
       type(warnings_t) :: warnings
@@ -80,8 +77,7 @@ contains
 
    !> Write the blocks; the ending of the name says how
    subroutine write_cut(file, cut, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       type(cut_model_t), intent(in) :: cut
       type(error_t), allocatable, intent(out) :: error
 
@@ -207,10 +203,8 @@ contains
    !> A point in the file's coordinates
    pure function point_text(cut, point) result(text)
       type(cut_model_t), intent(in) :: cut
-      !> The point, from the origin of the cut: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its coordinates in parentheses
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: point(2)       !! The point, from the origin of the cut: (2) [m]
+      character(len=:), allocatable :: text  !! Its coordinates in parentheses
 
       text = "("//to_text(point(1) + cut%scale%origin(1))//", " &
          & //to_text(point(2) + cut%scale%origin(2))//")"
@@ -219,10 +213,8 @@ contains
    !> Print one line of the summary
    subroutine tell(screen, what, how)
       type(screen_t), intent(in) :: screen
-      !> What is told
-      character(len=*), intent(in) :: what
-      !> Its value
-      character(len=*), intent(in) :: how
+      character(len=*), intent(in) :: what  !! What is told
+      character(len=*), intent(in) :: how   !! Its value
       character(len=12) :: label
 
       label = what

@@ -21,10 +21,8 @@ contains
 
    !> Write down how much is on the disk
    subroutine write_disk_record(file, length, error)
-      !> Name of the record
-      character(len=*), intent(in) :: file
-      !> Length of results.csv that is on the disk [bytes]
-      integer(int64), intent(in) :: length
+      character(len=*), intent(in) :: file  !! Name of the record
+      integer(int64), intent(in) :: length  !! Length of results.csv that is on the disk [bytes]
       type(error_t), allocatable, intent(inout) :: error
       type(table_file_t) :: record
       character(len=20) :: bytes

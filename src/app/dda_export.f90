@@ -27,11 +27,9 @@ module dda_export
       !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
       module subroutine export_blocks(command, stem, deck, status)
          type(command_t), intent(in) :: command
-         !> Name of the file without its ending
-         character(len=*), intent(in) :: stem
+         character(len=*), intent(in) :: stem  !! Name of the file without its ending
          type(deck_t), intent(in) :: deck
-         !> Exit status of the program
-         integer, intent(out) :: status
+         integer, intent(out) :: status        !! Exit status of the program
       end subroutine export_blocks
 
    end interface
@@ -68,8 +66,7 @@ contains
    subroutine export_deck(command, deck, status)
       type(command_t), intent(in) :: command
       type(deck_t), intent(in) :: deck
-      !> Exit status of this deck
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of this deck
       type(deck_t) :: case_of_deck
       type(line_model_t) :: model
       type(error_t), allocatable :: error
@@ -107,8 +104,7 @@ contains
 
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)
-      !> Name of the files without their endings
-      character(len=*), intent(in) :: stem
+      character(len=*), intent(in) :: stem  !! Name of the files without their endings
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
       type(error_t), allocatable, intent(out) :: error

@@ -152,8 +152,7 @@ contains
    !> Print help on a topic
    subroutine print_help(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of the program
       character(len=:), allocatable :: topic
 
       status = exit_status%success
@@ -190,8 +189,7 @@ contains
    !> Print lines of text
    subroutine print_lines(screen, lines)
       type(screen_t), intent(in) :: screen
-      !> The lines: (n)
-      character(len=*), intent(in) :: lines(:)
+      character(len=*), intent(in) :: lines(:)  !! The lines: (n)
       integer :: i
 
       do i = 1, size(lines)

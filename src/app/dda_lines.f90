@@ -23,8 +23,7 @@ contains
    !> Draw the lines of all maps of the command line
    subroutine draw_lines(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of the program
       type(error_t), allocatable :: error
       integer :: i, one
 
@@ -39,10 +38,8 @@ contains
    !> Draw the lines of one map
    subroutine draw_map(command, name, status, error)
       type(command_t), intent(in) :: command
-      !> Name of the map
-      character(len=*), intent(in) :: name
-      !> Exit status of this map
-      integer, intent(out) :: status
+      character(len=*), intent(in) :: name  !! Name of the map
+      integer, intent(out) :: status        !! Exit status of this map
       type(error_t), allocatable, intent(out) :: error
       type(joint_map_t) :: map
       type(line_model_t) :: model
@@ -75,8 +72,7 @@ contains
    !> Length of all lines behind the first ones
    pure real(wp) function total_length(line, first)
       type(entities_t), intent(in) :: line
-      !> Lines that do not count
-      integer, intent(in) :: first
+      integer, intent(in) :: first  !! Lines that do not count
       integer :: i
 
       total_length = 0.0_wp
@@ -87,10 +83,8 @@ contains
 
    !> Name of the table beside a file of lines
    pure function table_name(file) result(name)
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> The same with the ending .csv
-      character(len=:), allocatable :: name
+      character(len=*), intent(in) :: file   !! Name of the file
+      character(len=:), allocatable :: name  !! The same with the ending .csv
 
       name = file
       if (index(file, ".geo", back=.true.) == len(file) - 3) name = file(:len(file) - 4)
@@ -122,11 +116,9 @@ contains
    !> Write rows of one role
    subroutine write_rows(table, role, entities, first, last, error)
       type(table_file_t), intent(inout) :: table
-      !> Their role
-      character(len=*), intent(in) :: role
+      character(len=*), intent(in) :: role  !! Their role
       type(entities_t), intent(in) :: entities
-      !> The first of them and the last
-      integer, intent(in) :: first, last
+      integer, intent(in) :: first, last    !! The first of them and the last
       type(error_t), allocatable, intent(inout) :: error
       integer :: i, k
       character(len=:), allocatable :: line

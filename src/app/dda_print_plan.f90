@@ -187,8 +187,7 @@ contains
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
       type(scene_plan_t), intent(in) :: plan
-      !> Blocks that move
-      integer, intent(in) :: blocks
+      integer, intent(in) :: blocks  !! Blocks that move
 
       call tell(screen, "unknowns", &
          & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
@@ -217,8 +216,7 @@ contains
 
    !> Why a block has as many unknowns
    pure function why(reason) result(words)
-      !> One of strain_reason
-      integer, intent(in) :: reason
+      integer, intent(in) :: reason  !! One of strain_reason
       character(len=100) :: words
 
       words = "set by analysis%unknowns"
@@ -237,10 +235,8 @@ contains
    !> Print one line of the plan
    subroutine tell(screen, what, how)
       type(screen_t), intent(in) :: screen
-      !> Part of the scene
-      character(len=*), intent(in) :: what
-      !> What it is, and why
-      character(len=*), intent(in) :: how
+      character(len=*), intent(in) :: what  !! Part of the scene
+      character(len=*), intent(in) :: how   !! What it is, and why
       character(len=14) :: label
 
       label = what

@@ -38,30 +38,24 @@ module dda_process
       !> C: ask a terminal; after the first two arguments it takes what the request wants
       function c_ioctl(descriptor, request, answer) bind(c, name="ioctl") result(failed)
          import :: c_int, c_long, terminal_size_t
-         !> The terminal
-         integer(c_int), intent(in), value :: descriptor
-         !> What is asked
-         integer(c_long), intent(in), value :: request
+         integer(c_int), intent(in), value :: descriptor  !! The terminal
+         integer(c_long), intent(in), value :: request    !! What is asked
          type(terminal_size_t), intent(inout) :: answer
-         !> 0 if there is one
-         integer(c_int) :: failed
+         integer(c_int) :: failed                         !! 0 if there is one
       end function c_ioctl
 
       !> C: what to do about a signal
       function c_signal(number, handler) bind(c, name="signal") result(before)
          import :: c_funptr, c_int
-         !> Number of the signal
-         integer(c_int), intent(in), value :: number
+         integer(c_int), intent(in), value :: number  !! Number of the signal
          type(c_funptr), intent(in), value :: handler
-         !> What handled it before
-         type(c_funptr) :: before
+         type(c_funptr) :: before                     !! What handled it before
       end function c_signal
 
       !> C: end the program
       subroutine c_exit(status) bind(c, name="exit")
          import :: c_int
-         !> Exit status
-         integer(c_int), intent(in), value :: status
+         integer(c_int), intent(in), value :: status  !! Exit status
       end subroutine c_exit
 
       !> C: whether a file descriptor is a terminal
@@ -76,12 +70,9 @@ module dda_process
       !> C: make a folder
       function c_mkdir(path, mode) bind(c, name="mkdir") result(failed)
          import :: c_char, c_int
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> Its permissions
-         integer(c_int), intent(in), value :: mode
-         !> 0 if it was made
-         integer(c_int) :: failed
+         character(kind=c_char), intent(in) :: path(*)  !! Its name, ended by a null character
+         integer(c_int), intent(in), value :: mode      !! Its permissions
+         integer(c_int) :: failed                       !! 0 if it was made
       end function c_mkdir
    end interface
 
@@ -89,8 +80,7 @@ contains
 
    !> End the program; Fortran's own stop takes no computed status
    subroutine leave(status)
-      !> One of exit_status
-      integer, intent(in) :: status
+      integer, intent(in) :: status  !! One of exit_status
 
       flush (error_unit)
       call c_exit(int(status, c_int))
@@ -106,10 +96,8 @@ contains
 
    !> Of two statuses the one that the user must know first: 4, then 2, then 3
    pure integer function worst_status(a, b)
-      !> One status
-      integer, intent(in) :: a
-      !> The other
-      integer, intent(in) :: b
+      integer, intent(in) :: a  !! One status
+      integer, intent(in) :: b  !! The other
       integer, parameter :: order(*) = [exit_status%not_written, exit_status%bad_input, &
          & exit_status%undecided]
       integer :: i
@@ -122,8 +110,7 @@ contains
 
    !> Make a folder and those above it; one that exists is left as it is
    subroutine make_folder(path)
-      !> Its name
-      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: path  !! Its name
       integer(c_int) :: failed
       integer :: i
 
@@ -137,8 +124,7 @@ contains
    !> Columns of the terminal that a descriptor leads to: 0 where it is none, -1 where the terminal
    !> does not know
    integer function terminal_width(descriptor)
-      !> The descriptor
-      integer, intent(in) :: descriptor
+      integer, intent(in) :: descriptor  !! The descriptor
       type(terminal_size_t) :: size
 
       terminal_width = 0
@@ -156,8 +142,7 @@ contains
    !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
    !> that exists already, gets an ending
    pure function deck_stem(name) result(stem)
-      !> Name of the file
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the file
       character(len=:), allocatable :: stem
       integer :: dot
 

@@ -103,8 +103,7 @@ contains
    !> Name the tables that a deck wants; no file is touched
    subroutine name_tables(deck, folder, tables)
       type(deck_t), intent(in) :: deck
-      !> Name of the folder
-      character(len=*), intent(in) :: folder
+      character(len=*), intent(in) :: folder  !! Name of the folder
       type(result_tables_t), intent(out) :: tables
       character(len=:), allocatable :: names
       integer :: s
@@ -150,10 +149,8 @@ contains
       !> Name one table
       subroutine name_table(this, name, header)
          type(result_table_t), intent(inout) :: this
-         !> Name of its file in the folder
-         character(len=*), intent(in) :: name
-         !> First line
-         character(len=*), intent(in) :: header
+         character(len=*), intent(in) :: name    !! Name of its file in the folder
+         character(len=*), intent(in) :: header  !! First line
 
          this%file = folder//name
          this%header = header
@@ -162,10 +159,8 @@ contains
 
    !> A text in parentheses, with a blank before it; nothing for nothing
    pure function parenthesis(text) result(put)
-      !> The text
-      character(len=*), intent(in) :: text
-      !> The text put so
-      character(len=:), allocatable :: put
+      character(len=*), intent(in) :: text  !! The text
+      character(len=:), allocatable :: put  !! The text put so
 
       put = ""
       if (len(text) > 0) put = " ("//text//")"
@@ -198,8 +193,7 @@ contains
    !> Begin all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)
       type(result_tables_t), intent(inout) :: tables
-      !> What was asked for
-      character(len=*), intent(in) :: record
+      character(len=*), intent(in) :: record  !! What was asked for
       type(error_t), allocatable, intent(out) :: error
       integer(int64) :: now, rate
       integer :: i
@@ -279,8 +273,7 @@ contains
    !> Values of the swept parameters that have no column of their own, each with a comma behind it
    function swept_fields(deck, number) result(fields)
       type(deck_t), intent(in) :: deck
-      !> Number of the case
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the case
       character(len=:), allocatable :: fields
       integer :: s
 
@@ -320,11 +313,9 @@ contains
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       type(result_tables_t), intent(inout) :: tables
       type(result_row_t), intent(in) :: row
-      !> Rows of its joints
-      type(joint_row_t), intent(in) :: joint_row(:)
+      type(joint_row_t), intent(in) :: joint_row(:)  !! Rows of its joints
       type(told_blocks_t), intent(in) :: blocks
-      !> What goes to the log
-      character(len=*), intent(in) :: remark
+      character(len=*), intent(in) :: remark         !! What goes to the log
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
       character(len=:), allocatable :: log
@@ -358,8 +349,7 @@ contains
    !> Write the rows that wait, last those of results.csv, so that a case with a row is whole
    subroutine write_waiting(tables, error)
       type(result_tables_t), intent(inout) :: tables
-      !> An earlier failure, or that of writing
-      type(error_t), allocatable, intent(inout) :: error
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier failure, or that of writing
       type(error_t), allocatable :: late
       integer :: i, place(3)
 

@@ -47,8 +47,7 @@ contains
    !> results.csv
    subroutine compare_sizes(tables, whole)
       type(result_tables_t), intent(in) :: tables
-      !> Whether it has: (n)
-      logical, intent(out) :: whole(:)
+      logical, intent(out) :: whole(:)  !! Whether it has: (n)
       type(table_lines_t) :: lines
       type(layout_t) :: layout
       character(len=:), allocatable :: line
@@ -81,8 +80,7 @@ contains
    !> Add the bytes that each case has in a table, and the check sums of its lines
    subroutine add_bytes(this, bytes)
       type(result_table_t), intent(in) :: this
-      !> Bytes and sum: (2, n)
-      integer(int64), intent(inout) :: bytes(:, :)
+      integer(int64), intent(inout) :: bytes(:, :)  !! Bytes and sum: (2, n)
       type(table_lines_t) :: lines
       type(layout_t) :: layout
       character(len=:), allocatable :: line
@@ -105,10 +103,8 @@ contains
    !> Read which cases have a whole row in results.csv
    subroutine read_results(this, length, whole, finished)
       type(result_table_t), intent(in) :: this
-      !> Length up to which its rows count [bytes]
-      integer(int64), intent(in) :: length
-      !> Whether a case is whole in the other tables: (n)
-      logical, intent(in) :: whole(:)
+      integer(int64), intent(in) :: length  !! Length up to which its rows count [bytes]
+      logical, intent(in) :: whole(:)       !! Whether a case is whole in the other tables: (n)
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
       type(layout_t) :: layout
@@ -148,12 +144,9 @@ contains
 
    !> Write a table anew with the rows of finished cases alone
    subroutine keep_rows(this, once, finished, error)
-      !> The table; is open afterwards
-      type(result_table_t), intent(inout) :: this
-      !> Whether a case has no more than one row
-      logical, intent(in) :: once
-      !> Whether a case is finished: (n)
-      logical, intent(in) :: finished(:)
+      type(result_table_t), intent(inout) :: this  !! The table; is open afterwards
+      logical, intent(in) :: once                  !! Whether a case has no more than one row
+      logical, intent(in) :: finished(:)           !! Whether a case is finished: (n)
       type(error_t), allocatable, intent(out) :: error
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
@@ -181,8 +174,7 @@ contains
 
    !> Where a table has what tells a whole row
    pure type(layout_t) function layout_of(header) result(layout)
-      !> First line of the table
-      character(len=*), intent(in) :: header
+      character(len=*), intent(in) :: header  !! First line of the table
 
       if (index(header, " ") > 0) return
       layout%columns = n_fields(header)
@@ -194,8 +186,7 @@ contains
    !> Case that a line belongs to; 0 for one that is no whole row of the table
    pure integer function case_of(layout, line, total)
       type(layout_t), intent(in) :: layout
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
       integer, intent(in) :: total
       real(wp) :: seconds
       integer :: unknowns
@@ -217,8 +208,7 @@ contains
    !> Place of a column, 0 if there is none of that name
    pure integer function column(header, name)
       character(len=*), intent(in) :: header
-      !> Name of the column
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the column
 
       do column = n_fields(header), 1, -1
          if (field(header, column) == name) return

@@ -28,12 +28,9 @@ module dda_run
       !> C: lock an open file; whoever opens it anew has no part in the lock
       function c_flock(descriptor, operation) bind(c, name="flock") result(failed)
          import :: c_int
-         !> The system's number of the file
-         integer(c_int), intent(in), value :: descriptor
-         !> How to lock it
-         integer(c_int), intent(in), value :: operation
-         !> 0 if it is locked
-         integer(c_int) :: failed
+         integer(c_int), intent(in), value :: descriptor  !! The system's number of the file
+         integer(c_int), intent(in), value :: operation   !! How to lock it
+         integer(c_int) :: failed                         !! 0 if it is locked
       end function c_flock
 
       !> C: number of this process
@@ -55,10 +52,8 @@ module dda_run
       !> Find the cases that are finished
       module subroutine find_finished(tables, record, total, finished)
          type(result_tables_t), intent(in) :: tables
-         !> What is asked for
-         character(len=*), intent(in) :: record
-         !> Number of cases
-         integer, intent(in) :: total
+         character(len=*), intent(in) :: record  !! What is asked for
+         integer, intent(in) :: total            !! Number of cases
          type(finished_t), intent(out) :: finished
       end subroutine find_finished
 
@@ -94,8 +89,7 @@ module dda_run
       !> Read a deck, and check that its scene can be run
       module subroutine read_and_check(command, number, deck, error)
          type(command_t), intent(in) :: command
-         !> Number of the deck
-         integer, intent(in) :: number
+         integer, intent(in) :: number  !! Number of the deck
          type(deck_t), intent(out) :: deck
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_and_check
@@ -104,17 +98,14 @@ module dda_run
       module subroutine check_folder(command, number, good, error)
          type(command_t), intent(in) :: command
          integer, intent(in) :: number
-         !> Which of the decks before it will run: (number - 1)
-         logical, intent(in) :: good(:)
+         logical, intent(in) :: good(:)  !! Which of the decks before it will run: (number - 1)
          type(error_t), allocatable, intent(inout) :: error
       end subroutine check_folder
 
       !> Take a folder for the rest of the program; nothing of it is touched before
       module subroutine lock_folder(folder, quiet, error)
-         !> Name of the folder, which exists
-         character(len=*), intent(in) :: folder
-         !> Whether no warning is printed
-         logical, intent(in) :: quiet
+         character(len=*), intent(in) :: folder  !! Name of the folder, which exists
+         logical, intent(in) :: quiet            !! Whether no warning is printed
          type(error_t), allocatable, intent(out) :: error
       end subroutine lock_folder
 
@@ -122,8 +113,7 @@ module dda_run
       pure module function folder_of(command, name) result(folder)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: name
-         !> Name of the folder
-         character(len=:), allocatable :: folder
+         character(len=:), allocatable :: folder  !! Name of the folder
       end function folder_of
 
    end interface
@@ -133,8 +123,7 @@ contains
    !> Run all decks of the command line; a bad deck does not keep the others from running
    subroutine run_decks(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of the program
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
@@ -168,8 +157,7 @@ contains
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
-      !> Exit status of this deck
-      integer, intent(out) :: status
+      integer, intent(out) :: status  !! Exit status of this deck
       type(result_tables_t) :: tables
       type(finished_t) :: finished
       type(progress_t) :: progress
@@ -243,10 +231,8 @@ contains
    subroutine print_resumed(screen, name, same_deck, finished, total)
       type(screen_t), intent(in) :: screen
       character(len=*), intent(in) :: name
-      !> Whether there are results of the same deck
-      logical, intent(in) :: same_deck
-      !> Cases that are finished
-      integer, intent(in) :: finished
+      logical, intent(in) :: same_deck  !! Whether there are results of the same deck
+      integer, intent(in) :: finished   !! Cases that are finished
       integer, intent(in) :: total
 
       if (same_deck) then

@@ -52,8 +52,7 @@ submodule (dda_run) dda_run_cases
          integer, intent(in) :: number
          real(wp), intent(in) :: origin(2)
          type(album_t), intent(in) :: album
-         !> points.csv
-         type(table_file_t), intent(inout) :: points
+         type(table_file_t), intent(inout) :: points  !! points.csv
          type(error_t), allocatable, intent(out) :: error
       end subroutine write_track
 
@@ -61,8 +60,7 @@ submodule (dda_run) dda_run_cases
       module subroutine write_energies(number, album, table, error)
          integer, intent(in) :: number
          type(album_t), intent(in) :: album
-         !> energy.csv
-         type(table_file_t), intent(inout) :: table
+         type(table_file_t), intent(inout) :: table  !! energy.csv
          type(error_t), allocatable, intent(out) :: error
       end subroutine write_energies
 
@@ -104,10 +102,8 @@ contains
 
    !> How many cases to take after so many that took so long
    pure integer function next_batch(n, seconds)
-      !> Cases taken
-      integer, intent(in) :: n
-      !> Time of all of them [s]
-      real(wp), intent(in) :: seconds
+      integer, intent(in) :: n         !! Cases taken
+      real(wp), intent(in) :: seconds  !! Time of all of them [s]
 
       next_batch = max(1, n/2)
       if (seconds < short_batch) next_batch = n
@@ -117,13 +113,10 @@ contains
    !> Take the next chosen cases
    pure subroutine take_cases(chosen, most, next, number, n)
       logical, intent(in) :: chosen(:)
-      !> How many to take at most
-      integer, intent(in) :: most
+      integer, intent(in) :: most          !! How many to take at most
       integer, intent(inout) :: next
-      !> Their numbers: (max_batch), n of them set
-      integer, intent(inout) :: number(:)
-      !> How many were taken
-      integer, intent(out) :: n
+      integer, intent(inout) :: number(:)  !! Their numbers: (max_batch), n of them set
+      integer, intent(out) :: n            !! How many were taken
       integer :: found
 
       do n = 0, most - 1
@@ -156,8 +149,7 @@ contains
    !> The first chosen case behind another one; 0 if there is none
    pure integer function next_chosen(chosen, last)
       logical, intent(in) :: chosen(:)
-      !> The other one
-      integer, intent(in) :: last
+      integer, intent(in) :: last  !! The other one
 
       do next_chosen = last + 1, size(chosen)
          if (chosen(next_chosen)) return

@@ -19,10 +19,8 @@ contains
    !> The text of deck.record
    pure function run_record(deck, stem) result(record)
       type(deck_t), intent(in) :: deck
-      !> Its name without folder and ending
-      character(len=*), intent(in) :: stem
-      !> Lines parted by line ends
-      character(len=:), allocatable :: record
+      character(len=*), intent(in) :: stem     !! Its name without folder and ending
+      character(len=:), allocatable :: record  !! Lines parted by line ends
 
       record = deck_record(deck, "dda "//version//" build "//build_mark//" on "//stem)
    end function run_record
@@ -32,8 +30,7 @@ contains
    !> files that the deck names leave their checksums
    pure function deck_record(deck, maker) result(record)
       type(deck_t), intent(in) :: deck
-      !> First line: who computes it
-      character(len=*), intent(in) :: maker
+      character(len=*), intent(in) :: maker  !! First line: who computes it
       character(len=:), allocatable :: record
       type(growing_text_t) :: lines
       integer :: i
@@ -57,8 +54,7 @@ contains
    !> Record one key
    pure subroutine add_value(lines, key, value)
       type(growing_text_t), intent(inout) :: lines
-      !> Place of the key in the registry
-      integer, intent(in) :: key
+      integer, intent(in) :: key  !! Place of the key in the registry
       type(deck_value_t), intent(in) :: value
       integer :: i
 

@@ -70,8 +70,7 @@ contains
 
    !> Whether files of a folder can be locked at all: one that nobody else knows of must
    logical function has_locks(file)
-      !> Name of the file that could not be locked
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file that could not be locked
       character(len=:), allocatable :: name
       type(binary_file_t) :: probe
       type(error_t), allocatable :: error

@@ -50,8 +50,7 @@ contains
    !> Print one line
    subroutine print_line(screen, line)
       type(screen_t), intent(in) :: screen
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
 
       call print_text(screen, line//new_line("a"))
    end subroutine print_line
@@ -59,8 +58,7 @@ contains
    !> Print text as it is; whatever fails is reported when the screen is closed
    subroutine print_text(screen, text)
       type(screen_t), intent(in) :: screen
-      !> The text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The text
       type(error_t), allocatable :: late
 
       call append_text(screen%file, text)

@@ -179,12 +179,9 @@ contains
 
    !> A fixed block as deep as the joint is long, whose fourth edge is the springing joint
    pure function springing(start, finish) result(vertex)
-      !> Where the first edge starts: (2) [m]
-      real(wp), intent(in) :: start(2)
-      !> Where the joint starts, seen from the block: (2) [m]
-      real(wp), intent(in) :: finish(2)
-      !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: vertex(2, 4)
+      real(wp), intent(in) :: start(2)   !! Where the first edge starts: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! Where the joint starts, seen from the block: (2) [m]
+      real(wp) :: vertex(2, 4)           !! Corners, counter-clockwise: (2, 4) [m]
       real(wp) :: outward(2), joint(2)
 
       joint = along(start, finish)

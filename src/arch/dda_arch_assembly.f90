@@ -103,10 +103,8 @@ contains
    pure subroutine add_voussoirs(form, sections, shift, span, assembly)
       type(arch_form_t), intent(in) :: form
       type(arch_sections_t), intent(in) :: sections
-      !> Where the span is, from the first: (2) [m]
-      real(wp), intent(in) :: shift(2)
-      !> Number of the span
-      integer, intent(in) :: span
+      real(wp), intent(in) :: shift(2)  !! Where the span is, from the first: (2) [m]
+      integer, intent(in) :: span       !! Number of the span
       type(arch_assembly_t), intent(inout) :: assembly
       real(wp), allocatable :: inner(:, :), outer(:, :)
       integer, allocatable :: joint(:)
@@ -134,10 +132,8 @@ contains
 
       !> The line at a share of the thickness
       pure function between(share) result(line)
-         !> 0 at the intrados, 1 at the extrados
-         real(wp), intent(in) :: share
-         !> The line: (2, n) [m]
-         real(wp) :: line(2, n)
+         real(wp), intent(in) :: share  !! 0 at the intrados, 1 at the extrados
+         real(wp) :: line(2, n)         !! The line: (2, n) [m]
 
          line = sections%intrados + share*(sections%extrados - sections%intrados) &
             & + spread(shift, 2, n)
@@ -150,8 +146,7 @@ contains
       type(arch_form_t), intent(in) :: form
       type(arch_sections_t), intent(in) :: sections
       type(arch_assembly_t), intent(inout) :: assembly
-      !> A pier too narrow for its springings
-      type(form_problem_t), intent(inout) :: problem
+      type(form_problem_t), intent(inout) :: problem  !! A pier too narrow for its springings
       real(wp) :: left(2, 2, 0:form%spans), right(2, 2, 0:form%spans), step(2)
       integer :: n, s
 
@@ -193,8 +188,7 @@ contains
 
       !> Whether a support is a pier or a buttress
       pure logical function stands_free(s)
-         !> Its number, from 0
-         integer, intent(in) :: s
+         integer, intent(in) :: s  !! Its number, from 0
 
          stands_free = s > 0 .and. s < form%spans .or. form%buttress(1) > 0.0_wp
       end function stands_free
@@ -251,12 +245,9 @@ contains
 
    !> Corners without those that repeat the one before
    pure function distinct(corner, near) result(kept)
-      !> The corners: (2, n) [m]
-      real(wp), intent(in) :: corner(:, :)
-      !> How far corners are apart that are one [m]
-      real(wp), intent(in) :: near
-      !> Those kept: (2, m) [m]
-      real(wp), allocatable :: kept(:, :)
+      real(wp), intent(in) :: corner(:, :)  !! The corners: (2, n) [m]
+      real(wp), intent(in) :: near          !! How far corners are apart that are one [m]
+      real(wp), allocatable :: kept(:, :)   !! Those kept: (2, m) [m]
       integer :: i, n
 
       n = size(corner, 2)
@@ -267,14 +258,10 @@ contains
 
    !> The ground below a pier, as deep as half its width
    pure function ground(left, right, top) result(corner)
-      !> Left end [m]
-      real(wp), intent(in) :: left
-      !> Right end [m]
-      real(wp), intent(in) :: right
-      !> Its height [m]
-      real(wp), intent(in) :: top
-      !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: corner(2, 4)
+      real(wp), intent(in) :: left   !! Left end [m]
+      real(wp), intent(in) :: right  !! Right end [m]
+      real(wp), intent(in) :: top    !! Its height [m]
+      real(wp) :: corner(2, 4)       !! Corners, counter-clockwise: (2, 4) [m]
 
       associate (low => top - 0.5_wp*(right - left))
          corner = reshape([left, low, right, low, right, top, left, top], [2, 4])
@@ -298,12 +285,9 @@ contains
    !> Add a block
    pure subroutine add_block(plan, corner, fixed, material)
       type(block_plan_t), intent(inout) :: plan
-      !> Its corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: corner(:, :)
-      !> Whether it cannot move
-      logical, intent(in) :: fixed
-      !> Number of its material
-      integer, intent(in) :: material
+      real(wp), intent(in) :: corner(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
+      logical, intent(in) :: fixed          !! Whether it cannot move
+      integer, intent(in) :: material       !! Number of its material
       integer :: n, v
 
       n = size(plan%fixed)
@@ -320,12 +304,9 @@ contains
    !> Add a chord of the upper face of the last block; what leans over carries nothing
    pure subroutine add_top(assembly, left, right, span)
       type(arch_assembly_t), intent(inout) :: assembly
-      !> Its left end: (2) [m]
-      real(wp), intent(in) :: left(2)
-      !> Its right end: (2) [m]
-      real(wp), intent(in) :: right(2)
-      !> Number of its span; 0 on a pier
-      integer, intent(in) :: span
+      real(wp), intent(in) :: left(2)   !! Its left end: (2) [m]
+      real(wp), intent(in) :: right(2)  !! Its right end: (2) [m]
+      integer, intent(in) :: span       !! Number of its span; 0 on a pier
 
       if (right(1) > left(1)) assembly%top = [assembly%top, &
          & top_chord_t(size(assembly%plan%fixed), left, right, span)]

@@ -250,12 +250,9 @@ contains
 
    !> Moments of unit forces along the normal and along the tangent of a joint
    pure subroutine find_arms(way, tangent, arms)
-      !> From the centre to the joint's middle: (2) [m]
-      real(wp), intent(in) :: way(2)
-      !> The tangent: (2)
-      real(wp), intent(in) :: tangent(2)
-      !> The moments: (2) [m]
-      real(wp), intent(out) :: arms(2)
+      real(wp), intent(in) :: way(2)      !! From the centre to the joint's middle: (2) [m]
+      real(wp), intent(in) :: tangent(2)  !! The tangent: (2)
+      real(wp), intent(out) :: arms(2)    !! The moments: (2) [m]
 
       arms(1) = -way(1)*tangent(1) - way(2)*tangent(2)
       arms(2) = way(1)*tangent(2) - way(2)*tangent(1)

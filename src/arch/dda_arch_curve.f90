@@ -63,8 +63,7 @@ contains
 
    !> Measure the pieces of a line
    pure subroutine close_curve(curve)
-      !> The line; its lengths are set
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve  !! The line; its lengths are set
       integer :: i, n
 
       n = size(curve%piece)
@@ -86,10 +85,8 @@ contains
    !> The place at a length along the line; at a bend, that of the left or of the right piece
    pure type(station_t) function station_at(curve, length, from_right) result(station)
       type(curve_t), intent(in) :: curve
-      !> Length from the left end [m]
-      real(wp), intent(in) :: length
-      !> Whether the right piece counts where two meet
-      logical, intent(in) :: from_right
+      real(wp), intent(in) :: length     !! Length from the left end [m]
+      logical, intent(in) :: from_right  !! Whether the right piece counts where two meet
       real(wp) :: u, rate(2), bend(2), speed
       integer :: i
 
@@ -110,14 +107,10 @@ contains
    !> A point of a piece with its first two derivatives
    pure subroutine see_piece(piece, u, point, rate, bend)
       type(piece_t), intent(in) :: piece
-      !> Parameter
-      real(wp), intent(in) :: u
-      !> The point: (2) [m]
-      real(wp), intent(out) :: point(2)
-      !> First derivative: (2)
-      real(wp), intent(out) :: rate(2)
-      !> Second derivative: (2)
-      real(wp), intent(out) :: bend(2)
+      real(wp), intent(in) :: u          !! Parameter
+      real(wp), intent(out) :: point(2)  !! The point: (2) [m]
+      real(wp), intent(out) :: rate(2)   !! First derivative: (2)
+      real(wp), intent(out) :: bend(2)   !! Second derivative: (2)
 
       select case (piece%form)
       case (piece_form%ellipse)
@@ -143,10 +136,8 @@ contains
    !> Length of a piece between two parameters [m]
    pure real(wp) function length_between(piece, from, to) result(length)
       type(piece_t), intent(in) :: piece
-      !> First parameter
-      real(wp), intent(in) :: from
-      !> Second parameter
-      real(wp), intent(in) :: to
+      real(wp), intent(in) :: from  !! First parameter
+      real(wp), intent(in) :: to    !! Second parameter
       real(wp) :: half, middle, point(2), rate(2), bend(2)
       integer :: i, k
 
@@ -171,8 +162,7 @@ contains
    pure real(wp) function parameter_at(piece, length, whole) result(u)
       type(piece_t), intent(in) :: piece
       real(wp), intent(in) :: length
-      !> Length of the piece [m]
-      real(wp), intent(in) :: whole
+      real(wp), intent(in) :: whole  !! Length of the piece [m]
       real(wp) :: low, high, off, point(2), rate(2), bend(2)
       integer :: i
 

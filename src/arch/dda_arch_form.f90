@@ -78,12 +78,9 @@ contains
 
    !> A circular arc
    pure type(piece_t) function arc(centre, radius, ends)
-      !> Its centre: (2) [m]
-      real(wp), intent(in) :: centre(2)
-      !> Its radius [m]
-      real(wp), intent(in) :: radius
-      !> Angles of its ends from upright, to the right: (2) [rad]
-      real(wp), intent(in) :: ends(2)
+      real(wp), intent(in) :: centre(2)  !! Its centre: (2) [m]
+      real(wp), intent(in) :: radius     !! Its radius [m]
+      real(wp), intent(in) :: ends(2)    !! Angles of its ends from upright, to the right: (2) [rad]
 
       arc = piece_t(piece_form%ellipse, centre, radius, radius, ends)
    end function arc
@@ -138,8 +135,7 @@ contains
    pure subroutine add_arc(form, curve, problem)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(inout) :: curve
-      !> A rise that is no segment's
-      type(form_problem_t), intent(inout) :: problem
+      type(form_problem_t), intent(inout) :: problem  !! A rise that is no segment's
       real(wp) :: left, radius, right, p, q
 
       associate (l => form%span, h => form%rise)
@@ -162,14 +158,10 @@ contains
 
    !> Half of a pointed arch: an arc whose centre is as high as its springing
    pure type(piece_t) function half_pointed(half_span, rise, level, is_right)
-      !> Distance of the crown from the springing along x [m]
-      real(wp), intent(in) :: half_span
-      !> Height of the crown above the springing [m]
-      real(wp), intent(in) :: rise
-      !> Height of the springing [m]
-      real(wp), intent(in) :: level
-      !> Whether it is the right half
-      logical, intent(in) :: is_right
+      real(wp), intent(in) :: half_span  !! Distance of the crown from the springing along x [m]
+      real(wp), intent(in) :: rise       !! Height of the crown above the springing [m]
+      real(wp), intent(in) :: level      !! Height of the springing [m]
+      logical, intent(in) :: is_right    !! Whether it is the right half
       real(wp) :: radius, apex, way
 
       radius = 0.5_wp*(half_span**2 + rise**2)/half_span
@@ -206,10 +198,8 @@ contains
 
    !> Radius at the crown of the catenary over a span, by bisection
    pure real(wp) function catenary_radius(span, rise) result(a)
-      !> The span [m]
-      real(wp), intent(in) :: span
-      !> Height of the crown above the springings: (2) [m]
-      real(wp), intent(in) :: rise(2)
+      real(wp), intent(in) :: span     !! The span [m]
+      real(wp), intent(in) :: rise(2)  !! Height of the crown above the springings: (2) [m]
       real(wp) :: low, high
       integer :: i
 
@@ -232,8 +222,7 @@ contains
 
    !> Distance of a springing of a catenary from its crown along x [m]
    pure real(wp) function half_catenary(a, rise)
-      !> Radius at the crown [m]
-      real(wp), intent(in) :: a
+      real(wp), intent(in) :: a  !! Radius at the crown [m]
       real(wp), intent(in) :: rise
 
       half_catenary = 2.0_wp*a*asinh(sqrt(0.5_wp*rise/a))

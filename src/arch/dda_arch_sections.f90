@@ -34,10 +34,8 @@ contains
    pure subroutine place_sections(form, curve, at, is_joint)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
-      !> The lengths, rising: (n) [m]
-      real(wp), allocatable, intent(out) :: at(:)
-      !> Which of them are joints: (n)
-      logical, allocatable, intent(out) :: is_joint(:)
+      real(wp), allocatable, intent(out) :: at(:)       !! The lengths, rising: (n) [m]
+      logical, allocatable, intent(out) :: is_joint(:)  !! Which of them are joints: (n)
       real(wp) :: from, to, whole
       integer :: i
 
@@ -87,14 +85,10 @@ contains
 
    !> Add a section
    pure subroutine append(length, joint, at, is_joint)
-      !> Its length along the line [m]
-      real(wp), intent(in) :: length
-      !> Whether it is a joint
-      logical, intent(in) :: joint
-      !> Receives the length: (n) [m]
-      real(wp), allocatable, intent(inout) :: at(:)
-      !> Receives whether it is a joint: (n)
-      logical, allocatable, intent(inout) :: is_joint(:)
+      real(wp), intent(in) :: length                      !! Its length along the line [m]
+      logical, intent(in) :: joint                        !! Whether it is a joint
+      real(wp), allocatable, intent(inout) :: at(:)       !! Receives the length: (n) [m]
+      logical, allocatable, intent(inout) :: is_joint(:)  !! Receives whether it is a joint: (n)
       real(wp), allocatable :: longer(:)
 
       allocate (longer(size(at) + 1))
@@ -108,12 +102,9 @@ contains
    pure subroutine cut_section(form, curve, at, intrados, extrados)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
-      !> Length along the line [m]
-      real(wp), intent(in) :: at
-      !> Its inner end: (2) [m]
-      real(wp), intent(out) :: intrados(2)
-      !> Its outer end: (2) [m]
-      real(wp), intent(out) :: extrados(2)
+      real(wp), intent(in) :: at            !! Length along the line [m]
+      real(wp), intent(out) :: intrados(2)  !! Its inner end: (2) [m]
+      real(wp), intent(out) :: extrados(2)  !! Its outer end: (2) [m]
       type(station_t) :: station
       real(wp) :: across(2), share, slope, thickness, middle(2)
 
@@ -156,8 +147,7 @@ contains
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
       type(station_t), intent(in) :: station
-      !> Direction; a unit vector but for flat arches: (2)
-      real(wp) :: across(2)
+      real(wp) :: across(2)  !! Direction; a unit vector but for flat arches: (2)
       type(station_t) :: left, right
 
       across = station%outward
@@ -175,10 +165,8 @@ contains
    !> Where the extrados of the two arcs of a pointed arch meet
    pure function outer_apex(curve, thickness) result(point)
       type(curve_t), intent(in) :: curve
-      !> Thickness at the crown [m]
-      real(wp), intent(in) :: thickness
-      !> The point: (2) [m]
-      real(wp) :: point(2)
+      real(wp), intent(in) :: thickness  !! Thickness at the crown [m]
+      real(wp) :: point(2)               !! The point: (2) [m]
       real(wp) :: apart(2), distance, radius(2), foot
 
       radius = curve%piece%a + thickness

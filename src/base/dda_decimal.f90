@@ -26,10 +26,8 @@ contains
 
    !> Two numbers of half the digits that add up to one
    pure function halves(value)
-      !> The one
-      real(wp), intent(in) :: value
-      !> The two
-      real(wp) :: halves(2), high
+      real(wp), intent(in) :: value  !! The one
+      real(wp) :: halves(2), high    !! The two
 
       high = 134217729.0_wp*value
       halves(1) = high - (high - value)

@@ -20,12 +20,9 @@ contains
    !> Make an error
    pure subroutine fatal_error(error, message, file, line)
       type(error_t), allocatable, intent(out) :: error
-      !> What was wanted and what was found
-      character(len=*), intent(in) :: message
-      !> File that the message speaks of
-      character(len=*), intent(in), optional :: file
-      !> Line of that file
-      integer, intent(in), optional :: line
+      character(len=*), intent(in) :: message         !! What was wanted and what was found
+      character(len=*), intent(in), optional :: file  !! File that the message speaks of
+      integer, intent(in), optional :: line           !! Line of that file
 
       allocate (error)
       error%message = message
@@ -48,8 +45,7 @@ contains
    !> The line a user sees: FILE:LINE: error: message
    pure function error_line(error) result(line)
       type(error_t), intent(in) :: error
-      !> One line of text
-      character(len=:), allocatable :: line
+      character(len=:), allocatable :: line  !! One line of text
       character(len=12) :: number
 
       line = "error: "//error%message

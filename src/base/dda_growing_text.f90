@@ -19,8 +19,7 @@ contains
    !> Put a line below the others
    pure subroutine add_line(lines, line)
       type(growing_text_t), intent(inout) :: lines
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
       character(len=:), allocatable :: longer
       integer :: room
 
@@ -37,8 +36,7 @@ contains
    !> The lines, parted by line ends, none behind the last
    pure function lines_of(lines) result(text)
       type(growing_text_t), intent(in) :: lines
-      !> The text; empty if there are none
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The text; empty if there are none
 
       text = ""
       if (lines%length > 0) text = lines%text(:lines%length - 1)
@@ -53,10 +51,8 @@ contains
 
    !> Numbers with something between them
    pure function fields(value, between) result(text)
-      !> The numbers: (n), one or more
-      real(wp), intent(in) :: value(:)
-      !> A comma where it is left out
-      character, intent(in), optional :: between
+      real(wp), intent(in) :: value(:)            !! The numbers: (n), one or more
+      character, intent(in), optional :: between  !! A comma where it is left out
       character(len=:), allocatable :: text
       character(len=33*size(value)) :: buffer
       character :: parting

@@ -17,20 +17,16 @@ contains
 
    !> Room that an array is given where it has too little
    pure integer function next_room(room, n)
-      !> Room that it has
-      integer, intent(in) :: room
-      !> Room that it needs
-      integer, intent(in) :: n
+      integer, intent(in) :: room  !! Room that it has
+      integer, intent(in) :: n     !! Room that it needs
 
       next_room = max(n, 8, room + min(room, huge(room) - room))
    end function next_room
 
    !> Room for whole numbers
    pure subroutine room_for_integers(array, n)
-      !> The numbers
-      integer, allocatable, intent(inout) :: array(:)
-      !> How many there may be
-      integer, intent(in) :: n
+      integer, allocatable, intent(inout) :: array(:)  !! The numbers
+      integer, intent(in) :: n                         !! How many there may be
       integer, allocatable :: longer(:)
 
       if (.not. allocated(array)) allocate (array(0))
@@ -42,8 +38,7 @@ contains
 
    !> Room for truth values
    pure subroutine room_for_logicals(array, n)
-      !> The values
-      logical, allocatable, intent(inout) :: array(:)
+      logical, allocatable, intent(inout) :: array(:)  !! The values
       integer, intent(in) :: n
       logical, allocatable :: longer(:)
 

@@ -21,8 +21,7 @@ contains
    !> A set without numbers
    pure subroutine new_key_set(set, most)
       type(key_set_t), intent(out) :: set
-      !> How many numbers it will hold at most
-      integer, intent(in) :: most
+      integer, intent(in) :: most  !! How many numbers it will hold at most
       integer :: n
 
       n = 8
@@ -35,16 +34,14 @@ contains
    !> Whether a number is in a set
    pure logical function has_key(set, key)
       type(key_set_t), intent(in) :: set
-      !> The number, above 0
-      integer(int64), intent(in) :: key
+      integer(int64), intent(in) :: key  !! The number, above 0
 
       has_key = set%key(place_of(set, key)) == key
    end function has_key
 
    !> Put a number into a set; nothing happens if it is there already
    pure subroutine add_key(set, key)
-      !> The set; it holds fewer than it is made for
-      type(key_set_t), intent(inout) :: set
+      type(key_set_t), intent(inout) :: set  !! The set; it holds fewer than it is made for
       integer(int64), intent(in) :: key
 
       set%key(place_of(set, key)) = key

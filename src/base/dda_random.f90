@@ -26,10 +26,8 @@ contains
 
    !> A generator at its beginning
    pure subroutine new_random(seed, stream, random)
-      !> Any number
-      integer, intent(in) :: seed
-      !> Number of the sequence among those of the seed
-      integer, intent(in) :: stream
+      integer, intent(in) :: seed    !! Any number
+      integer, intent(in) :: stream  !! Number of the sequence among those of the seed
       type(random_t), intent(out) :: random
       integer(int64) :: x
       integer :: i, k
@@ -45,8 +43,7 @@ contains
 
    !> A number of 31 bits that tells nothing of the one that it is made of
    pure integer(int64) function mixed(number)
-      !> Any number
-      integer(int64), intent(in) :: number
+      integer(int64), intent(in) :: number  !! Any number
       integer :: i
 
       mixed = modulo(number, mix_modulus)
@@ -58,8 +55,7 @@ contains
    !> The next number between 0 and 1, neither of them
    pure subroutine draw(random, number)
       type(random_t), intent(inout) :: random
-      !> The number
-      real(wp), intent(out) :: number
+      real(wp), intent(out) :: number  !! The number
       integer(int64) :: next(2)
 
       associate (s => random%state)

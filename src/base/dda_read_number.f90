@@ -64,10 +64,8 @@ contains
 
    !> Whether a text is one digit or more, after a sign where signs are allowed
    pure logical function is_digits(text, signed)
-      !> Text to look at
-      character(len=*), intent(in) :: text
-      !> Whether a leading sign may stand
-      logical, intent(in) :: signed
+      character(len=*), intent(in) :: text  !! Text to look at
+      logical, intent(in) :: signed         !! Whether a leading sign may stand
       integer :: first
 
       first = 1

@@ -14,22 +14,17 @@ contains
 
    !> Order by a whole number, then by a real one; what is equal keeps its order
    pure function sorted_order(major, minor) result(order)
-      !> What counts first: (n)
-      integer, intent(in) :: major(:)
-      !> What counts where the first is equal: (n)
-      real(wp), intent(in) :: minor(:)
-      !> Places of the items, smallest first: (n)
-      integer :: order(size(major))
+      integer, intent(in) :: major(:)   !! What counts first: (n)
+      real(wp), intent(in) :: minor(:)  !! What counts where the first is equal: (n)
+      integer :: order(size(major))     !! Places of the items, smallest first: (n)
 
       call merge_sort(int(major, int64), minor, order)
    end function sorted_order
 
    !> Places of numbers in rising order, equal ones as they came
    pure function rising_order(number) result(order)
-      !> Any numbers: (n)
-      integer(int64), intent(in) :: number(:)
-      !> number(order) rises: (n)
-      integer :: order(size(number))
+      integer(int64), intent(in) :: number(:)  !! Any numbers: (n)
+      integer :: order(size(number))           !! number(order) rises: (n)
       integer(int64) :: least, most
 
       least = 0
@@ -48,8 +43,7 @@ contains
 
    !> Put numbers in rising order
    pure subroutine sort_numbers(number)
-      !> The numbers: (n)
-      integer, intent(inout) :: number(:)
+      integer, intent(inout) :: number(:)  !! The numbers: (n)
       integer, allocatable :: order(:)
       integer :: i, j, this
 
@@ -71,12 +65,9 @@ contains
    !> Sort by digits, the last one first, each keeping the order of the one before; linear
    pure subroutine radix_sort(number, least, most, order)
       integer(int64), intent(in) :: number(:)
-      !> The least of them
-      integer(int64), intent(in) :: least
-      !> The largest of them
-      integer(int64), intent(in) :: most
-      !> Places of the items, smallest first: (n)
-      integer, intent(out) :: order(:)
+      integer(int64), intent(in) :: least  !! The least of them
+      integer(int64), intent(in) :: most   !! The largest of them
+      integer, intent(out) :: order(:)     !! Places of the items, smallest first: (n)
       integer, parameter :: bits = 11
       integer :: next(0:2**bits - 1), other(size(order)), digit, i, shift
 
@@ -104,8 +95,7 @@ contains
 
       !> The digit that is sorted by
       pure integer function digit_of(value)
-         !> A number
-         integer(int64), intent(in) :: value
+         integer(int64), intent(in) :: value  !! A number
 
          digit_of = int(ibits(value - least, shift, min(bits, 63 - shift)))
       end function digit_of
@@ -113,10 +103,8 @@ contains
 
    !> Merge sort from runs of one
    pure subroutine merge_sort(major, minor, order)
-      !> What counts first: (n)
-      integer(int64), intent(in) :: major(:)
-      !> What counts next: (n)
-      real(wp), intent(in) :: minor(:)
+      integer(int64), intent(in) :: major(:)  !! What counts first: (n)
+      real(wp), intent(in) :: minor(:)        !! What counts next: (n)
       integer, intent(out) :: order(:)
       integer :: other(size(order)), i, n, width, start, middle, finish
 
@@ -172,20 +160,16 @@ contains
    pure logical function is_before(major, minor, a, b)
       integer(int64), intent(in) :: major(:)
       real(wp), intent(in) :: minor(:)
-      !> One item
-      integer, intent(in) :: a
-      !> The other
-      integer, intent(in) :: b
+      integer, intent(in) :: a  !! One item
+      integer, intent(in) :: b  !! The other
 
       is_before = major(a) < major(b) .or. (major(a) == major(b) .and. minor(a) < minor(b))
    end function is_before
 
    !> First place of a number among rising ones, or of the next larger
    pure integer function place_in(rising, number)
-      !> Rising numbers: (n)
-      integer(int64), intent(in) :: rising(:)
-      !> What is looked for
-      integer(int64), intent(in) :: number
+      integer(int64), intent(in) :: rising(:)  !! Rising numbers: (n)
+      integer(int64), intent(in) :: number     !! What is looked for
       integer :: above, middle
 
       place_in = 1

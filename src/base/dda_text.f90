@@ -30,14 +30,10 @@ module dda_text
 
       !> Product of two doubles as the sum of two (Dekker 1971)
       pure module subroutine exact_product(a, b, product, rest)
-         !> One factor
-         real(wp), intent(in) :: a
-         !> The other
-         real(wp), intent(in) :: b
-         !> The product, rounded
-         real(wp), intent(out) :: product
-         !> What rounding has taken from it
-         real(wp), intent(out) :: rest
+         real(wp), intent(in) :: a         !! One factor
+         real(wp), intent(in) :: b         !! The other
+         real(wp), intent(out) :: product  !! The product, rounded
+         real(wp), intent(out) :: rest     !! What rounding has taken from it
       end subroutine exact_product
 
       !> Read a decimal number of usual size, rounded to the nearest double
@@ -54,19 +50,15 @@ module dda_text
       !> Read one decimal number below 1e308, and nothing else, from a text
       pure module subroutine read_number(text, value, ok)
          character(len=*), intent(in) :: text
-         !> The number; 0 if the text is none
-         real(wp), intent(out) :: value
-         !> Whether the whole text is one such number
-         logical, intent(out) :: ok
+         real(wp), intent(out) :: value  !! The number; 0 if the text is none
+         logical, intent(out) :: ok      !! Whether the whole text is one such number
       end subroutine read_number
 
       !> Read one integer, and nothing else, from a text
       pure module subroutine read_integer(text, value, ok)
          character(len=*), intent(in) :: text
-         !> The number; 0 if the text is none
-         integer, intent(out) :: value
-         !> Whether the whole text is one integer that fits
-         logical, intent(out) :: ok
+         integer, intent(out) :: value  !! The number; 0 if the text is none
+         logical, intent(out) :: ok     !! Whether the whole text is one integer that fits
       end subroutine read_integer
 
    end interface
@@ -75,10 +67,8 @@ contains
 
    !> Shortest decimal text that reads back as the same double
    pure function real_to_text(value) result(text)
-      !> Number to write
-      real(wp), intent(in) :: value
-      !> Text without blanks
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: value          !! Number to write
+      character(len=:), allocatable :: text  !! Text without blanks
       character(len=longest) :: buffer
       integer :: n
 
@@ -89,10 +79,8 @@ contains
    !> Put the shortest decimal text that reads back as the same double into a text
    pure subroutine print_number(value, text, n)
       real(wp), intent(in) :: value
-      !> Receives it, without blanks before
-      character(len=longest), intent(out) :: text
-      !> Its length
-      integer, intent(out) :: n
+      character(len=longest), intent(out) :: text  !! Receives it, without blanks before
+      integer, intent(out) :: n                    !! Its length
       character(len=24) :: buffer
       integer(int64) :: digits
       integer :: exponent
@@ -130,16 +118,11 @@ contains
    !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, up to the
    !> 44th the sum of two, and so is the product of two doubles
    pure subroutine scale(value, digits, exponent, beyond, known)
-      !> The number, positive
-      real(wp), intent(in) :: value
-      !> Its digits, rounded, as one whole number
-      integer(int64), intent(out) :: digits
-      !> Power of ten of the first digit
-      integer, intent(out) :: exponent
-      !> What rounding has taken from the digits
-      real(wp), intent(out) :: beyond
-      !> Whether they could be found so
-      logical, intent(out) :: known
+      real(wp), intent(in) :: value          !! The number, positive
+      integer(int64), intent(out) :: digits  !! Its digits, rounded, as one whole number
+      integer, intent(out) :: exponent       !! Power of ten of the first digit
+      real(wp), intent(out) :: beyond        !! What rounding has taken from the digits
+      logical, intent(out) :: known          !! Whether they could be found so
       real(wp) :: high, low, product, rest
 
       digits = 0
@@ -273,10 +256,8 @@ contains
 
    !> Put a text behind another one
    pure subroutine append(more, text, n)
-      !> What is put there
-      character(len=*), intent(in) :: more
-      !> Has room for it
-      character(len=*), intent(inout) :: text
+      character(len=*), intent(in) :: more     !! What is put there
+      character(len=*), intent(inout) :: text  !! Has room for it
       integer, intent(inout) :: n
 
       text(n + 1:n + len(more)) = more
@@ -285,8 +266,7 @@ contains
 
    !> How many digits a whole number has
    pure integer function count_digits(number)
-      !> The number, not negative
-      integer(int64), intent(in) :: number
+      integer(int64), intent(in) :: number  !! The number, not negative
       integer(int64) :: rest
 
       rest = number
@@ -300,10 +280,8 @@ contains
    !> Write the digits of a whole number
    pure subroutine put_digits(number, digits, n)
       integer(int64), intent(in) :: number
-      !> The digits, from the left
-      character(len=20), intent(out) :: digits
-      !> How many
-      integer, intent(out) :: n
+      character(len=20), intent(out) :: digits  !! The digits, from the left
+      integer, intent(out) :: n                 !! How many
       integer(int64) :: rest
       integer :: i
 
@@ -318,8 +296,7 @@ contains
 
    !> Decimal text of an integer
    pure function integer_to_text(value) result(text)
-      !> Number to write
-      integer, intent(in) :: value
+      integer, intent(in) :: value  !! Number to write
       character(len=:), allocatable :: text
       character(len=20) :: digits
       integer :: n
@@ -330,10 +307,8 @@ contains
 
    !> The same text with A-Z turned into a-z
    pure function lower_case(text) result(lower)
-      !> Any text
-      character(len=*), intent(in) :: text
-      !> Text of the same length
-      character(len=len(text)) :: lower
+      character(len=*), intent(in) :: text  !! Any text
+      character(len=len(text)) :: lower     !! Text of the same length
       integer :: i, code
 
       lower = text

@@ -28,12 +28,9 @@ contains
    !> Add a warning
    pure subroutine add_warning(warnings, message, file, line)
       type(warnings_t), intent(inout) :: warnings
-      !> What was found, and what was made of it
-      character(len=*), intent(in) :: message
-      !> File that the message speaks of
-      character(len=*), intent(in) :: file
-      !> Line of that file
-      integer, intent(in) :: line
+      character(len=*), intent(in) :: message  !! What was found, and what was made of it
+      character(len=*), intent(in) :: file     !! File that the message speaks of
+      integer, intent(in) :: line              !! Line of that file
       type(error_t), allocatable :: new
       type(warning_t), allocatable :: longer(:)
       integer :: i, n
@@ -61,8 +58,7 @@ contains
    !> The line a user sees: FILE:LINE: warning: message
    pure function warning_line(warning) result(line)
       type(warning_t), intent(in) :: warning
-      !> One line of text
-      character(len=:), allocatable :: line
+      character(len=:), allocatable :: line  !! One line of text
 
       line = "warning: "//warning%message
       if (warning%repeats > 0) line = line//" (and "//to_text(warning%repeats)//" more like it)"

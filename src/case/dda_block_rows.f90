@@ -30,8 +30,7 @@ contains
    !> Tell the blocks as they are at the beginning
    pure subroutine tell_blocks(scene, blocks)
       type(scene_t), intent(in) :: scene
-      !> The blocks, without displacements
-      type(told_blocks_t), intent(out) :: blocks
+      type(told_blocks_t), intent(out) :: blocks  !! The blocks, without displacements
       integer :: i
 
       associate (system => scene%system)
@@ -55,12 +54,9 @@ contains
 
    !> A collapse mechanism: the motion of the last step, which has a shape but no size
    pure subroutine tell_mechanism_motion(system, motion, blocks)
-      !> The blocks at the beginning
-      type(block_system_t), intent(in) :: system
-      !> Motion of the step: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> The blocks; displacements are set
-      type(told_blocks_t), intent(inout) :: blocks
+      type(block_system_t), intent(in) :: system    !! The blocks at the beginning
+      real(wp), intent(in) :: motion(:, :)          !! Motion of the step: (n_dof, n_equation)
+      type(told_blocks_t), intent(inout) :: blocks  !! The blocks; displacements are set
       real(wp) :: of_block(6, size(system%equation))
       integer :: b
 
@@ -74,8 +70,7 @@ contains
 
    !> Scale a mechanism so that the largest displacement is 1
    pure subroutine scale_to_one(displacement)
-      !> Displacements of all corners: (2, n_vertex)
-      real(wp), intent(inout) :: displacement(:, :)
+      real(wp), intent(inout) :: displacement(:, :)  !! Displacements of all corners: (2, n_vertex)
       real(wp) :: largest
 
       largest = maxval(norm2(displacement, dim=1))
@@ -99,10 +94,8 @@ contains
    !> Displacements of all corners in a motion without second-order terms
    pure function small_displacements(system, motion) result(displacement)
       type(block_system_t), intent(in) :: system
-      !> Motion of all blocks: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
-      !> The displacements: (2, n_vertex) [m]
-      real(wp) :: displacement(2, size(system%vertex, 2))
+      real(wp), intent(in) :: motion(:, :)                 !! Motion of all blocks: (6, n_block)
+      real(wp) :: displacement(2, size(system%vertex, 2))  !! The displacements: (2, n_vertex) [m]
       integer :: b, v
 
       do b = 1, size(system%equation)
@@ -146,8 +139,7 @@ contains
    !> Where a joint is, and the force that its first block puts on its second
    pure subroutine tell_forces(joint, force, origin, row)
       type(joint_t), intent(in) :: joint
-      !> Its force N1, N2, T: (3) [N/m]
-      real(wp), intent(in) :: force(3)
+      real(wp), intent(in) :: force(3)  !! Its force N1, N2, T: (3) [N/m]
       real(wp), intent(in) :: origin(2)
       type(joint_row_t), intent(inout) :: row
 
@@ -167,10 +159,8 @@ contains
    !> Friction acts against the way in which the second block slides; without friction the slip
    !> itself tells the way
    pure real(wp) function way_against(shear_force, slip)
-      !> Shear force on the second block [N/m]
-      real(wp), intent(in) :: shear_force
-      !> Its slip since the beginning [m]
-      real(wp), intent(in) :: slip
+      real(wp), intent(in) :: shear_force  !! Shear force on the second block [N/m]
+      real(wp), intent(in) :: slip         !! Its slip since the beginning [m]
 
       way_against = sign(1.0_wp, slip)
       if (abs(shear_force) > 0.0_wp) way_against = -sign(1.0_wp, shear_force)
@@ -207,11 +197,9 @@ contains
    !> Number of a joint among those of another run: of the same corners and edges, else between the
    !> same blocks; 0 if there is none
    pure integer function place_in(joints, joint, guess)
-      !> The joints of the other run
-      type(joint_t), intent(in) :: joints(:)
+      type(joint_t), intent(in) :: joints(:)  !! The joints of the other run
       type(joint_t), intent(in) :: joint
-      !> Where it may be
-      integer, intent(in) :: guess
+      integer, intent(in) :: guess            !! Where it may be
       integer :: k
 
       place_in = 0
@@ -232,8 +220,7 @@ contains
    pure function frame_joint_rows(system, frame) result(row)
       type(block_system_t), intent(in) :: system
       type(frame_t), intent(in) :: frame
-      !> The rows: (n_joint)
-      type(frame_joint_row_t) :: row(size(frame%joint))
+      type(frame_joint_row_t) :: row(size(frame%joint))  !! The rows: (n_joint)
       type(joint_t) :: joint
       real(wp) :: gap(3), normal_force
       integer :: j, states(2)
@@ -257,10 +244,8 @@ contains
    !> States of the two contacts of a joint: whether it slides is seen in the last step
    pure function contact_states(frame, joint) result(states)
       type(frame_t), intent(in) :: frame
-      !> Number of the joint
-      integer, intent(in) :: joint
-      !> One of contact_state each: (2)
-      integer :: states(2)
+      integer, intent(in) :: joint  !! Number of the joint
+      integer :: states(2)          !! One of contact_state each: (2)
 
       states = contact_state%locked
       if (slides(frame%face(joint), frame%slip(joint), frame%farthest)) &

@@ -90,8 +90,7 @@ contains
    !> Name of the searched parameter, empty if nothing is searched
    pure function searched_name(deck) result(name)
       type(deck_t), intent(in) :: deck
-      !> Name of a key
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name  !! Name of a key
 
       name = ""
       if (deck%search%given) name = trim(parameter_name(deck%searched))
@@ -100,10 +99,8 @@ contains
    !> What a deck asks to be searched
    pure subroutine prepare_search(plan, searched, family, search)
       type(scene_plan_t), intent(in) :: plan
-      !> Name of the searched parameter
-      character(len=*), intent(in) :: searched
-      !> New but for its deck
-      type(deck_family_t), intent(inout) :: family
+      character(len=*), intent(in) :: searched      !! Name of the searched parameter
+      type(deck_family_t), intent(inout) :: family  !! New but for its deck
       type(search_t), intent(inout) :: search
 
       call new_family(plan, family%deck%searched, family)

@@ -85,8 +85,7 @@ contains
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
    pure subroutine find_bar_range(scene, bar, proof)
       type(scene_t), intent(in) :: scene
-      !> Number of the bar
-      integer, intent(in) :: bar
+      integer, intent(in) :: bar  !! Number of the bar
       type(proof_t), intent(inout) :: proof
       type(settings_t) :: settings
       type(joint_graph_t) :: graph
@@ -130,8 +129,7 @@ contains
    pure subroutine prove_state(scene, graph, wanted, proof)
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> The verdict that is to be proven: stable or collapsed
-      integer, intent(in) :: wanted
+      integer, intent(in) :: wanted  !! The verdict that is to be proven: stable or collapsed
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
@@ -181,10 +179,8 @@ contains
 
    !> Power of loads if each went along with the motion of its block
    pure real(wp) function most_power(load, velocity)
-      !> Loads: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: load(:, :)
-      !> Velocities: (3, n_block) [m/s, m/s, 1/s]
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: load(:, :)      !! Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (3, n_block) [m/s, m/s, 1/s]
 
       most_power = sum(norm2(load(1:2, :), dim=1)*norm2(velocity(1:2, :), dim=1) &
          & + abs(load(3, :)*velocity(3, :)))

@@ -70,8 +70,7 @@ contains
 
    !> Numbers of joints in parentheses, not too many of them; nothing for none
    pure function numbered(joint) result(text)
-      !> The numbers: (n)
-      integer, intent(in) :: joint(:)
+      integer, intent(in) :: joint(:)  !! The numbers: (n)
       character(len=:), allocatable :: text
       integer, parameter :: most = 12
       integer :: i

@@ -52,10 +52,8 @@ module dda_case_rows
 
       !> What the user should know of jumps on the loading path
       pure module function jump_remark(jumps, largest, before) result(remark)
-         !> How many there were
-         integer, intent(in) :: jumps
-         !> The largest displacement of one [m]
-         real(wp), intent(in) :: largest
+         integer, intent(in) :: jumps     !! How many there were
+         real(wp), intent(in) :: largest  !! The largest displacement of one [m]
          character(len=*), intent(in) :: before
          character(len=:), allocatable :: remark
       end function jump_remark
@@ -113,11 +111,9 @@ contains
 
    !> Where the vehicle was put
    pure function position_remark(position, before) result(remark)
-      !> The position [m]
-      real(wp), intent(in) :: position
+      real(wp), intent(in) :: position         !! The position [m]
       character(len=*), intent(in) :: before
-      !> All of it
-      character(len=:), allocatable :: remark
+      character(len=:), allocatable :: remark  !! All of it
 
       remark = "the least load factor is carried with the first axle at "//to_text(position)//" m"
       if (len(before) > 0) remark = before//"; "//remark
@@ -182,8 +178,7 @@ contains
       type(result_row_t), intent(inout) :: row
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       type(told_blocks_t), intent(inout) :: blocks
-      !> Why the verdict is undecided
-      character(len=:), allocatable, intent(inout) :: remark
+      character(len=:), allocatable, intent(inout) :: remark  !! Why the verdict is undecided
 
       associate (outcome => this%decision%outcome)
          row%verdict = verdict_name(outcome%verdict)
@@ -313,8 +308,7 @@ contains
 
    !> A verdict in a word
    pure function verdict_name(answer) result(name)
-      !> One of verdict
-      integer, intent(in) :: answer
+      integer, intent(in) :: answer  !! One of verdict
       character(len=10) :: name
 
       name = "undecided"

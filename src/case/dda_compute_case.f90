@@ -61,10 +61,8 @@ module dda_compute_case
       pure module subroutine find_worst_position(deck, scene, position, found)
          type(deck_t), intent(in) :: deck
          type(scene_t), intent(in) :: scene
-         !> The position of the first axle [m]
-         real(wp), intent(out) :: position
-         !> Whether any position is bounded
-         logical, intent(out) :: found
+         real(wp), intent(out) :: position  !! The position of the first axle [m]
+         logical, intent(out) :: found      !! Whether any position is bounded
       end subroutine find_worst_position
 
       !> Supports whose reactions a dynamic run tells
@@ -105,8 +103,7 @@ module dda_compute_case
       !> tables of joints, for pictures, or to follow a sliding collapse
       pure module subroutine see_collapse(this, value, decision)
          type(case_t), intent(inout) :: this
-         !> Value of the parameter that was decided
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value  !! Value of the parameter that was decided
          type(decision_t), intent(inout) :: decision
       end subroutine see_collapse
 
@@ -117,13 +114,10 @@ module dda_compute_case
 
       !> Prove a decision
       pure module subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
-         !> Its scene at the beginning
-         type(scene_t), intent(in) :: scene
+         type(scene_t), intent(in) :: scene   !! Its scene at the beginning
          type(decision_t), intent(in) :: decision
-         !> Joint whose range of thrust is wanted, 0 for none
-         integer, intent(in) :: thrust_joint
-         !> Bar whose range of force is wanted, 0 for none
-         integer, intent(in) :: thrust_bar
+         integer, intent(in) :: thrust_joint  !! Joint whose range of thrust is wanted, 0 for none
+         integer, intent(in) :: thrust_bar    !! Bar whose range of force is wanted, 0 for none
          type(proof_t), intent(out) :: proof
       end subroutine prove_decision
 

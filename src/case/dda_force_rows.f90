@@ -29,14 +29,10 @@ module dda_force_rows
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
          type(contacts_t), intent(in) :: contacts
-         !> The time [s]
-         real(wp), intent(in) :: time
-         !> The supports: (2, n)
-         integer, intent(in) :: support(:, :)
-         !> The block
-         integer, intent(in) :: block
-         !> Receives the reactions: (3, n)
-         real(wp), intent(inout) :: reaction(:, :)
+         real(wp), intent(in) :: time               !! The time [s]
+         integer, intent(in) :: support(:, :)       !! The supports: (2, n)
+         integer, intent(in) :: block               !! The block
+         real(wp), intent(inout) :: reaction(:, :)  !! Receives the reactions: (3, n)
       end subroutine share_among_points
 
    end interface
@@ -45,11 +41,9 @@ contains
 
    !> Bars in the pictures of a case, and at its end
    pure function bar_lines(number, this) result(lines)
-      !> Number of the case
-      integer, intent(in) :: number
+      integer, intent(in) :: number           !! Number of the case
       type(case_t), intent(in) :: this
-      !> Rows, parted by line ends; empty without bars
-      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: lines  !! Rows, parted by line ends; empty without bars
       type(growing_text_t) :: rows
       real(wp) :: time
       integer :: i
@@ -78,8 +72,7 @@ contains
    !> Time at the end of a case
    pure real(wp) function end_time(this, last)
       type(case_t), intent(in) :: this
-      !> Time of its last picture [s]
-      real(wp), intent(in) :: last
+      real(wp), intent(in) :: last  !! Time of its last picture [s]
 
       end_time = last
       if (this%scene%settings%dynamic) end_time = max(last, this%onward%time)
@@ -90,8 +83,7 @@ contains
    pure subroutine add_rows(number, time, bar, rows)
       integer, intent(in) :: number
       real(wp), intent(in) :: time
-      !> The bars
-      type(bar_state_t), intent(in) :: bar(:)
+      type(bar_state_t), intent(in) :: bar(:)  !! The bars
       type(growing_text_t), intent(inout) :: rows
       integer :: i
 

@@ -47,8 +47,7 @@ contains
 
    !> When pictures are due: evenly in the steps of a dynamic run, in displacement in a static one
    pure subroutine plan_pictures(frames, constants, album)
-      !> How many are asked for
-      integer, intent(in) :: frames
+      integer, intent(in) :: frames  !! How many are asked for
       type(limerick_constants_t), intent(in) :: constants
       type(album_t), intent(inout) :: album
 
@@ -219,14 +218,10 @@ contains
    !> The corner of a joint between two blocks that lies nearest to a point
    pure subroutine find_corner(contacts, block, point, joint, corner)
       type(contacts_t), intent(in) :: contacts
-      !> Numbers of the blocks: (2)
-      integer, intent(in) :: block(2)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Number of the joint; 0 if these blocks have none
-      integer, intent(out) :: joint
-      !> Its corner, 1 or 2
-      integer, intent(out) :: corner
+      integer, intent(in) :: block(2)   !! Numbers of the blocks: (2)
+      real(wp), intent(in) :: point(2)  !! The point: (2) [m]
+      integer, intent(out) :: joint     !! Number of the joint; 0 if these blocks have none
+      integer, intent(out) :: corner    !! Its corner, 1 or 2
       real(wp) :: nearest, distance
       integer :: j, k
 

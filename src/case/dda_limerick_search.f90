@@ -71,8 +71,7 @@ contains
       type(deck_family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(critical_t), intent(inout) :: critical
-      !> The last of them, one of verdict
-      integer, intent(out) :: answer
+      integer, intent(out) :: answer  !! The last of them, one of verdict
       real(wp) :: value, stride
 
       value = search%start
@@ -94,8 +93,7 @@ contains
    !> Run one value and keep the decision on its side of the bracket
    pure subroutine decide_at(family, value, critical, answer)
       type(deck_family_t), intent(in) :: family
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The value
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer
       type(decision_t), allocatable :: decision

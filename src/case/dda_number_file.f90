@@ -60,16 +60,11 @@ contains
 
    !> Read numbers and compare their check sum
    pure subroutine read_sealed(bytes, n, whole, number, sound)
-      !> The numbers and their check sum
-      character(len=*), intent(in) :: bytes
-      !> How many there are: (2)
-      integer(int32), intent(in) :: n(2)
-      !> The whole ones: (n(1))
-      integer(int32), allocatable, intent(out) :: whole(:)
-      !> The others: (n(2))
-      real(wp), allocatable, intent(out) :: number(:)
-      !> Whether it is theirs
-      logical, intent(out) :: sound
+      character(len=*), intent(in) :: bytes                 !! The numbers and their check sum
+      integer(int32), intent(in) :: n(2)                    !! How many there are: (2)
+      integer(int32), allocatable, intent(out) :: whole(:)  !! The whole ones: (n(1))
+      real(wp), allocatable, intent(out) :: number(:)       !! The others: (n(2))
+      logical, intent(out) :: sound                         !! Whether it is theirs
       integer :: at
 
       at = 4*n(1)
@@ -80,8 +75,7 @@ contains
 
    !> The check sum of a file
    pure integer(int64) function check_sum(n, whole, number)
-      !> How many numbers there are: (2)
-      integer(int32), intent(in) :: n(2)
+      integer(int32), intent(in) :: n(2)  !! How many numbers there are: (2)
       integer(int32), intent(in) :: whole(:)
       real(wp), intent(in) :: number(:)
       integer :: i
@@ -96,10 +90,8 @@ contains
 
    !> Add words of 32 bits to a check sum, half a word at a time: what is added is below the prime
    pure subroutine add_words(words, sum_so_far)
-      !> The words: (:)
-      integer(int32), intent(in) :: words(:)
-      !> The check sum
-      integer(int64), intent(inout) :: sum_so_far
+      integer(int32), intent(in) :: words(:)       !! The words: (:)
+      integer(int64), intent(inout) :: sum_so_far  !! The check sum
       integer :: i
 
       do i = 1, size(words)

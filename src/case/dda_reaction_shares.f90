@@ -59,12 +59,9 @@ contains
 
    !> See the moments of some forces from another point, in a length
    pure subroutine move_moments(place, length, column)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> The length [m]
-      real(wp), intent(in) :: length
-      !> The forces with their moments: (3, n)
-      real(wp), intent(inout) :: column(:, :)
+      real(wp), intent(in) :: place(2)         !! The point: (2) [m]
+      real(wp), intent(in) :: length           !! The length [m]
+      real(wp), intent(inout) :: column(:, :)  !! The forces with their moments: (3, n)
       integer :: i
 
       do i = 1, size(column, 2)
@@ -74,23 +71,18 @@ contains
 
    !> A force with its moment seen from another point, in a length
    pure function moved(wrench, place, length) result(seen)
-      !> Force, and moment about the origin: (3)
-      real(wp), intent(in) :: wrench(3)
+      real(wp), intent(in) :: wrench(3)  !! Force, and moment about the origin: (3)
       real(wp), intent(in) :: place(2), length
-      !> The same with the other moment: (3)
-      real(wp) :: seen(3)
+      real(wp) :: seen(3)                !! The same with the other moment: (3)
 
       seen = [wrench(1:2), (wrench(3) - cross(place, wrench(1:2)))/length]
    end function moved
 
    !> The least of the forces that add up to what is wanted: x = A' y with A A' y = b
    pure function least_forces(a, b) result(x)
-      !> What each force is to the block: (3, n)
-      real(wp), intent(in) :: a(:, :)
-      !> What is wanted: (3)
-      real(wp), intent(in) :: b(3)
-      !> The forces: (n)
-      real(wp) :: x(size(a, 2))
+      real(wp), intent(in) :: a(:, :)  !! What each force is to the block: (3, n)
+      real(wp), intent(in) :: b(3)     !! What is wanted: (3)
+      real(wp) :: x(size(a, 2))        !! The forces: (n)
 
       x = matmul(least_squares(matmul(a, transpose(a)), b, negligible), a)
       ! once more, for what rounding has left
@@ -102,10 +94,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: time
-      !> The block, which can move
-      integer, intent(in) :: block
-      !> Force and moment: (3) [N/m, N/m, N]
-      real(wp) :: wrench(3)
+      integer, intent(in) :: block  !! The block, which can move
+      real(wp) :: wrench(3)         !! Force and moment: (3) [N/m, N/m, N]
       real(wp) :: weight(3, maxval(system%equation)), of_block(6)
       real(wp), dimension(3, maxval(system%equation)) :: load, felt
       real(wp) :: place(2)

@@ -108,14 +108,10 @@ module dda_restart
 
       !> Write a file; one of that name is replaced at once, when the new one is on the disk
       module subroutine write_numbers(file, title, whole, number, error)
-         !> Name of the file
-         character(len=*), intent(in) :: file
-         !> Its first bytes, which tell what it holds
-         character(len=*), intent(in) :: title
-         !> Whole numbers: (:)
-         integer(int32), intent(in) :: whole(:)
-         !> Numbers: (:)
-         real(wp), intent(in) :: number(:)
+         character(len=*), intent(in) :: file    !! Name of the file
+         character(len=*), intent(in) :: title   !! Its first bytes, which tell what it holds
+         integer(int32), intent(in) :: whole(:)  !! Whole numbers: (:)
+         real(wp), intent(in) :: number(:)       !! Numbers: (:)
          type(error_t), allocatable, intent(out) :: error
       end subroutine write_numbers
 
@@ -208,8 +204,7 @@ contains
    !> Whether numbers are neither infinite nor none, told from their bits: a signalling NaN may not
    !> be touched
    pure logical function are_finite(number)
-      !> The numbers: (n)
-      real(wp), intent(in) :: number(:)
+      real(wp), intent(in) :: number(:)  !! The numbers: (n)
       integer(int64), parameter :: all_ones = int(z"7FF0000000000000", int64)
 
       are_finite = all(iand(transfer(number, [0_int64]), all_ones) /= all_ones)
@@ -230,8 +225,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> The first of its whole numbers: (5)
-      integer(int32) :: owner(5)
+      integer(int32) :: owner(5)  !! The first of its whole numbers: (5)
 
       owner = [size(system%area), size(system%vertex, 2), settings%n_dof, &
          & merge(1, 0, settings%current), merge(1, 0, contacts%searched)]
@@ -239,10 +233,8 @@ contains
 
    !> How many whole numbers and numbers a file has
    pure function lengths(count) result(n)
-      !> Its first whole numbers: (n_count)
-      integer(int32), intent(in) :: count(n_count)
-      !> How many: (2)
-      integer(int64) :: n(2)
+      integer(int32), intent(in) :: count(n_count)  !! Its first whole numbers: (n_count)
+      integer(int64) :: n(2)                        !! How many: (2)
 
       n(1) = n_count + n_joint_whole*int(count(6), int64)
       n(2) = n_march + 16*int(count(1), int64) + 2*int(count(2), int64) + count(7) &
@@ -254,10 +246,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Whole numbers of the file: (:)
-      integer(int32), intent(in) :: whole(:)
-      !> How many other numbers it has
-      integer, intent(in) :: n_number
+      integer(int32), intent(in) :: whole(:)  !! Whole numbers of the file: (:)
+      integer, intent(in) :: n_number         !! How many other numbers it has
       character(len=*), intent(inout) :: fault
       logical :: same(5)
 
@@ -310,10 +300,8 @@ contains
 
       !> Carry the next numbers
       subroutine pass(n, values)
-         !> How many
-         integer, intent(in) :: n
-         !> The numbers of the state: (n)
-         real(wp), intent(inout) :: values(n)
+         integer, intent(in) :: n              !! How many
+         real(wp), intent(inout) :: values(n)  !! The numbers of the state: (n)
 
          if (reading) then
             values = number(at + 1:at + n)
@@ -326,8 +314,7 @@ contains
 
    !> Make room for what a file holds
    pure subroutine make_room(state)
-      !> The state; its counts are known
-      type(state_t), intent(inout) :: state
+      type(state_t), intent(inout) :: state  !! The state; its counts are known
 
       associate (n_block => state%count(1), n_joint => state%count(6))
          allocate (state%vertex(2, state%count(2)))

@@ -76,10 +76,8 @@ contains
 
    !> Lengths of the edges of a polygon
    pure function edge_lengths(corner) result(length)
-      !> Its corners: (2, n) [m]
-      real(wp), intent(in) :: corner(:, :)
-      !> The lengths: (n) [m]
-      real(wp) :: length(size(corner, 2))
+      real(wp), intent(in) :: corner(:, :)  !! Its corners: (2, n) [m]
+      real(wp) :: length(size(corner, 2))   !! The lengths: (n) [m]
 
       length = norm2(cshift(corner, 1, dim=2) - corner, dim=1)
    end function edge_lengths

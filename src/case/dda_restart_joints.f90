@@ -66,8 +66,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       integer(int32), intent(in) :: whole(:, :)
       real(wp), intent(in) :: number(:, :)
-      !> The joints: (n_joint)
-      type(joint_t), intent(out) :: joint(:)
+      type(joint_t), intent(out) :: joint(:)  !! The joints: (n_joint)
       logical, intent(out) :: sound
       type(outline_t) :: outline
       real(wp) :: gap(3)
@@ -106,10 +105,8 @@ contains
    pure logical function is_joint(system, outline, whole, number)
       type(block_system_t), intent(in) :: system
       type(outline_t), intent(in) :: outline
-      !> Whole numbers: (n_joint_whole)
-      integer(int32), intent(in) :: whole(:)
-      !> Numbers: (n_joint_number)
-      real(wp), intent(in) :: number(:)
+      integer(int32), intent(in) :: whole(:)  !! Whole numbers: (n_joint_whole)
+      real(wp), intent(in) :: number(:)       !! Numbers: (n_joint_number)
       real(wp), parameter :: rounding = 1.0e-9_wp
       integer :: block(2)
 
@@ -126,8 +123,7 @@ contains
    pure logical function edges_face(system, outline, whole)
       type(block_system_t), intent(in) :: system
       type(outline_t), intent(in) :: outline
-      !> Whole numbers of the joint: (n_joint_whole)
-      integer(int32), intent(in) :: whole(:)
+      integer(int32), intent(in) :: whole(:)  !! Whole numbers of the joint: (n_joint_whole)
       real(wp) :: edge(2, 2)
 
       edge = system%moved(:, outline%next(whole(6:7))) - system%moved(:, whole(6:7))
@@ -138,10 +134,8 @@ contains
    pure function blocks_of(outline, whole, k) result(block)
       type(outline_t), intent(in) :: outline
       integer(int32), intent(in) :: whole(:)
-      !> Which of its contacts
-      integer, intent(in) :: k
-      !> First and second block of the joint: (2)
-      integer :: block(2)
+      integer, intent(in) :: k  !! Which of its contacts
+      integer :: block(2)       !! First and second block of the joint: (2)
 
       block(whole(1 + k)) = outline%block(whole(5 + k))
       block(3 - whole(1 + k)) = outline%block(whole(3 + k))

@@ -61,8 +61,7 @@ contains
    !> Where a factor is given, swept or searched
    pure type(deck_place_t) function factor_place(deck, name) result(place)
       type(deck_t), intent(in) :: deck
-      !> Its key in &load
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Its key in &load
       integer :: key, s
 
       key = key_index("load", name)

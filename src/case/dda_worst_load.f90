@@ -70,8 +70,7 @@ contains
    !> Whether an arc begins with the load that the arc before ends with
    pure logical function goes_on(arc, k)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Number of the arc
-      integer, intent(in) :: k
+      integer, intent(in) :: k  !! Number of the arc
       real(wp), allocatable :: load(:, :)
       integer :: i, n
 
@@ -93,8 +92,7 @@ contains
    pure recursive subroutine find_bounded(arc, k, from, to, chase, least)
       type(load_arc_t), intent(in) :: arc(:)
       integer, intent(in) :: k
-      !> Shares of the way along it
-      real(wp), intent(in) :: from, to
+      real(wp), intent(in) :: from, to  !! Shares of the way along it
       type(chase_t), intent(in) :: chase
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
@@ -118,8 +116,7 @@ contains
    pure subroutine pass(arc, k, share, chase, least)
       type(load_arc_t), intent(in) :: arc(:)
       integer, intent(in) :: k
-      !> Share of the way along it
-      real(wp), intent(in) :: share
+      real(wp), intent(in) :: share  !! Share of the way along it
       type(chase_t), intent(inout) :: chase
       type(least_factor_t), intent(inout) :: least
       logical :: carried
@@ -155,13 +152,10 @@ contains
    !> Whether a load of an arc is carried at a factor but for a small share of it
    pure subroutine carry(arc, weight, factor, chase, carried)
       type(load_arc_t), intent(in) :: arc
-      !> Shares of its three loads
-      real(wp), intent(in) :: weight(3)
-      !> The factor
-      real(wp), intent(in) :: factor
+      real(wp), intent(in) :: weight(3)  !! Shares of its three loads
+      real(wp), intent(in) :: factor     !! The factor
       type(chase_t), intent(inout) :: chase
-      !> Whether it is
-      logical, intent(out) :: carried
+      logical, intent(out) :: carried    !! Whether it is
       real(wp) :: load(3, size(chase%dead, 2))
       integer :: state
 
@@ -204,12 +198,9 @@ contains
    !> The load of all arcs with most power on a mechanism
    pure subroutine find_most_power(arc, velocity, least, k, share)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Velocities of the mechanism: (3, n_block)
-      real(wp), intent(in) :: velocity(:, :)
-      !> Power that it must have more than
-      real(wp), intent(in) :: least
-      !> Number of its arc; 0 where none has
-      integer, intent(out) :: k
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities of the mechanism: (3, n_block)
+      real(wp), intent(in) :: least           !! Power that it must have more than
+      integer, intent(out) :: k               !! Number of its arc; 0 where none has
       real(wp), intent(out) :: share
       real(wp) :: most, power(3), place(3), slope, bend
       integer :: i, j
@@ -253,8 +244,7 @@ contains
    !> Shares of the three loads of an arc in that at a share of the way
    pure function weights(share)
       real(wp), intent(in) :: share
-      !> Shares of the loads
-      real(wp) :: weights(3)
+      real(wp) :: weights(3)  !! Shares of the loads
 
       weights = [(1.0_wp - share)*(1.0_wp - 2.0_wp*share), 4.0_wp*share*(1.0_wp - share), &
          & share*(2.0_wp*share - 1.0_wp)]

@@ -168,8 +168,7 @@ contains
    !> Position between two others at which the bridge begins to lean against other fill
    pure real(wp) function turning_point(bridge, from, to) result(middle)
       type(bridge_t), intent(in) :: bridge
-      !> The two positions [m]
-      real(wp), intent(in) :: from, to
+      real(wp), intent(in) :: from, to  !! The two positions [m]
       real(wp) :: ends(2)
       integer :: side
 
@@ -196,8 +195,7 @@ contains
    pure function axles_at(bridge, position) result(axles)
       type(bridge_t), intent(in) :: bridge
       real(wp), intent(in) :: position
-      !> The loads: (n)
-      type(loaded_point_t), allocatable :: axles(:)
+      type(loaded_point_t), allocatable :: axles(:)  !! The loads: (n)
       type(vehicle_t) :: vehicle
 
       vehicle = bridge%vehicle

@@ -30,12 +30,10 @@ contains
 
    !> Begin a file
    subroutine open_binary(name, file, error, keep)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name   !! Name of the file; one that exists is replaced
       type(binary_file_t), intent(out) :: file
       type(error_t), allocatable, intent(out) :: error
-      !> Whether what it holds is kept and added to instead
-      logical, intent(in), optional :: keep
+      logical, intent(in), optional :: keep  !! Whether what it holds is kept and added to instead
       character(len=2) :: mode
 
       mode = "wb"
@@ -81,8 +79,7 @@ contains
 
    !> Write so that all up to here survives a loss of power
    subroutine sync_binary(file, error)
-      !> The file; nothing happens to one that is not open
-      type(binary_file_t), intent(in) :: file
+      type(binary_file_t), intent(in) :: file  !! The file; nothing happens to one that is not open
       type(error_t), allocatable, intent(inout) :: error
 
       if (.not. c_associated(file%handle) .or. allocated(error)) return
@@ -116,8 +113,7 @@ contains
    !> Go on writing at another place; a place beyond the end is not for this
    subroutine go_to(file, place)
       type(binary_file_t), intent(in) :: file
-      !> Bytes before the place
-      integer, intent(in) :: place
+      integer, intent(in) :: place  !! Bytes before the place
       integer(c_int) :: failed
 
       failed = c_fseek(file%handle, int(place, c_long), 0_c_int)
@@ -126,8 +122,7 @@ contains
    !> Write characters as they are
    subroutine append_text(file, text)
       type(binary_file_t), intent(in) :: file
-      !> The characters
-      character(len=*), intent(in), target :: text
+      character(len=*), intent(in), target :: text  !! The characters
 
       if (len(text) > 0) call append_bytes(file, c_loc(text(1:1)), len(text, c_size_t))
    end subroutine append_text
@@ -135,8 +130,7 @@ contains
    !> Write numbers in the machine's own form
    subroutine append_reals(file, values)
       type(binary_file_t), intent(in) :: file
-      !> The numbers: (:, :)
-      real(wp), intent(in), target, contiguous :: values(:, :)
+      real(wp), intent(in), target, contiguous :: values(:, :)  !! The numbers: (:, :)
 
       if (size(values) > 0) call append_bytes(file, c_loc(values), 8*size(values, kind=c_size_t))
    end subroutine append_reals
@@ -144,8 +138,7 @@ contains
    !> Write integers of 32 bits in the machine's own form
    subroutine append_integers(file, values)
       type(binary_file_t), intent(in) :: file
-      !> The integers: (:)
-      integer(int32), intent(in), target, contiguous :: values(:)
+      integer(int32), intent(in), target, contiguous :: values(:)  !! The integers: (:)
 
       if (size(values) > 0) call append_bytes(file, c_loc(values), 4*size(values, kind=c_size_t))
    end subroutine append_integers
@@ -153,8 +146,7 @@ contains
    !> Write one integer of 64 bits in the machine's own form
    subroutine append_length(file, length)
       type(binary_file_t), intent(in) :: file
-      !> The integer
-      integer(int64), intent(in), target :: length
+      integer(int64), intent(in), target :: length  !! The integer
 
       call append_bytes(file, c_loc(length), 8_c_size_t)
    end subroutine append_length
@@ -163,8 +155,7 @@ contains
    subroutine append_bytes(file, bytes, n)
       type(binary_file_t), intent(in) :: file
       type(c_ptr), intent(in) :: bytes
-      !> How many
-      integer(c_size_t), intent(in) :: n
+      integer(c_size_t), intent(in) :: n  !! How many
       integer(c_size_t) :: written
 
       if (.not. c_associated(file%handle)) return

@@ -33,33 +33,26 @@ module dda_c_files
       !> C: write items
       function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
          import :: c_ptr, c_size_t
-         !> Where the items are
-         type(c_ptr), intent(in), value :: items
-         !> Size of an item
-         integer(c_size_t), intent(in), value :: size
-         !> Number of items
-         integer(c_size_t), intent(in), value :: count
+         type(c_ptr), intent(in), value :: items        !! Where the items are
+         integer(c_size_t), intent(in), value :: size   !! Size of an item
+         integer(c_size_t), intent(in), value :: count  !! Number of items
          type(c_ptr), intent(in), value :: handle
-         !> Number of items written
-         integer(c_size_t) :: written
+         integer(c_size_t) :: written                   !! Number of items written
       end function c_fwrite
 
       !> C: hand what is buffered to the system
       function c_fflush(handle) bind(c, name="fflush") result(failed)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
+         integer(c_int) :: failed  !! 0 if all is well
       end function c_fflush
 
       !> C: go to a place of a file
       function c_fseek(handle, offset, origin) bind(c, name="fseek") result(failed)
          import :: c_int, c_long, c_ptr
          type(c_ptr), intent(in), value :: handle
-         !> Bytes from the origin
-         integer(c_long), intent(in), value :: offset
-         !> 0 for the beginning of the file
-         integer(c_int), intent(in), value :: origin
+         integer(c_long), intent(in), value :: offset  !! Bytes from the origin
+         integer(c_int), intent(in), value :: origin   !! 0 for the beginning of the file
          integer(c_int) :: failed
       end function c_fseek
 
@@ -67,8 +60,7 @@ module dda_c_files
       function c_ftell(handle) bind(c, name="ftell") result(place)
          import :: c_long, c_ptr
          type(c_ptr), intent(in), value :: handle
-         !> Bytes before it
-         integer(c_long) :: place
+         integer(c_long) :: place  !! Bytes before it
       end function c_ftell
 
       !> C: the system's number of a file
@@ -114,10 +106,8 @@ module dda_c_files
       function c_access(path, mode) bind(c, name="access") result(failed)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted; 0: that it exists
-         integer(c_int), intent(in), value :: mode
-         !> 0 if it may be done
-         integer(c_int) :: failed
+         integer(c_int), intent(in), value :: mode  !! What is wanted; 0: that it exists
+         integer(c_int) :: failed                   !! 0 if it may be done
       end function c_access
    end interface
 end module dda_c_files

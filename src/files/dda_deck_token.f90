@@ -62,8 +62,7 @@ contains
    !> Text of a token: names in lower case, doubled quotes made single
    pure function token_text(scan, i) result(text)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the token
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of the token
       character(len=:), allocatable :: text
       character(len=1) :: quote
       integer :: at, next
@@ -112,8 +111,7 @@ contains
    !> Stand at the beginning of a text
    pure subroutine start(text, scan)
       character(len=*), intent(in) :: text
-      !> Scanner without tokens
-      type(deck_scan_t), intent(out) :: scan
+      type(deck_scan_t), intent(out) :: scan  !! Scanner without tokens
 
       scan%text = text
       allocate (scan%token(64))
@@ -122,16 +120,11 @@ contains
    !> Append a token at the scanner's line
    pure subroutine add_token(scan, kind, first, last, count, error)
       type(deck_scan_t), intent(inout) :: scan
-      !> One of token_kind
-      integer, intent(in) :: kind
-      !> First character
-      integer, intent(in) :: first
-      !> Last character
-      integer, intent(in) :: last
-      !> Repeat count
-      integer, intent(in) :: count
-      !> Too many tokens
-      type(error_t), allocatable, intent(out) :: error
+      integer, intent(in) :: kind                       !! One of token_kind
+      integer, intent(in) :: first                      !! First character
+      integer, intent(in) :: last                       !! Last character
+      integer, intent(in) :: count                      !! Repeat count
+      type(error_t), allocatable, intent(out) :: error  !! Too many tokens
       type(token_t), allocatable :: longer(:)
 
       if (scan%n == max_tokens) then
@@ -183,10 +176,8 @@ contains
 
    !> Whether a text begins with another
    pure logical function starts_with(text, beginning)
-      !> Text to look at
-      character(len=*), intent(in) :: text
-      !> How it should begin
-      character(len=*), intent(in) :: beginning
+      character(len=*), intent(in) :: text       !! Text to look at
+      character(len=*), intent(in) :: beginning  !! How it should begin
 
       starts_with = len(text) >= len(beginning)
       if (starts_with) starts_with = text(:len(beginning)) == beginning

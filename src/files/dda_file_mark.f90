@@ -16,8 +16,7 @@ contains
 
    !> The mark of a file: three numbers; a dash for one that cannot be read
    function file_mark(file) result(mark)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       character(len=:), allocatable :: mark
       character(len=chunk) :: bytes
       integer(int64) :: length, left, total(2)
@@ -42,8 +41,7 @@ contains
 
    !> The mark of a text
    pure function text_mark(text) result(mark)
-      !> The text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The text
       character(len=:), allocatable :: mark
       integer(int64) :: total(2)
 
@@ -54,10 +52,8 @@ contains
 
    !> Add bytes to the check sums
    pure subroutine add_bytes(bytes, total)
-      !> The bytes
-      character(len=*), intent(in) :: bytes
-      !> The sums: (2)
-      integer(int64), intent(inout) :: total(2)
+      character(len=*), intent(in) :: bytes      !! The bytes
+      integer(int64), intent(inout) :: total(2)  !! The sums: (2)
       integer :: i
 
       do i = 1, len(bytes)
@@ -67,8 +63,7 @@ contains
 
    !> Length and sums in digits
    pure function numbers(length, total) result(text)
-      !> Length [bytes]
-      integer(int64), intent(in) :: length
+      integer(int64), intent(in) :: length  !! Length [bytes]
       integer(int64), intent(in) :: total(2)
       character(len=:), allocatable :: text
       character(len=62) :: digits

@@ -33,21 +33,16 @@ module dda_table_file
       !> C: remove a file
       function c_remove(path) bind(c, name="remove") result(failed)
          import :: c_char, c_int
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> 0 if it was removed
-         integer(c_int) :: failed
+         character(kind=c_char), intent(in) :: path(*)  !! Its name, ended by a null character
+         integer(c_int) :: failed                       !! 0 if it was removed
       end function c_remove
 
       !> C: give a file another name; one of that name is replaced at once, never half
       function c_rename(from, to) bind(c, name="rename") result(failed)
          import :: c_char, c_int
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: from(*)
-         !> Its new name, likewise
-         character(kind=c_char), intent(in) :: to(*)
-         !> 0 if it was renamed
-         integer(c_int) :: failed
+         character(kind=c_char), intent(in) :: from(*)  !! Its name, ended by a null character
+         character(kind=c_char), intent(in) :: to(*)    !! Its new name, likewise
+         integer(c_int) :: failed                       !! 0 if it was renamed
       end function c_rename
    end interface
 
@@ -68,8 +63,7 @@ contains
 
    !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
    pure integer(int64) function line_sum(text)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
       integer :: i
       ! what eight bits do to a remainder, one after the other
       integer(int32), parameter :: byte(0:255) = [(int(i, int32), i=0, 255)]
@@ -108,18 +102,15 @@ contains
 
    !> Two sums as one
    elemental integer(int64) function add_sums(first, second)
-      !> One sum; a negative one is taken away
-      integer(int64), intent(in) :: first
-      !> The other
-      integer(int64), intent(in) :: second
+      integer(int64), intent(in) :: first   !! One sum; a negative one is taken away
+      integer(int64), intent(in) :: second  !! The other
 
       add_sums = modulo(first + second, shiftl(1_int64, bits))
    end function add_sums
 
    !> A remainder as CRC-32
    elemental integer(int64) function of_remainder(remainder)
-      !> The remainder
-      integer(int32), intent(in) :: remainder
+      integer(int32), intent(in) :: remainder  !! The remainder
 
       of_remainder = iand(int(not(remainder), int64), shiftl(1_int64, bits) - 1)
    end function of_remainder
@@ -141,8 +132,7 @@ contains
    !> Write one line, or several, so that it survives the end of the program; nothing is no line
    subroutine append_line(table, line, error)
       type(table_file_t), intent(inout) :: table
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
       type(error_t), allocatable, intent(out) :: error
 
       if (len(line) == 0) return
@@ -153,8 +143,7 @@ contains
 
    !> Write so that every line up to here survives a loss of power
    subroutine sync_table(table, error)
-      !> The table; nothing happens to one that is not open
-      type(table_file_t), intent(in) :: table
+      type(table_file_t), intent(in) :: table  !! The table; nothing happens to one that is not open
       type(error_t), allocatable, intent(inout) :: error
 
       call sync_binary(table%file, error)
@@ -187,8 +176,7 @@ contains
 
    !> Begin a table beside the one that it will replace
    subroutine open_part(file, header, table, error)
-      !> Name of the table
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the table
       character(len=*), intent(in) :: header
       type(table_file_t), intent(out) :: table
       type(error_t), allocatable, intent(out) :: error
@@ -198,8 +186,7 @@ contains
 
    !> Name of a file that is not whole yet
    pure function part_name(file) result(name)
-      !> Name that it will have
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name that it will have
       character(len=:), allocatable :: name
 
       name = file//".part"
@@ -227,8 +214,7 @@ contains
    !> Give a file begun beside another one the other's name
    subroutine rename_part(file, error)
       character(len=*), intent(in) :: file
-      !> Allocated if it cannot be replaced
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if it cannot be replaced
 
       if (c_rename(part_name(file)//c_null_char, file//c_null_char) /= 0) &
          & call fatal_error(error, "the file cannot be replaced; choose another folder with "// &
@@ -263,10 +249,8 @@ contains
    !> The next line that has its end; what follows the last line end was cut off and is no line
    subroutine next_line(lines, line, found)
       type(table_lines_t), intent(inout) :: lines
-      !> The line without its end
-      character(len=:), allocatable, intent(out) :: line
-      !> Whether there was one
-      logical, intent(out) :: found
+      character(len=:), allocatable, intent(out) :: line  !! The line without its end
+      logical, intent(out) :: found                       !! Whether there was one
       integer :: length
 
       found = .false.
@@ -325,8 +309,7 @@ contains
    !> One field of a line as it stands there; empty if there is none of that number
    pure function field(line, number) result(text)
       character(len=*), intent(in) :: line
-      !> Which, from 1
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Which, from 1
       character(len=:), allocatable :: text
       logical :: quoted
       integer :: i, n, start

@@ -37,8 +37,7 @@ contains
    !> Read a whole file as it is, be it a pipe
    subroutine read_bytes(file, bytes, error)
       character(len=*), intent(in) :: file
-      !> Its bytes; empty after a failure
-      character(len=:), allocatable, intent(out) :: bytes
+      character(len=:), allocatable, intent(out) :: bytes  !! Its bytes; empty after a failure
       type(error_t), allocatable, intent(out) :: error
       type(c_ptr) :: handle
       integer(c_int) :: failed
@@ -85,10 +84,8 @@ contains
 
    !> Read an open file to its end, or to one byte more than is allowed
    subroutine read_to_end(handle, bytes)
-      !> C's handle of the file
-      type(c_ptr), intent(in) :: handle
-      !> What was read
-      character(len=:), allocatable, intent(out) :: bytes
+      type(c_ptr), intent(in) :: handle                    !! C's handle of the file
+      character(len=:), allocatable, intent(out) :: bytes  !! What was read
       character(len=:), allocatable, target :: room, longer
       integer(c_size_t) :: n, got
 

@@ -40,10 +40,8 @@ contains
 
    !> A piece of a file as a message may show it
    pure function quoted(text) result(piece)
-      !> The piece
-      character(len=*), intent(in) :: text
-      !> Short, printable, in quotes
-      character(len=:), allocatable :: piece
+      character(len=*), intent(in) :: text    !! The piece
+      character(len=:), allocatable :: piece  !! Short, printable, in quotes
 
       piece = "'"//shown(text)//"'"
    end function quoted
@@ -100,8 +98,7 @@ contains
    !> The next word, which stays
    pure function this_word(words) result(word)
       type(word_list_t), intent(in) :: words
-      !> The word; empty at the end
-      character(len=:), allocatable :: word
+      character(len=:), allocatable :: word  !! The word; empty at the end
 
       word = ""
       if (words%next <= words%n) word = words%text(words%start(words%next):words%finish(words%next))
@@ -169,8 +166,7 @@ contains
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       real(wp), intent(out) :: value
-      !> An earlier one, another number, or none
-      type(error_t), allocatable, intent(inout) :: error
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, another number, or none
       real(wp), parameter :: most = 1.0e30_wp
       integer :: row
 
@@ -221,14 +217,11 @@ contains
 
    !> Refuse a number that breaks a rule
    pure subroutine check_number(fits, rule, value, file, row, error)
-      !> Whether it keeps the rule
-      logical, intent(in) :: fits
-      !> The rule, such as: the unit mass must be above 0
-      character(len=*), intent(in) :: rule
+      logical, intent(in) :: fits           !! Whether it keeps the rule
+      character(len=*), intent(in) :: rule  !! The rule, such as: the unit mass must be above 0
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: file
-      !> Line of the file
-      integer, intent(in) :: row
+      integer, intent(in) :: row            !! Line of the file
       type(error_t), allocatable, intent(inout) :: error
 
       if (fits .or. allocated(error)) return
@@ -238,8 +231,7 @@ contains
    !> Warn of words that were not taken
    pure subroutine warn_of_rest(words, taken, warnings)
       type(word_list_t), intent(in) :: words
-      !> What stands before them
-      character(len=*), intent(in) :: taken
+      character(len=*), intent(in) :: taken  !! What stands before them
       type(warnings_t), intent(inout) :: warnings
 
       if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &

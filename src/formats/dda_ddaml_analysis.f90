@@ -42,8 +42,7 @@ contains
    !> Read one child of Analysis
    pure subroutine read_element(tree, at, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the child
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of the child
       type(limerick_analysis_t), intent(inout) :: analysis
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -80,8 +79,7 @@ contains
    !> Read an element that chooses
    pure subroutine read_switch(tree, at, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of the element
       type(limerick_analysis_t), intent(inout) :: analysis
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -134,8 +132,7 @@ contains
    !> Read the materials of blocks and joints
    pure subroutine read_properties(tree, part, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of Analysis
-      integer, intent(in) :: part
+      integer, intent(in) :: part  !! Place of Analysis
       type(limerick_analysis_t), intent(inout) :: analysis
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -170,8 +167,7 @@ contains
    pure subroutine read_bolt(tree, at, property, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> Stiffness, strength and prestress: (3)
-      real(wp), intent(out) :: property(3)
+      real(wp), intent(out) :: property(3)  !! Stiffness, strength and prestress: (3)
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
          & "prestress"]
@@ -188,10 +184,8 @@ contains
    !> Materials are counted in the order of the file, whatever their type says
    pure subroutine check_type(tree, at, number, warnings)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the material
-      integer, intent(in) :: at
-      !> Its number
-      integer, intent(in) :: number
+      integer, intent(in) :: at      !! Place of the material
+      integer, intent(in) :: number  !! Its number
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: given
 
@@ -232,8 +226,7 @@ contains
    !> Read the constants of the scheme
    pure subroutine read_constants(tree, at, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of AConstants
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of AConstants
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       integer :: child

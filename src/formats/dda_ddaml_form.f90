@@ -87,12 +87,9 @@ contains
    !> Find the part of a file that is wanted: inside the root, or the root itself
    pure subroutine find_part(tree, name, part, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Name of the part
-      character(len=*), intent(in) :: name
-      !> Its place
-      integer, intent(out) :: part
-      !> There is none
-      type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in) :: name              !! Name of the part
+      integer, intent(out) :: part                      !! Its place
+      type(error_t), allocatable, intent(out) :: error  !! There is none
 
       part = 1
       if (tree%element(1)%name == name) return
@@ -147,8 +144,7 @@ contains
    !> Entry of an element in a form: 0 for the part itself, -1 if it has none
    pure integer function entry_of(tree, at, part, form)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of the element
       integer, intent(in) :: part
       type(form_t), intent(in) :: form(:)
       integer :: i
@@ -172,10 +168,8 @@ contains
    pure subroutine refuse_element(tree, at, outer, form, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> Entry of the outer element in the form
-      integer, intent(in) :: outer
-      !> What may be in the part
-      type(form_t), intent(in) :: form(:)
+      integer, intent(in) :: outer         !! Entry of the outer element in the form
+      type(form_t), intent(in) :: form(:)  !! What may be in the part
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
       logical :: among_numbers

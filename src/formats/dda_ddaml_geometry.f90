@@ -50,8 +50,7 @@ contains
    !> Read one child of Geometry
    pure subroutine read_list(tree, at, model, boundary, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the child
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of the child
       type(line_model_t), intent(inout) :: model
       type(entities_t), intent(inout) :: boundary
       type(warnings_t), intent(inout) :: warnings
@@ -88,10 +87,8 @@ contains
    !> Read Shi's e00
    pure subroutine read_ratio(tree, at, ratio, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> The ratio
-      real(wp), intent(inout) :: ratio
+      integer, intent(in) :: at         !! Place of the element
+      real(wp), intent(inout) :: ratio  !! The ratio
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
 
@@ -105,10 +102,8 @@ contains
    !> Read the elements of a list
    pure subroutine read_entities(tree, list, type, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the list
-      integer, intent(in) :: list
-      !> What the type of its elements says
-      integer, intent(in) :: type
+      integer, intent(in) :: list  !! Place of the list
+      integer, intent(in) :: type  !! What the type of its elements says
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error

@@ -27,13 +27,10 @@ contains
    !> The words of an attribute that must be there
    pure subroutine attribute_words(tree, at, name, words, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
+      integer, intent(in) :: at                           !! Place of the element
+      character(len=*), intent(in) :: name                !! Name of the attribute
       type(word_list_t), intent(out) :: words
-      !> An earlier one, or it is not there
-      type(error_t), allocatable, intent(inout) :: error
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, or it is not there
 
       call split_words(attribute_of(tree, at, name), tree%file, tree%element(at)%row, words)
       words%row = tree%element(at)%row
@@ -58,8 +55,7 @@ contains
    pure subroutine element_error(tree, at, message, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> What was expected, what was found
-      character(len=*), intent(in) :: message
+      character(len=*), intent(in) :: message  !! What was expected, what was found
       type(error_t), allocatable, intent(inout) :: error
 
       if (.not. allocated(error)) &
@@ -71,14 +67,10 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       character(len=*), intent(in) :: name
-      !> Words that mean yes, parted by blanks
-      character(len=*), intent(in) :: words_for_yes
-      !> The word that means no
-      character(len=*), intent(in) :: word_for_no
-      !> The choice
-      logical, intent(out) :: yes
-      !> An earlier one, another word, or none
-      type(error_t), allocatable, intent(inout) :: error
+      character(len=*), intent(in) :: words_for_yes       !! Words that mean yes, parted by blanks
+      character(len=*), intent(in) :: word_for_no         !! The word that means no
+      logical, intent(out) :: yes                         !! The choice
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, another word, or none
       character(len=:), allocatable :: word
 
       word = attribute_of(tree, at, name)
@@ -93,10 +85,8 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       character(len=*), intent(in) :: name
-      !> Smallest value
-      real(wp), intent(in) :: low
-      !> The number
-      real(wp), intent(inout) :: value
+      real(wp), intent(in) :: low       !! Smallest value
+      real(wp), intent(inout) :: value  !! The number
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
       real(wp) :: number(1)
@@ -114,10 +104,8 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       character(len=*), intent(in) :: name
-      !> Smallest value
-      integer, intent(in) :: low
-      !> The number
-      integer, intent(inout) :: value
+      integer, intent(in) :: low       !! Smallest value
+      integer, intent(inout) :: value  !! The number
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
 
@@ -129,8 +117,7 @@ contains
    pure subroutine read_material(tree, at, gravity, material, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> Acceleration of gravity, for a weight that is not given
-      real(wp), intent(in) :: gravity
+      real(wp), intent(in) :: gravity  !! Acceleration of gravity, for a weight that is not given
       type(analysis_material_t), intent(out) :: material
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -160,8 +147,7 @@ contains
       integer, intent(in) :: at
       real(wp), intent(in) :: gravity
       type(analysis_material_t), intent(inout) :: material
-      !> Receives a unit weight that is not taken
-      type(warnings_t), intent(inout) :: warnings
+      type(warnings_t), intent(inout) :: warnings  !! Receives a unit weight that is not taken
       real(wp) :: weight
 
       weight = material%density*gravity
@@ -195,14 +181,10 @@ contains
    !> Read the numbers of an element inside another
    pure subroutine read_child(tree, at, name, needed, value, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the outer element
-      integer, intent(in) :: at
-      !> Name of the inner element
-      character(len=*), intent(in) :: name
-      !> Whether it must be there
-      logical, intent(in) :: needed
-      !> Its numbers; left as they are if it is not there: (n)
-      real(wp), intent(inout) :: value(:)
+      integer, intent(in) :: at             !! Place of the outer element
+      character(len=*), intent(in) :: name  !! Name of the inner element
+      logical, intent(in) :: needed         !! Whether it must be there
+      real(wp), intent(inout) :: value(:)   !! Its numbers; left as they are if it is not there: (n)
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words

@@ -40,14 +40,11 @@ contains
 
    !> Read a geometry file
    pure subroutine read_plain_geometry(text, file, model, warnings, error)
-      !> The file's text
-      character(len=*), intent(in) :: text
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with its line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
       type(word_list_t) :: words
       type(counts_t) :: n
 
@@ -93,8 +90,7 @@ contains
    !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
    pure subroutine read_bolts(words, n, model, error)
       type(word_list_t), intent(inout) :: words
-      !> How many there are
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! How many there are
       type(line_model_t), intent(inout) :: model
       type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
@@ -118,13 +114,10 @@ contains
    !> Read the records of one kind
    pure subroutine read_records(words, what, n, n_number, has_material, entities, error)
       type(word_list_t), intent(inout) :: words
-      !> What a record is called
-      character(len=*), intent(in) :: what
+      character(len=*), intent(in) :: what  !! What a record is called
       integer, intent(in) :: n
-      !> Coordinates of each, 2 or 4
-      integer, intent(in) :: n_number
-      !> Whether a material follows
-      logical, intent(in) :: has_material
+      integer, intent(in) :: n_number       !! Coordinates of each, 2 or 4
+      logical, intent(in) :: has_material   !! Whether a material follows
       type(entities_t), intent(out) :: entities
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: name
@@ -226,11 +219,9 @@ contains
    !> Whether words are left for all materials, before there is room made for them
    pure subroutine check_room(words, what, n, n_number, error)
       type(word_list_t), intent(in) :: words
-      !> What the materials are for
-      character(len=*), intent(in) :: what
+      character(len=*), intent(in) :: what  !! What the materials are for
       integer, intent(in) :: n
-      !> Numbers of each
-      integer, intent(in) :: n_number
+      integer, intent(in) :: n_number       !! Numbers of each
       type(error_t), allocatable, intent(inout) :: error
 
       if (allocated(error) .or. words_left(words) >= n_number*n) return
@@ -243,8 +234,7 @@ contains
    pure subroutine check_material(material, file, row, error)
       type(analysis_material_t), intent(in) :: material
       character(len=*), intent(in) :: file
-      !> Line of the file
-      integer, intent(in) :: row
+      integer, intent(in) :: row  !! Line of the file
       type(error_t), allocatable, intent(inout) :: error
 
       call check_number(material%density > 0.0_wp, "the unit mass must be above 0", &

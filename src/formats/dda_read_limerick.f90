@@ -52,12 +52,10 @@ contains
 
    !> Read a geometry file
    subroutine read_geometry(file, model, warnings, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with file and line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What is wrong, with file and line
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
 
@@ -100,10 +98,8 @@ contains
    pure subroutine check_materials(model, analysis, warnings, error)
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Receives load points without a force
-      type(warnings_t), intent(inout) :: warnings
-      !> What is missing
-      type(error_t), allocatable, intent(out) :: error
+      type(warnings_t), intent(inout) :: warnings       !! Receives load points without a force
+      type(error_t), allocatable, intent(out) :: error  !! What is missing
 
       call check_numbers(model%line, "joint", size(analysis%joint), model%file, analysis%file, &
          & error)
@@ -123,14 +119,10 @@ contains
    !> Whether all materials of a list exist
    pure subroutine check_numbers(entities, what, n, file, analysis_file, error)
       type(entities_t), intent(in) :: entities
-      !> What the materials are for
-      character(len=*), intent(in) :: what
-      !> How many materials there are
-      integer, intent(in) :: n
-      !> Name of the geometry file
-      character(len=*), intent(in) :: file
-      !> Name of the analysis file
-      character(len=*), intent(in) :: analysis_file
+      character(len=*), intent(in) :: what           !! What the materials are for
+      integer, intent(in) :: n                       !! How many materials there are
+      character(len=*), intent(in) :: file           !! Name of the geometry file
+      character(len=*), intent(in) :: analysis_file  !! Name of the analysis file
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
@@ -145,8 +137,7 @@ contains
 
    !> Place of the first character that is no blank; 0 if there is none
    pure integer function first_letter(text)
-      !> The text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The text
 
       first_letter = verify(text, " "//achar(9)//achar(10))
    end function first_letter
@@ -166,8 +157,7 @@ contains
 
    !> Say why a form is not read
    pure subroutine refuse_form(text, file, error)
-      !> The file's text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The file's text
       character(len=*), intent(in) :: file
       type(error_t), allocatable, intent(out) :: error
 

@@ -48,10 +48,8 @@ contains
 
    !> A field of real numbers
    pure type(field_t) function scalar_field(name, values) result(field)
-      !> Its name
-      character(len=*), intent(in) :: name
-      !> The numbers: (n)
-      real(wp), intent(in) :: values(:)
+      character(len=*), intent(in) :: name  !! Its name
+      real(wp), intent(in) :: values(:)     !! The numbers: (n)
 
       field%name = name
       field%kind = field_kind%scalar
@@ -62,8 +60,7 @@ contains
    !> A field of plane vectors
    pure type(field_t) function vector_field(name, values)
       character(len=*), intent(in) :: name
-      !> Components x and y: (2, n)
-      real(wp), intent(in) :: values(:, :)
+      real(wp), intent(in) :: values(:, :)  !! Components x and y: (2, n)
 
       vector_field%name = name
       vector_field%kind = field_kind%vector
@@ -73,8 +70,7 @@ contains
    !> A field of symmetric plane tensors
    pure type(field_t) function tensor_field(name, values)
       character(len=*), intent(in) :: name
-      !> Components xx, yy and xy: (3, n)
-      real(wp), intent(in) :: values(:, :)
+      real(wp), intent(in) :: values(:, :)  !! Components xx, yy and xy: (3, n)
 
       tensor_field%name = name
       tensor_field%kind = field_kind%tensor
@@ -84,8 +80,7 @@ contains
    !> A field of whole numbers
    pure type(field_t) function state_field(name, states) result(field)
       character(len=*), intent(in) :: name
-      !> The numbers: (n)
-      integer, intent(in) :: states(:)
+      integer, intent(in) :: states(:)  !! The numbers: (n)
 
       field%name = name
       field%kind = field_kind%state
@@ -114,8 +109,7 @@ contains
 
    !> A shape as people write it
    pure function shape_text(extent) result(text)
-      !> Rows and columns: (2)
-      integer, intent(in) :: extent(2)
+      integer, intent(in) :: extent(2)  !! Rows and columns: (2)
       character(len=:), allocatable :: text
 
       text = to_text(extent(1))//" x "//to_text(extent(2))
@@ -124,8 +118,7 @@ contains
    !> What the file's header says of a field
    pure function field_attributes(field) result(text)
       type(field_t), intent(in) :: field
-      !> Attributes, each with a blank before it
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Attributes, each with a blank before it
 
       text = attribute("type", "Float64")
       if (field%kind == field_kind%state) text = attribute("type", "Int32")
@@ -177,8 +170,7 @@ contains
    !> Write whole numbers
    subroutine append_states(file, values)
       type(binary_file_t), intent(in) :: file
-      !> The numbers: (1, n)
-      real(wp), intent(in) :: values(:, :)
+      real(wp), intent(in) :: values(:, :)  !! The numbers: (1, n)
       integer(int32) :: states(chunk)
       integer :: first, n
 

@@ -23,10 +23,8 @@ contains
 
    !> Write a text to a file
    subroutine write_text(file, text, error)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: file
-      !> The text; its last line end is added
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: file  !! Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: text  !! The text; its last line end is added
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
       integer :: first
@@ -40,8 +38,7 @@ contains
    !> A geometry in the plain form
    pure function plain_geometry(model) result(text)
       type(line_model_t), intent(in) :: model
-      !> The file without its last line end
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The file without its last line end
 
       text = to_text(model%edge_node_ratio)//lf//to_text(model%line%n)//" " &
          & //to_text(model%n_boundary)//lf//to_text(model%material_line%n)//lf &
@@ -57,12 +54,9 @@ contains
    !> Records of one kind in the plain form
    pure function records(entities, n_number, has_material) result(text)
       type(entities_t), intent(in) :: entities
-      !> Coordinates of each, 2 or 4
-      integer, intent(in) :: n_number
-      !> Whether a material follows
-      logical, intent(in) :: has_material
-      !> Lines, each with its line end before it
-      character(len=:), allocatable :: text
+      integer, intent(in) :: n_number        !! Coordinates of each, 2 or 4
+      logical, intent(in) :: has_material    !! Whether a material follows
+      character(len=:), allocatable :: text  !! Lines, each with its line end before it
       integer :: i
 
       text = ""
@@ -88,8 +82,7 @@ contains
    !> Bolts in DDAML; the original reads all but the attributes that say what they are like
    pure function bolt_list(model) result(text)
       type(line_model_t), intent(in) :: model
-      !> Lines, each with its line end; empty without bolts
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Lines, each with its line end; empty without bolts
       integer :: i
 
       text = ""
@@ -174,8 +167,7 @@ contains
    !> An element with text
    pure function filled(name, inside) result(text)
       character(len=*), intent(in) :: name
-      !> What stands inside
-      character(len=*), intent(in) :: inside
+      character(len=*), intent(in) :: inside  !! What stands inside
       character(len=:), allocatable :: text
 
       text = "<"//name//"> "//inside//" </"//name//">"//lf
@@ -229,8 +221,7 @@ contains
    !> The elements that choose and bound
    pure function switches(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Elements, each with its line end
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Elements, each with its line end
 
       text = empty("Analysistype", "type", trim(merge("dynamic", "static ", analysis%dynamic))) &
          & //empty("Rotation", "type", trim(merge("exact ", "linear", analysis%exact_rotation))) &
@@ -280,8 +271,7 @@ contains
    !> A block material
    pure function material_element(material, number) result(text)
       type(analysis_material_t), intent(in) :: material
-      !> Its number
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Its number
       character(len=:), allocatable :: text
 
       text = '<Blockmaterial type="'//to_text(number)//'">'//lf &
@@ -297,8 +287,7 @@ contains
    !> The forces on load points
    pure function load_elements(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> The list with its line end
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The list with its line end
       integer :: i, k
 
       text = "<Loadpointlist>"//lf
@@ -316,10 +305,8 @@ contains
 
    !> A flag in DDAML
    pure function yes_no(flag) result(word)
-      !> The flag
-      logical, intent(in) :: flag
-      !> yes or no
-      character(len=:), allocatable :: word
+      logical, intent(in) :: flag            !! The flag
+      character(len=:), allocatable :: word  !! yes or no
 
       word = trim(merge("yes", "no ", flag))
    end function yes_no

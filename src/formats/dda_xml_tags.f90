@@ -134,8 +134,7 @@ contains
    !> Go past text whose references must be of single characters
    pure subroutine skip_text(text, last, scan, error)
       character(len=*), intent(in) :: text
-      !> Place of its last character
-      integer, intent(in) :: last
+      integer, intent(in) :: last  !! Place of its last character
       type(scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: first, length
@@ -177,10 +176,8 @@ contains
    !> Whether a piece stands at a place of a text
    pure logical function stands(text, first, piece)
       character(len=*), intent(in) :: text
-      !> The place
-      integer, intent(in) :: first
-      !> The piece
-      character(len=*), intent(in) :: piece
+      integer, intent(in) :: first           !! The place
+      character(len=*), intent(in) :: piece  !! The piece
 
       stands = .false.
       if (first >= 1 .and. first + len(piece) - 1 <= len(text)) &
@@ -190,10 +187,8 @@ contains
    !> Where the next mark ends; behind the text by one if there is none
    pure integer function mark_end(text, first, mark)
       character(len=*), intent(in) :: text
-      !> Where to begin
-      integer, intent(in) :: first
-      !> The mark
-      character(len=*), intent(in) :: mark
+      integer, intent(in) :: first          !! Where to begin
+      character(len=*), intent(in) :: mark  !! The mark
 
       mark_end = index(text(first:), mark)
       if (mark_end > 0) then
@@ -234,8 +229,7 @@ contains
 
    !> How often a character occurs in a text
    pure integer function count_of(letter, text)
-      !> The character
-      character(len=1), intent(in) :: letter
+      character(len=1), intent(in) :: letter  !! The character
       character(len=*), intent(in) :: text
       integer :: i
 

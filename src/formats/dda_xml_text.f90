@@ -10,10 +10,8 @@ contains
 
    !> First lines of a file for ParaView
    pure function file_head(kind) result(text)
-      !> What the file holds, in VTK's word
-      character(len=*), intent(in) :: kind
-      !> The lines; the element VTKFile is left open
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: kind   !! What the file holds, in VTK's word
+      character(len=:), allocatable :: text  !! The lines; the element VTKFile is left open
 
       text = "<?xml version=""1.0""?>"//new_line("a")//"<VTKFile"//attribute("type", kind) &
          & //attribute("version", "1.0")//attribute("byte_order", byte_order()) &

@@ -69,8 +69,7 @@ contains
    !> The first element inside another that is read; 0 if there is none
    pure integer function first_child(tree, at)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the outer element
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of the outer element
 
       first_child = first_read(tree, at + 1, tree%element(at)%last)
    end function first_child
@@ -90,10 +89,8 @@ contains
    !> The first of some neighbours that is read; 0 if there is none
    pure integer function first_read(tree, first, last)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the first neighbour
-      integer, intent(in) :: first
-      !> Place where the last one ends
-      integer, intent(in) :: last
+      integer, intent(in) :: first  !! Place of the first neighbour
+      integer, intent(in) :: last   !! Place where the last one ends
 
       first_read = first
       do while (first_read <= last)
@@ -107,8 +104,7 @@ contains
    pure integer function find_child(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> The name
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! The name
 
       find_child = first_child(tree, at)
       do while (find_child > 0)
@@ -136,8 +132,7 @@ contains
    pure integer function attribute_place(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the attribute
       integer :: i
 
       attribute_place = 0
@@ -164,13 +159,10 @@ contains
 
    !> A tree without elements
    pure subroutine new_xml_builder(text, file, builder, error)
-      !> The file's text
-      character(len=*), intent(in) :: text
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: file              !! Name of the file
       type(xml_builder_t), intent(out) :: builder
-      !> What is refused before it is parsed
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What is refused before it is parsed
 
       builder%tree%file = file
       allocate (builder%tree%element(16))
@@ -213,8 +205,7 @@ contains
    !> Line of the tag that was read last
    pure integer function tag_row(builder, side)
       type(xml_builder_t), intent(in) :: builder
-      !> 1 for its beginning, 2 for its end
-      integer, intent(in) :: side
+      integer, intent(in) :: side  !! 1 for its beginning, 2 for its end
 
       tag_row = 1
       if (builder%n_tags > 0) tag_row = builder%tags%row(side, min(builder%n_tags, builder%tags%n))
@@ -272,8 +263,7 @@ contains
 
    !> Move an element without copying its texts
    pure subroutine move_element(from, to)
-      !> The element; its parts go
-      type(xml_element_t), intent(inout) :: from
+      type(xml_element_t), intent(inout) :: from  !! The element; its parts go
       type(xml_element_t), intent(inout) :: to
 
       call move_alloc(from%name, to%name)

@@ -131,11 +131,9 @@ contains
    !> The least value of the boxes that overlap or touch another one, of which it is the first guess
    pure subroutine least_nearby(tree, least, low, high, value)
       type(box_tree_t), intent(in) :: tree
-      !> Least value below each node: (2*n_leaf - 1)
-      real(wp), intent(in) :: least(:)
+      real(wp), intent(in) :: least(:)  !! Least value below each node: (2*n_leaf - 1)
       real(wp), intent(in) :: low(2), high(2)
-      !> The guess in, the least of all out
-      real(wp), intent(inout) :: value
+      real(wp), intent(inout) :: value  !! The guess in, the least of all out
       integer :: stack(max_levels), top, node
 
       top = 1
@@ -157,10 +155,8 @@ contains
    !> Least value of the boxes below each node; huge where there is none
    pure subroutine least_values(tree, value, least)
       type(box_tree_t), intent(in) :: tree
-      !> Value of each box: (n)
-      real(wp), intent(in) :: value(:)
-      !> The least values: (2*n_leaf - 1)
-      real(wp), allocatable, intent(out) :: least(:)
+      real(wp), intent(in) :: value(:)                !! Value of each box: (n)
+      real(wp), allocatable, intent(out) :: least(:)  !! The least values: (2*n_leaf - 1)
       integer :: i
 
       allocate (least(2*tree%n_leaf - 1), source=huge(1.0_wp))
@@ -175,10 +171,8 @@ contains
    !> Boxes that a segment meets, or a point where both its ends are one, in rising order
    pure function boxes_along(tree, segment) result(box)
       type(box_tree_t), intent(in) :: tree
-      !> Ends of the segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
-      !> Numbers of the boxes: (n)
-      integer, allocatable :: box(:)
+      real(wp), intent(in) :: segment(4)  !! Ends of the segment: (4) [m]
+      integer, allocatable :: box(:)      !! Numbers of the boxes: (n)
       integer, allocatable :: found(:)
       integer :: n
 
@@ -192,10 +186,8 @@ contains
    !> Distance of a point from the box of a node; huge if it has none [m]
    pure real(wp) function box_distance(tree, node, point)
       type(box_tree_t), intent(in) :: tree
-      !> Number of the node
-      integer, intent(in) :: node
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      integer, intent(in) :: node       !! Number of the node
+      real(wp), intent(in) :: point(2)  !! The point: (2) [m]
 
       box_distance = huge(box_distance)
       if (tree%last(node) > 0) box_distance = &
@@ -217,8 +209,7 @@ contains
 
    !> A tree of boxes: each node is cut in two across its longer side, as many boxes on either side
    pure subroutine new_box_tree(low, high, tree)
-      !> Lower left corners: (2, n), n >= 1 [m]
-      real(wp), intent(in) :: low(:, :)
+      real(wp), intent(in) :: low(:, :)  !! Lower left corners: (2, n), n >= 1 [m]
       real(wp), intent(in) :: high(:, :)
       type(box_tree_t), intent(out) :: tree
       real(wp), allocatable :: centre(:, :)
@@ -252,10 +243,8 @@ contains
    !> Largest number of a box below each node, of the boxes that count; 0 if there is none
    pure subroutine last_numbers(tree, counts, last)
       type(box_tree_t), intent(in) :: tree
-      !> Which boxes count: (n)
-      logical, intent(in) :: counts(:)
-      !> The numbers: (2*n_leaf - 1)
-      integer, allocatable, intent(out) :: last(:)
+      logical, intent(in) :: counts(:)              !! Which boxes count: (n)
+      integer, allocatable, intent(out) :: last(:)  !! The numbers: (2*n_leaf - 1)
       integer :: i
 
       allocate (last(2*tree%n_leaf - 1), source=0)
@@ -294,13 +283,10 @@ contains
    !> Bring the boxes with the smaller coordinates to the front (Hoare 1961). Boxes come in all
    !> kinds of orders: a place drawn by lot is as good in each of them
    pure subroutine part_at(centre, item, axis, n)
-      !> Centres of the boxes: (2, :) [m]
-      real(wp), intent(inout) :: centre(:, :)
+      real(wp), intent(inout) :: centre(:, :)  !! Centres of the boxes: (2, :) [m]
       integer, intent(inout) :: item(:)
-      !> Which coordinate counts
-      integer, intent(in) :: axis
-      !> How many come to the front
-      integer, intent(in) :: n
+      integer, intent(in) :: axis              !! Which coordinate counts
+      integer, intent(in) :: n                 !! How many come to the front
       real(wp) :: middle
       integer(int64) :: lot
       integer :: first, last, i, j

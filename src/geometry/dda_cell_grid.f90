@@ -32,10 +32,8 @@ contains
    !> A grid of about as many cells as there are segments; a single cell where more would mean more
    !> pairs of neighbours
    pure subroutine new_cell_grid(segment, margin, grid)
-      !> Ends x1, y1, x2, y2: (4, n) [m]
-      real(wp), intent(in) :: segment(:, :)
-      !> A segment also belongs to cells closer than this [m]
-      real(wp), intent(in) :: margin
+      real(wp), intent(in) :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]
+      real(wp), intent(in) :: margin         !! A segment also belongs to cells closer than this [m]
       type(cell_grid_t), intent(out) :: grid
       real(wp) :: box(2, 2), side(2), span
       integer(int64) :: n, pairs, entries
@@ -66,8 +64,7 @@ contains
    !> Number of the cell that holds a point; the nearest one for points outside
    pure integer function cell_of(grid, point)
       type(cell_grid_t), intent(in) :: grid
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: point(2)  !! The point: (2) [m]
       integer :: at(2)
 
       at = place_of(grid, point)
@@ -78,8 +75,7 @@ contains
    pure function place_of(grid, point) result(at)
       type(cell_grid_t), intent(in) :: grid
       real(wp), intent(in) :: point(2)
-      !> Column and row: (2)
-      integer :: at(2)
+      integer :: at(2)  !! Column and row: (2)
 
       at = 1 + int(max(0.0_wp, min((point - grid%corner)/grid%width, real(grid%n - 1, wp))))
    end function place_of
@@ -87,10 +83,8 @@ contains
    !> The box around all segments
    pure subroutine bounding_box(segment, margin, box)
       real(wp), intent(in) :: segment(:, :)
-      !> Room around them [m]
-      real(wp), intent(in) :: margin
-      !> Lower left and upper right corner: (2, 2) [m]
-      real(wp), intent(out) :: box(2, 2)
+      real(wp), intent(in) :: margin      !! Room around them [m]
+      real(wp), intent(out) :: box(2, 2)  !! Lower left and upper right corner: (2, 2) [m]
       integer :: i
 
       box = 0.0_wp
@@ -103,14 +97,11 @@ contains
 
    !> Columns of a segment
    pure subroutine column_range(segment, margin, grid, from, to)
-      !> Ends: (4) [m]
-      real(wp), intent(in) :: segment(4)
+      real(wp), intent(in) :: segment(4)  !! Ends: (4) [m]
       real(wp), intent(in) :: margin
       type(cell_grid_t), intent(in) :: grid
-      !> First column
-      integer, intent(out) :: from
-      !> Last column
-      integer, intent(out) :: to
+      integer, intent(out) :: from        !! First column
+      integer, intent(out) :: to          !! Last column
       integer :: at(2)
 
       at = place_of(grid, [min(segment(1), segment(3)) - margin, segment(2)])
@@ -123,12 +114,9 @@ contains
    pure subroutine row_range(segment, margin, grid, column, from, to)
       real(wp), intent(in) :: segment(4), margin
       type(cell_grid_t), intent(in) :: grid
-      !> The column
-      integer, intent(in) :: column
-      !> First row
-      integer, intent(out) :: from
-      !> Last row
-      integer, intent(out) :: to
+      integer, intent(in) :: column  !! The column
+      integer, intent(out) :: from   !! First row
+      integer, intent(out) :: to     !! Last row
       real(wp) :: left, room, y(2), slope
       integer :: at(2)
 
@@ -151,8 +139,7 @@ contains
    pure subroutine count_cells(segment, margin, grid, entries)
       real(wp), intent(in) :: segment(:, :), margin
       type(cell_grid_t), intent(inout) :: grid
-      !> Number of all entries
-      integer(int64), intent(out) :: entries
+      integer(int64), intent(out) :: entries  !! Number of all entries
       integer :: i, column, row, from, to, low, high, cell
 
       if (allocated(grid%first)) deallocate (grid%first)

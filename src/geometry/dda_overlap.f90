@@ -59,11 +59,9 @@ contains
 
    !> Box around a polygon
    pure function box_of(vertex, tree) result(box)
-      !> Its corners: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
       type(box_tree_t), intent(in), optional :: tree
-      !> Lower left and upper right corner: (2, 2) [m]
-      real(wp) :: box(2, 2)
+      real(wp) :: box(2, 2)                 !! Lower left and upper right corner: (2, 2) [m]
 
       if (has_tree(tree)) then
          box(:, 1) = tree%low(:, 1)
@@ -77,10 +75,8 @@ contains
    !> Whether the line of an edge of one polygon parts it from another: each then lies on its side,
    !> but for a strip that is no wider than the tolerance
    pure logical function are_apart(one, other, tolerance)
-      !> Corners of the one: (2, n) [m]
-      real(wp), intent(in) :: one(:, :)
-      !> Corners of the other: (2, m) [m]
-      real(wp), intent(in) :: other(:, :)
+      real(wp), intent(in) :: one(:, :)    !! Corners of the one: (2, n) [m]
+      real(wp), intent(in) :: other(:, :)  !! Corners of the other: (2, m) [m]
       real(wp), intent(in) :: tolerance
       real(wp) :: ends(4), normal(2), top, bottom
       integer :: e, i

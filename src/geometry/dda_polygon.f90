@@ -20,10 +20,8 @@ contains
 
    !> Whether a point lies in a polygon: its boundary winds around the point
    pure logical function contains_point(vertex, point)
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners in order: (2, n) [m]
+      real(wp), intent(in) :: point(2)      !! The point: (2) [m]
       real(wp) :: a(2), b(2), side
       integer :: i, turns
 
@@ -50,8 +48,7 @@ contains
 
    !> How deep a point lies inside a polygon, negative outside [m]
    pure real(wp) function depth_in(vertex, point, tree)
-      !> Corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: point(2)
       type(box_tree_t), intent(in), optional :: tree
       real(wp) :: distance
@@ -67,8 +64,7 @@ contains
 
    !> Whether a polygon has a tree of its edges
    pure logical function has_tree(tree)
-      !> The tree, made or not, or none
-      type(box_tree_t), intent(in), optional :: tree
+      type(box_tree_t), intent(in), optional :: tree  !! The tree, made or not, or none
 
       has_tree = present(tree)
       if (has_tree) has_tree = allocated(tree%box)
@@ -87,10 +83,8 @@ contains
    !> Ends of an edge
    pure function edge_ends(vertex, edge) result(ends)
       real(wp), intent(in) :: vertex(:, :)
-      !> Number of the edge, that of the corner where it starts
-      integer, intent(in) :: edge
-      !> The ends: (4) [m]
-      real(wp) :: ends(4)
+      integer, intent(in) :: edge  !! Number of the edge, that of the corner where it starts
+      real(wp) :: ends(4)          !! The ends: (4) [m]
       integer :: next
 
       next = edge + 1
@@ -103,8 +97,7 @@ contains
    pure subroutine nearest_edge(vertex, point, edge, distance)
       real(wp), intent(in) :: vertex(:, :), point(2)
       integer, intent(out) :: edge
-      !> Its distance [m]
-      real(wp), intent(out) :: distance
+      real(wp), intent(out) :: distance  !! Its distance [m]
       real(wp) :: here
       integer :: i
 
@@ -122,8 +115,7 @@ contains
    pure subroutine search_nearest(vertex, point, tree, edge, distance)
       real(wp), intent(in) :: vertex(:, :), point(2)
       type(box_tree_t), intent(in) :: tree
-      !> Number of the nearest
-      integer, intent(out) :: edge
+      integer, intent(out) :: edge  !! Number of the nearest
       real(wp), intent(out) :: distance
       integer :: stack(max_levels), top, node
       real(wp) :: here
@@ -183,13 +175,10 @@ contains
    !> parts that follow one another count as one
    pure function parts_inside(vertex, segment, reach, tree) result(part)
       real(wp), intent(in) :: vertex(:, :)
-      !> Ends of the segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: segment(4)   !! Ends of the segment: (4) [m]
+      real(wp), intent(in) :: reach        !! Distance within which things touch [m]
       type(box_tree_t), intent(in), optional :: tree
-      !> Ends of each part: (2, 2*n_part) [m]
-      real(wp), allocatable :: part(:, :)
+      real(wp), allocatable :: part(:, :)  !! Ends of each part: (2, 2*n_part) [m]
       real(wp), allocatable :: place(:)
       integer, allocatable :: near(:), order(:)
       real(wp) :: point(2, 2), along(2), from, length
@@ -232,10 +221,8 @@ contains
    !> The first two edges of a polygon that cross, or touch where they do not follow one another
    pure subroutine find_crossing(vertex, edge, point)
       real(wp), intent(in) :: vertex(:, :)
-      !> The edges, 0 if none cross: (2)
-      integer, intent(out) :: edge(2)
-      !> Where they cross: (2) [m]
-      real(wp), intent(out) :: point(2)
+      integer, intent(out) :: edge(2)    !! The edges, 0 if none cross: (2)
+      real(wp), intent(out) :: point(2)  !! Where they cross: (2) [m]
       integer, allocatable :: pair(:, :)
       real(wp) :: next(2, size(vertex, 2)), a(2), b(2), area
       integer :: i, k, n
@@ -263,14 +250,10 @@ contains
 
    !> Whether two segments have a point in common
    pure logical function segments_meet(a, b, c, d)
-      !> Start of the first: (2) [m]
-      real(wp), intent(in) :: a(2)
-      !> Its end: (2) [m]
-      real(wp), intent(in) :: b(2)
-      !> Start of the second: (2) [m]
-      real(wp), intent(in) :: c(2)
-      !> Its end: (2) [m]
-      real(wp), intent(in) :: d(2)
+      real(wp), intent(in) :: a(2)  !! Start of the first: (2) [m]
+      real(wp), intent(in) :: b(2)  !! Its end: (2) [m]
+      real(wp), intent(in) :: c(2)  !! Start of the second: (2) [m]
+      real(wp), intent(in) :: d(2)  !! Its end: (2) [m]
       real(wp) :: side(4)
 
       side = [cross(b - a, c - a), cross(b - a, d - a), cross(d - c, a - c), cross(d - c, b - c)]

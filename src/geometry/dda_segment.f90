@@ -14,10 +14,8 @@ contains
 
    !> Distance of a point from a segment
    pure real(wp) function segment_distance(point, segment)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its ends x1, y1, x2, y2: (4) [m]
-      real(wp), intent(in) :: segment(4)
+      real(wp), intent(in) :: point(2)    !! The point: (2) [m]
+      real(wp), intent(in) :: segment(4)  !! Its ends x1, y1, x2, y2: (4) [m]
       real(wp) :: direction(2), arm(2), length, along
 
       direction = segment(3:4) - segment(1:2)
@@ -59,12 +57,9 @@ contains
    !> are; else the crossing. Two points where the segments lie together
    pure subroutine meeting_points(first, second, reach, n, point)
       real(wp), intent(in) :: first(4), second(4)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
-      !> Number of points, 0 to 2
-      integer, intent(out) :: n
-      !> The points: (2, 2) [m]
-      real(wp), intent(out) :: point(2, 2)
+      real(wp), intent(in) :: reach         !! Distance within which things touch [m]
+      integer, intent(out) :: n             !! Number of points, 0 to 2
+      real(wp), intent(out) :: point(2, 2)  !! The points: (2, 2) [m]
       real(wp) :: share(2)
       logical :: crossed
 
@@ -86,8 +81,7 @@ contains
    !> less: upright and level lines keep their coordinates
    pure function crossing_point(first, second, share) result(point)
       real(wp), intent(in) :: first(4), second(4), share(2)
-      !> The point: (2) [m]
-      real(wp) :: point(2)
+      real(wp) :: point(2)  !! The point: (2) [m]
       real(wp) :: a(2), b(2)
 
       a = first(3:4) - first(1:2)
@@ -97,10 +91,8 @@ contains
 
    !> Add the end of a segment to the points in common if it touches the other segment
    pure subroutine add_touching(end_point, segment, reach, n, point)
-      !> The end: (2) [m]
-      real(wp), intent(in) :: end_point(2)
-      !> Ends of the other segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
+      real(wp), intent(in) :: end_point(2)  !! The end: (2) [m]
+      real(wp), intent(in) :: segment(4)    !! Ends of the other segment: (4) [m]
       real(wp), intent(in) :: reach
       integer, intent(inout) :: n
       real(wp), intent(inout) :: point(2, 2)

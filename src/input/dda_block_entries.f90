@@ -54,10 +54,8 @@ contains
    !> What a bar is like
    pure subroutine take_properties(line, first, length, bar, error)
       type(line_t), intent(in) :: line
-      !> Place of the first word
-      integer, intent(in) :: first
-      !> Length of the bar [m]
-      real(wp), intent(in) :: length
+      integer, intent(in) :: first    !! Place of the first word
+      real(wp), intent(in) :: length  !! Length of the bar [m]
       type(bar_t), intent(inout) :: bar
       type(error_t), allocatable, intent(out) :: error
       type(key_t), parameter :: key(6) = [key_t(name="stiffness", above=0.0_wp), &
@@ -229,10 +227,8 @@ contains
    !> The blocks that an entry numbers
    pure subroutine blocks_of(entry, n_block, block, error)
       type(entry_t), intent(in) :: entry
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Their numbers: (n)
-      integer, allocatable, intent(out) :: block(:)
+      integer, intent(in) :: n_block                 !! Number of blocks
+      integer, allocatable, intent(out) :: block(:)  !! Their numbers: (n)
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: ok

@@ -88,8 +88,7 @@ contains
 
    !> An entry that has waited as it was
    pure subroutine take_entry(waiting, entry)
-      !> The entry that has waited; its rows go
-      type(waiting_entry_t), intent(inout) :: waiting
+      type(waiting_entry_t), intent(inout) :: waiting  !! The entry that has waited; its rows go
       type(entry_t), intent(out) :: entry
 
       entry%head%number = waiting%number
@@ -149,10 +148,8 @@ contains
    !> Take the text between two quotes
    pure subroutine take_quoted(text, first, next, line, error)
       character(len=*), intent(in) :: text
-      !> Place of the first quote
-      integer, intent(in) :: first
-      !> Place after the last one
-      integer, intent(out) :: next
+      integer, intent(in) :: first  !! Place of the first quote
+      integer, intent(out) :: next  !! Place after the last one
       type(line_t), intent(inout) :: line
       type(error_t), allocatable, intent(out) :: error
       integer :: length
@@ -243,8 +240,7 @@ contains
 
    !> Words as in a, b or c
    pure function listed(word) result(text)
-      !> The words: (n)
-      character(len=*), intent(in) :: word(:)
+      character(len=*), intent(in) :: word(:)  !! The words: (n)
       character(len=:), allocatable :: text
       integer :: k
 
@@ -292,12 +288,9 @@ contains
    !> Take the words from 'file' on
    pure subroutine take_columns(entry, first, column, scale, error)
       type(entry_t), intent(in) :: entry
-      !> Place of that word
-      integer, intent(in) :: first
-      !> Columns of time, x and y: (3)
-      character(len=word_size), intent(out) :: column(3)
-      !> What the components are multiplied by
-      real(wp), intent(out) :: scale
+      integer, intent(in) :: first                        !! Place of that word
+      character(len=word_size), intent(out) :: column(3)  !! Columns of time, x and y: (3)
+      real(wp), intent(out) :: scale                      !! What the components are multiplied by
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: number(1)
       integer :: i, n

@@ -63,8 +63,7 @@ contains
    !> Put a block behind the others, at rest and free of stress
    pure subroutine put_block(growing, vertex, fixed, material, line)
       type(growing_plan_t), intent(inout) :: growing
-      !> Its corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
       logical, intent(in) :: fixed
       integer, intent(in) :: material, line
 
@@ -122,10 +121,8 @@ contains
    !> Leave out corners that follow one another at the same place
    pure subroutine merge_corners(corner, near, vertex)
       real(wp), intent(in) :: corner(:, :)
-      !> Corners nearer than this are one [m]
-      real(wp), intent(in) :: near
-      !> The corners that are left: (2, m) [m]
-      real(wp), allocatable, intent(out) :: vertex(:, :)
+      real(wp), intent(in) :: near                        !! Corners nearer than this are one [m]
+      real(wp), allocatable, intent(out) :: vertex(:, :)  !! The corners that are left: (2, m) [m]
       logical :: kept(size(corner, 2))
       integer :: i, last
 
@@ -142,8 +139,7 @@ contains
    !> Name of the block that comes next
    pure function next_name(growing) result(name)
       type(growing_plan_t), intent(in) :: growing
-      !> Such as: block 3
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name  !! Such as: block 3
 
       name = "block "//to_text(growing%n_block + 1)
    end function next_name
@@ -272,8 +268,7 @@ contains
 
    !> Area of a polygon [m2]
    pure real(wp) function polygon_area(vertex)
-      !> Corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n) [m]
       type(area_moments_t) :: moments
 
       moments = area_moments(vertex)

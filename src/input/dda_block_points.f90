@@ -20,8 +20,7 @@ submodule (dda_read_blocks) dda_block_points
          type(entry_t), intent(in) :: entry
          type(block_plan_t), intent(inout) :: plan
          type(site_t), intent(in) :: site
-         !> Name of the file, for warnings
-         character(len=*), intent(in) :: file
+         character(len=*), intent(in) :: file  !! Name of the file, for warnings
          type(warnings_t), intent(inout) :: warnings
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_bar
@@ -47,8 +46,7 @@ submodule (dda_read_blocks) dda_block_points
       !> blocks whose centre of gravity lies inside
       pure module subroutine take_change(entry, plan, error)
          type(entry_t), intent(in) :: entry
-         !> Receives a change for each of its blocks
-         type(block_plan_t), intent(inout) :: plan
+         type(block_plan_t), intent(inout) :: plan  !! Receives a change for each of its blocks
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_change
 
@@ -165,8 +163,7 @@ contains
    pure subroutine hold_line(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
-      !> Where the blocks are, and which points hold them
-      type(site_t), intent(inout) :: site
+      type(site_t), intent(inout) :: site  !! Where the blocks are, and which points hold them
       type(error_t), allocatable, intent(out) :: error
       type(held_point_t) :: held
       real(wp), allocatable :: part(:, :)
@@ -261,12 +258,9 @@ contains
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      !> Place of the word after the coordinates
-      integer, intent(out) :: i
-      !> Number of its block
-      integer, intent(out) :: block
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(out) :: point(2)
+      integer, intent(out) :: i          !! Place of the word after the coordinates
+      integer, intent(out) :: block      !! Number of its block
+      real(wp), intent(out) :: point(2)  !! The point, seen from the origin of the plan: (2) [m]
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: shown_point
       logical :: ok
@@ -303,10 +297,8 @@ contains
    !> Warn of a point that lies on several blocks, and name them
    pure subroutine warn_of_rivals(entry, block, rival, file, warnings)
       type(entry_t), intent(in) :: entry
-      !> The block that the point belongs to
-      integer, intent(in) :: block
-      !> The others: (n)
-      integer, intent(in) :: rival(:)
+      integer, intent(in) :: block     !! The block that the point belongs to
+      integer, intent(in) :: rival(:)  !! The others: (n)
       character(len=*), intent(in) :: file
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: others
@@ -326,10 +318,8 @@ contains
    !> Directions in which something is held: both, or the one that is named
    pure subroutine take_directions(entry, i, along, error)
       type(entry_t), intent(in) :: entry
-      !> Place of the word after the numbers
-      integer, intent(in) :: i
-      !> Whether it is held along x and along y: (2)
-      logical, intent(out) :: along(2)
+      integer, intent(in) :: i          !! Place of the word after the numbers
+      logical, intent(out) :: along(2)  !! Whether it is held along x and along y: (2)
       type(error_t), allocatable, intent(out) :: error
 
       along = .true.
@@ -344,10 +334,8 @@ contains
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
       type(entry_t), intent(in) :: entry
-      !> Whether there is one value behind the word
-      logical, intent(in) :: has_value
-      !> That value: (2)
-      real(wp), intent(in) :: value(2)
+      logical, intent(in) :: has_value  !! Whether there is one value behind the word
+      real(wp), intent(in) :: value(2)  !! That value: (2)
       type(history_t), intent(out) :: history
       type(error_t), allocatable, intent(out) :: error
       integer :: n

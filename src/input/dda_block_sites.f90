@@ -90,15 +90,11 @@ contains
    !> Whether a way is ever off the mixture of others; all are linear between their times
    pure logical function far_from(held, other, share, more, axis, tolerance)
       type(held_point_t), intent(in) :: held(:)
-      !> Numbers of the others: (m)
-      integer, intent(in) :: other(:)
-      !> Their shares: (m)
-      real(wp), intent(in) :: share(:)
+      integer, intent(in) :: other(:)    !! Numbers of the others: (m)
+      real(wp), intent(in) :: share(:)   !! Their shares: (m)
       type(held_point_t), intent(in) :: more
-      !> Direction, 1 or 2 for x or y
-      integer, intent(in) :: axis
-      !> How far off it may be [m]
-      real(wp), intent(in) :: tolerance
+      integer, intent(in) :: axis        !! Direction, 1 or 2 for x or y
+      real(wp), intent(in) :: tolerance  !! How far off it may be [m]
       real(wp), allocatable :: time(:)
       real(wp) :: way(2), off
       integer :: i, k
@@ -123,8 +119,7 @@ contains
    !> Times of a history; none if nothing is given
    pure function times_of(history) result(time)
       type(history_t), intent(in) :: history
-      !> The times: (n) [s]
-      real(wp), allocatable :: time(:)
+      real(wp), allocatable :: time(:)  !! The times: (n) [s]
 
       allocate (time(0))
       if (allocated(history%time)) time = history%time
@@ -163,8 +158,7 @@ contains
    pure integer function block_at(plan, site, point)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: point(2)  !! The point, seen from the origin of the plan: (2) [m]
       real(wp) :: deepest, depth
       integer, allocatable :: near(:)
       integer :: i
@@ -185,10 +179,8 @@ contains
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
       real(wp), intent(in) :: point(2)
-      !> The block, which holds it
-      integer, intent(in) :: block
-      !> The others: (n)
-      integer, allocatable :: rival(:)
+      integer, intent(in) :: block      !! The block, which holds it
+      integer, allocatable :: rival(:)  !! The others: (n)
       integer, allocatable :: near(:)
       real(wp) :: depth, margin
       integer :: i, n
@@ -211,8 +203,7 @@ contains
    pure logical function holds_point(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      !> Number of the block
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the block
       real(wp), intent(in) :: point(2)
 
       holds_point = depth_of(plan, site, block, point) >= -rounded*site%size_of(block)
@@ -232,10 +223,8 @@ contains
    !> Blocks that a segment may meet
    pure function blocks_along(site, segment) result(block)
       type(site_t), intent(in) :: site
-      !> Its ends, seen from the origin of the plan: (4) [m]
-      real(wp), intent(in) :: segment(4)
-      !> Their numbers, rising: (n)
-      integer, allocatable :: block(:)
+      real(wp), intent(in) :: segment(4)  !! Its ends, seen from the origin of the plan: (4) [m]
+      integer, allocatable :: block(:)    !! Their numbers, rising: (n)
 
       allocate (block, source=boxes_along(site%tree, segment))
    end function blocks_along
@@ -277,8 +266,7 @@ contains
    pure function held_before(site, block) result(list)
       type(site_t), intent(in) :: site
       integer, intent(in) :: block
-      !> Their numbers: (n)
-      integer, allocatable :: list(:)
+      integer, allocatable :: list(:)  !! Their numbers: (n)
       integer :: i, n
 
       n = 0
@@ -298,10 +286,8 @@ contains
    !> Give the list of held points another length; gfortran's array constructors would lose the
    !> memory of histories
    pure subroutine close_held(n, list)
-      !> The length
-      integer, intent(in) :: n
-      !> The list
-      type(held_point_t), allocatable, intent(inout) :: list(:)
+      integer, intent(in) :: n                                   !! The length
+      type(held_point_t), allocatable, intent(inout) :: list(:)  !! The list
       type(held_point_t), allocatable :: other(:)
       integer :: i
 

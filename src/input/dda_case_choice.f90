@@ -44,12 +44,9 @@ contains
    !> Read a number, or two with a dash between
    pure subroutine read_range(text, low, high, ok)
       character(len=*), intent(in) :: text
-      !> First number
-      integer, intent(out) :: low
-      !> Last number
-      integer, intent(out) :: high
-      !> Whether the text is that
-      logical, intent(out) :: ok
+      integer, intent(out) :: low   !! First number
+      integer, intent(out) :: high  !! Last number
+      logical, intent(out) :: ok    !! Whether the text is that
       integer :: dash
 
       dash = index(text, "-")

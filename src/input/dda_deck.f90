@@ -123,8 +123,7 @@ contains
    !> than a circular ring of voussoirs, which are a shape
    pure function scene_kind(deck) result(kind)
       type(deck_t), intent(in) :: deck
-      !> arch, shape, lines or blocks
-      character(len=word_length) :: kind
+      character(len=word_length) :: kind  !! arch, shape, lines or blocks
       character(len=word_length) :: name
       logical :: shaped
 
@@ -147,8 +146,7 @@ contains
    !> Geometry of a case; in the mode of the original blocks always move
    pure function geometry_of(deck) result(word)
       type(deck_t), intent(in) :: deck
-      !> reference or current
-      character(len=word_length) :: word
+      character(len=word_length) :: word  !! reference or current
 
       word = deck%analysis%geometry%word
       if (deck%analysis%mode%word == "limerick" &
@@ -158,8 +156,7 @@ contains
    !> Where a key was given, or else its group: line 0 if neither was given
    pure type(deck_place_t) function place_of(deck, key) result(place)
       type(deck_t), intent(in) :: deck
-      !> Place of the key in the registry
-      integer, intent(in) :: key
+      integer, intent(in) :: key  !! Place of the key in the registry
 
       place = deck%value(key)%place
       if (place%line == 0) place = deck%group(group_index(deck_key(key)%group))
@@ -168,8 +165,7 @@ contains
    !> Make an error that names the deck and the line, or --set and its number
    pure subroutine deck_error(error, message, deck, place)
       type(error_t), allocatable, intent(out) :: error
-      !> What was wanted and what was found
-      character(len=*), intent(in) :: message
+      character(len=*), intent(in) :: message  !! What was wanted and what was found
       type(deck_t), intent(in) :: deck
       type(deck_place_t), intent(in) :: place
 
@@ -182,8 +178,7 @@ contains
 
    !> Remember what a file that a deck names holds
    pure subroutine add_file_mark(mark, deck)
-      !> Mark of the file
-      character(len=*), intent(in) :: mark
+      character(len=*), intent(in) :: mark  !! Mark of the file
       type(deck_t), intent(inout) :: deck
 
       if (.not. allocated(deck%file_marks)) deck%file_marks = ""
@@ -193,10 +188,8 @@ contains
    !> Name of a file that a deck names: beside the deck unless it begins with a slash
    pure function file_beside(deck, name) result(path)
       type(deck_t), intent(in) :: deck
-      !> The name in the deck
-      character(len=*), intent(in) :: name
-      !> The name for all
-      character(len=:), allocatable :: path
+      character(len=*), intent(in) :: name   !! The name in the deck
+      character(len=:), allocatable :: path  !! The name for all
 
       path = name
       if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path

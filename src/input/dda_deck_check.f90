@@ -36,10 +36,8 @@ contains
 
    !> Read one of them, unless it is there already
    subroutine add_record(name, place, deck, error)
-      !> Its name in the deck
-      character(len=*), intent(in) :: name
-      !> Where the deck names it
-      type(deck_place_t), intent(in) :: place
+      character(len=*), intent(in) :: name     !! Its name in the deck
+      type(deck_place_t), intent(in) :: place  !! Where the deck names it
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: mark, message
@@ -74,8 +72,7 @@ contains
    !> Part ground%columns into the columns of time, x and y
    pure subroutine split_columns(deck, column, error)
       type(deck_t), intent(in) :: deck
-      !> The columns; 0 for none: (3)
-      character(len=column_size), intent(out) :: column(3)
+      character(len=column_size), intent(out) :: column(3)  !! The columns; 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       integer :: blank, n
@@ -207,8 +204,7 @@ contains
    !> Check one sweep against those before it and against the search
    pure subroutine check_sweep(deck, s, error)
       type(deck_t), intent(in) :: deck
-      !> Number of the sweep
-      integer, intent(in) :: s
+      integer, intent(in) :: s  !! Number of the sweep
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name, problem
       integer :: other
@@ -256,8 +252,7 @@ contains
    pure subroutine check_varied(deck, parameter, how, place, error)
       type(deck_t), intent(in) :: deck
       type(parameter_t), intent(in) :: parameter
-      !> swept or searched
-      character(len=*), intent(in) :: how
+      character(len=*), intent(in) :: how  !! swept or searched
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: why
@@ -310,8 +305,7 @@ contains
    !> Whether a key is given or varied
    pure logical function is_known(deck, group, name)
       type(deck_t), intent(in) :: deck
-      !> Names of its group and of itself
-      character(len=*), intent(in) :: group, name
+      character(len=*), intent(in) :: group, name  !! Names of its group and of itself
 
       is_known = deck%value(key_index(group, name))%given .or. is_swept(deck, group, name) &
          .or. deck%searched%key == key_index(group, name)

@@ -24,8 +24,7 @@ contains
    !> Check what the keys of one case must be to one another
    pure subroutine check_case(deck, error)
       type(deck_t), intent(in) :: deck
-      !> The first thing that is wrong
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! The first thing that is wrong
 
       call check_model(deck, error)
       if (.not. allocated(error)) call check_use(deck, error)
@@ -55,8 +54,7 @@ contains
    !> Check that there is such a model, and that the parameter can be searched in it
    pure subroutine check_model(deck, error)
       type(deck_t), intent(in) :: deck
-      !> What the table of models does not have
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What the table of models does not have
       character(len=:), allocatable :: mode, kind, problem
 
       mode = trim(deck%analysis%mode%word)
@@ -223,10 +221,8 @@ contains
    !> Where the later one of two keys of &arch was given; a --set is later than the deck
    pure type(deck_place_t) function later(deck, a, b) result(place)
       type(deck_t), intent(in) :: deck
-      !> Name of the first key
-      character(len=*), intent(in) :: a
-      !> Name of the second key
-      character(len=*), intent(in) :: b
+      character(len=*), intent(in) :: a  !! Name of the first key
+      character(len=*), intent(in) :: b  !! Name of the second key
       type(deck_place_t) :: other
       logical :: other_is_later
 
@@ -262,8 +258,7 @@ contains
    !> Check that the parameter can take one end of the search
    pure subroutine check_end(deck, name, error)
       type(deck_t), intent(in) :: deck
-      !> low or high
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! low or high
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
@@ -282,8 +277,7 @@ contains
    !> Check the shape of an arch at one end of the search
    pure subroutine check_end_shape(deck, number, place, error)
       type(deck_t), intent(in) :: deck
-      !> The end
-      real(wp), intent(in) :: number
+      real(wp), intent(in) :: number  !! The end
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: trial
@@ -296,10 +290,8 @@ contains
    !> Where the search for a parameter begins and ends
    pure subroutine search_bracket(deck, low, high)
       type(deck_t), intent(in) :: deck
-      !> Lower end; -huge if there is none
-      real(wp), intent(out) :: low
-      !> Upper end; huge if there is none
-      real(wp), intent(out) :: high
+      real(wp), intent(out) :: low   !! Lower end; -huge if there is none
+      real(wp), intent(out) :: high  !! Upper end; huge if there is none
 
       low = deck_key(deck%searched%key)%search_low
       high = deck_key(deck%searched%key)%search_high

@@ -61,8 +61,7 @@ contains
    !> Whether a key of &ground is given, or searched
    pure logical function gives(deck, name)
       type(deck_t), intent(in) :: deck
-      !> Name of the key
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the key
       integer :: key
 
       key = key_index("ground", name)
@@ -317,8 +316,7 @@ contains
    !> Group of what is searched; empty if nothing is
    pure function group_of(deck) result(group)
       type(deck_t), intent(in) :: deck
-      !> Name of the group
-      character(len=len(deck_key%group)) :: group
+      character(len=len(deck_key%group)) :: group  !! Name of the group
 
       group = ""
       if (deck%searched%key > 0) group = deck_key(deck%searched%key)%group
@@ -335,8 +333,7 @@ contains
    !> Check that limit analysis decides blocks that may be crushed: nothing else knows it
    pure subroutine check_strength(deck, error)
       type(deck_t), intent(in) :: deck
-      !> What it cannot be beside
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What it cannot be beside
       character(len=*), parameter :: needs = "material%compressive_strength needs "
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place

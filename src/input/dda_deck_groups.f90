@@ -45,10 +45,8 @@ contains
    !> Read one key and its values
    pure subroutine read_entry(scan, i, group, deck, error)
       type(deck_scan_t), intent(in) :: scan
-      !> Token of the key; then the token after its values
-      integer, intent(inout) :: i
-      !> Name of the group
-      character(len=*), intent(in) :: group
+      integer, intent(inout) :: i            !! Token of the key; then the token after its values
+      character(len=*), intent(in) :: group  !! Name of the group
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
       type(deck_place_t) :: place
@@ -78,8 +76,7 @@ contains
    !> Whether a token stands for a value, be it an empty one
    pure logical function is_value(scan, i)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the token
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of the token
 
       is_value = any(scan%token(i)%kind == [token_kind%word, token_kind%quoted, token_kind%nothing])
    end function is_value
@@ -87,12 +84,10 @@ contains
    !> Find a key of a known group
    pure subroutine find_key(group, name, deck, place, key, error)
       character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the key
       type(deck_t), intent(in) :: deck
       type(deck_place_t), intent(in) :: place
-      !> Place in the registry
-      integer, intent(out) :: key
+      integer, intent(out) :: key           !! Place in the registry
       type(error_t), allocatable, intent(out) :: error
       integer :: open
 
@@ -136,8 +131,7 @@ contains
 
    !> Whether a text holds control characters
    pure logical function has_control(text)
-      !> Any text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Any text
       integer :: i
 
       has_control = any([(ichar(text(i:i)) < 32 .or. ichar(text(i:i)) == 127, i=1, len(text))])
@@ -254,12 +248,9 @@ contains
    !> What a token is instead of a value of a key
    pure function mismatch(scan, i, key) result(found)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the token
-      integer, intent(in) :: i
-      !> Place of the key in the registry
-      integer, intent(in) :: key
-      !> What was found; empty if the token will do
-      character(len=:), allocatable :: found
+      integer, intent(in) :: i                !! Place of the token
+      integer, intent(in) :: key              !! Place of the key in the registry
+      character(len=:), allocatable :: found  !! What was found; empty if the token will do
       logical :: fits, needs_quotes, is_word
       integer :: whole
       real(wp) :: number
@@ -289,12 +280,9 @@ contains
    !> Why there may be a second value where one was wanted
    pure function hint(scan, i, group) result(text)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the second value
-      integer, intent(in) :: i
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> A guess in parentheses; empty if there is none
-      character(len=:), allocatable :: text
+      integer, intent(in) :: i               !! Place of the second value
+      character(len=*), intent(in) :: group  !! Name of the group
+      character(len=:), allocatable :: text  !! A guess in parentheses; empty if there is none
       character(len=:), allocatable :: name
 
       text = ""
@@ -310,8 +298,7 @@ contains
    !> Where a token stands
    pure type(deck_place_t) function place_at(scan, i, place)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the token; past the end if there is none
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of the token; past the end if there is none
       type(deck_place_t), intent(in) :: place
 
       place_at = place
@@ -323,8 +310,7 @@ contains
    !> Number that a token stands for
    pure real(wp) function number_at(scan, i)
       type(deck_scan_t), intent(in) :: scan
-      !> Place of a token that is a number
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of a token that is a number
       logical :: unused
 
       call read_number(token_text(scan, i), number_at, unused)
@@ -334,8 +320,7 @@ contains
    pure function all_numbers(scan, first, last) result(numbers)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first, last
-      !> The numbers: (n)
-      real(wp), allocatable :: numbers(:)
+      real(wp), allocatable :: numbers(:)  !! The numbers: (n)
       integer :: i, n
 
       allocate (numbers(sum(scan%token(first:last)%count)))
@@ -350,8 +335,7 @@ contains
    pure function all_texts(scan, first, last) result(texts)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first, last
-      !> The words: (n)
-      character(len=word_length), allocatable :: texts(:)
+      character(len=word_length), allocatable :: texts(:)  !! The words: (n)
       integer :: i, n
 
       allocate (texts(sum(scan%token(first:last)%count)))

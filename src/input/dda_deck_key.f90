@@ -76,8 +76,7 @@ contains
    !> Whether a number is one that a key takes
    elemental logical function in_range(key, number)
       type(key_t), intent(in) :: key
-      !> The number in the unit of the key
-      real(wp), intent(in) :: number
+      real(wp), intent(in) :: number  !! The number in the unit of the key
 
       in_range = number >= key%at_least .and. number <= key%at_most .and. number > key%above &
          & .and. number < key%below

@@ -338,10 +338,8 @@ contains
 
    !> Place of a key in the registry: place in deck_key, counted from 1; 0 if there is no such key
    pure integer function key_index(group, name)
-      !> Name of the group, lower case
-      character(len=*), intent(in) :: group
-      !> Name of the key, lower case
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: group  !! Name of the group, lower case
+      character(len=*), intent(in) :: name   !! Name of the key, lower case
       integer :: before, g
 
       key_index = 0
@@ -359,8 +357,7 @@ contains
    !> Place of a group in the registry: place in deck_group, counted from 1; 0 if there is no such
    !> group
    pure integer function group_index(name)
-      !> Name of the group, lower case
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the group, lower case
 
       do group_index = size(deck_group), 1, -1
          if (deck_group(group_index)%name(1:1) /= name(1:1)) cycle

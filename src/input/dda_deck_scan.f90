@@ -46,8 +46,7 @@ contains
 
    !> Cut the value of a --set into tokens: one value, or several parted by commas or blanks
    pure subroutine scan_values(text, scan, error)
-      !> Text after the equals sign
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Text after the equals sign
       type(deck_scan_t), intent(out) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: i
@@ -117,10 +116,8 @@ contains
 
    !> End the open group
    pure subroutine close_group(scan, width, error)
-      !> Scanner at the end of a group
-      type(deck_scan_t), intent(inout) :: scan
-      !> Number of characters of the end
-      integer, intent(in) :: width
+      type(deck_scan_t), intent(inout) :: scan  !! Scanner at the end of a group
+      integer, intent(in) :: width              !! Number of characters of the end
       type(error_t), allocatable, intent(out) :: error
 
       call add_token(scan, token_kind%close, scan%position, scan%position, 1, error)
@@ -162,8 +159,7 @@ contains
    !> Scan a text in quotes
    pure subroutine scan_quoted(scan, count, error)
       type(deck_scan_t), intent(inout) :: scan
-      !> Repeat count
-      integer, intent(in) :: count
+      integer, intent(in) :: count  !! Repeat count
       type(error_t), allocatable, intent(out) :: error
       character(len=1) :: quote
       integer :: first, last
@@ -226,10 +222,8 @@ contains
    !> Read the repeat count r of r*c
    pure subroutine repeat_count(scan, first, star, count, error)
       type(deck_scan_t), intent(in) :: scan
-      !> First character of the word
-      integer, intent(in) :: first
-      !> Place of the star in the word
-      integer, intent(in) :: star
+      integer, intent(in) :: first  !! First character of the word
+      integer, intent(in) :: star   !! Place of the star in the word
       integer, intent(out) :: count
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
@@ -244,10 +238,8 @@ contains
 
    !> The error of a group without its slash
    pure subroutine not_closed(scan, found, error)
-      !> Scanner where the end was missed
-      type(deck_scan_t), intent(in) :: scan
-      !> What was found instead of the slash
-      character(len=*), intent(in) :: found
+      type(deck_scan_t), intent(in) :: scan  !! Scanner where the end was missed
+      character(len=*), intent(in) :: found  !! What was found instead of the slash
       type(error_t), allocatable, intent(out) :: error
 
       if (scan%open_group == 0) then

@@ -65,10 +65,8 @@ contains
    !> Put a list of numbers into a key
    pure subroutine put_numbers(deck, key, values, place, error)
       type(deck_t), intent(inout) :: deck
-      !> Place of the key in the registry
-      integer, intent(in) :: key
-      !> The numbers in the unit of the registry: (n)
-      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: key         !! Place of the key in the registry
+      real(wp), intent(in) :: values(:)  !! The numbers in the unit of the registry: (n)
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
@@ -169,10 +167,8 @@ contains
 
    !> Whether a list of words holds a word, whatever its case
    pure logical function has_word(words, text)
-      !> Words parted by one blank
-      character(len=*), intent(in) :: words
-      !> The word
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=*), intent(in) :: text   !! The word
 
       has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
       if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
@@ -181,10 +177,8 @@ contains
    !> Read .true., .false., T, F and what is like them
    pure subroutine read_flag(text, flag, ok)
       character(len=*), intent(in) :: text
-      !> The flag; left as it was if the text is none
-      logical, intent(inout) :: flag
-      !> Whether the text is a flag
-      logical, intent(out) :: ok
+      logical, intent(inout) :: flag  !! The flag; left as it was if the text is none
+      logical, intent(out) :: ok      !! Whether the text is a flag
 
       ok = .true.
       select case (lower_case(text))

@@ -68,8 +68,7 @@ contains
 
    !> Append a sweep to a list of sweeps
    pure subroutine append(list, sweep)
-      !> The list: (n), then (n + 1)
-      type(deck_sweep_t), allocatable, intent(inout) :: list(:)
+      type(deck_sweep_t), allocatable, intent(inout) :: list(:)  !! The list: (n), then (n + 1)
       type(deck_sweep_t), intent(in) :: sweep
       type(deck_sweep_t), allocatable :: longer(:)
       integer :: n
@@ -214,10 +213,8 @@ contains
    !> Which value each sweep has in a case
    pure function positions(deck, number) result(position)
       type(deck_t), intent(in) :: deck
-      !> Number of the case, from 1 to n_cases
-      integer, intent(in) :: number
-      !> Place of the value in each sweep: (n)
-      integer :: position(size(deck%sweeps))
+      integer, intent(in) :: number           !! Number of the case, from 1 to n_cases
+      integer :: position(size(deck%sweeps))  !! Place of the value in each sweep: (n)
       integer :: s, rest
 
       rest = number - 1
@@ -233,8 +230,7 @@ contains
 
    !> Put the swept values of a case into a deck
    pure subroutine put_case(swept, number, deck, error)
-      !> A deck with the sweeps
-      type(deck_t), intent(in) :: swept
+      type(deck_t), intent(in) :: swept  !! A deck with the sweeps
       integer, intent(in) :: number
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -301,10 +297,8 @@ contains
    !> Value of one swept parameter in a case, as text
    pure function swept_text(deck, number, s) result(text)
       type(deck_t), intent(in) :: deck
-      !> Number of the case
-      integer, intent(in) :: number
-      !> Number of the sweep
-      integer, intent(in) :: s
+      integer, intent(in) :: number  !! Number of the case
+      integer, intent(in) :: s       !! Number of the sweep
       character(len=:), allocatable :: text
       integer :: position(size(deck%sweeps))
 

@@ -28,8 +28,7 @@ contains
    !> A deck of defaults
    pure subroutine new_deck(deck, file)
       type(deck_t), intent(out) :: deck
-      !> Name that errors will show
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name that errors will show
       integer :: i
 
       deck%file = file
@@ -107,8 +106,7 @@ contains
    !> The groups from &ground on
    pure subroutine name_run(deck, k)
       type(deck_t), intent(inout) :: deck
-      !> The walk, at the last key before them
-      type(walk_t), intent(inout) :: k
+      type(walk_t), intent(inout) :: k  !! The walk, at the last key before them
 
       associate (g => deck%ground)
          g%given = deck%group(10)%line > 0
@@ -155,8 +153,7 @@ contains
 
    !> Take the next values of the registry
    pure recursive subroutine take_values(value, k, a, b, c, d, e, f, g)
-      !> All values: (0:n)
-      type(deck_value_t), intent(in) :: value(0:)
+      type(deck_value_t), intent(in) :: value(0:)  !! All values: (0:n)
       type(walk_t), intent(inout) :: k
       type(input_value_t), intent(inout) :: a
       type(input_value_t), intent(inout), optional :: b, c, d, e, f, g
@@ -170,8 +167,7 @@ contains
    !> Take one value
    pure subroutine take_value(value, kind, named)
       type(deck_value_t), intent(in) :: value
-      !> One of key_kind
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind  !! One of key_kind
       type(input_value_t), intent(inout) :: named
 
       named%given = value%given
@@ -230,8 +226,7 @@ contains
    !> Give a value its default
    pure subroutine put_default(value, i)
       type(deck_value_t), intent(inout) :: value
-      !> Place of its key in the registry
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Place of its key in the registry
       character(len=:), allocatable :: default
       logical :: ok
 

@@ -18,8 +18,7 @@ contains
    !> What a key takes: kind of value, unit and range
    pure function wanted(key) result(text)
       type(key_t), intent(in) :: key
-      !> Words such as: a number [m] from 1e-9 to 1e9
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Words such as: a number [m] from 1e-9 to 1e9
 
       select case (key%kind)
       case (key_kind%number)
@@ -42,8 +41,7 @@ contains
    !> Unit in brackets
    pure function unit_text(key) result(text)
       type(key_t), intent(in) :: key
-      !> The unit after a blank; empty if there is none
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The unit after a blank; empty if there is none
 
       text = ""
       if (len_trim(key%unit) > 0) text = " ["//trim(key%unit)//"]"
@@ -68,10 +66,8 @@ contains
 
    !> A bound of a range; a one with many zeros as a power of ten
    pure function bound_text(bound) result(text)
-      !> The bound
-      real(wp), intent(in) :: bound
-      !> Such as: 0.5, 1000 or 1e9
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: bound          !! The bound
+      character(len=:), allocatable :: text  !! Such as: 0.5, 1000 or 1e9
       integer :: zeros
 
       text = to_text(bound)
@@ -81,10 +77,8 @@ contains
 
    !> A list of words, each in quotes
    pure function quoted_words(words) result(text)
-      !> Words parted by one blank
-      character(len=*), intent(in) :: words
-      !> Such as: 'stress' or 'strain'
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=:), allocatable :: text  !! Such as: 'stress' or 'strain'
       integer :: first, blank
 
       text = ""
@@ -100,18 +94,15 @@ contains
    !> Name of a key with its group
    pure function full_name(key) result(name)
       type(key_t), intent(in) :: key
-      !> Such as: arch%radius
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name  !! Such as: arch%radius
 
       name = trim(key%group)//"%"//trim(key%name)
    end function full_name
 
    !> The group that was meant
    pure function near_group(name) result(text)
-      !> Name that is no group
-      character(len=*), intent(in) :: name
-      !> Sentence that names the nearest group
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: name   !! Name that is no group
+      character(len=:), allocatable :: text  !! Sentence that names the nearest group
 
       text = "the nearest known group is &"//nearest_word(name, deck_group%name)// &
          "; 'dda help keys' lists all"
@@ -180,10 +171,8 @@ contains
 
    !> What a deck may do instead of giving a key a value that it can take
    pure function or_leave_out(key) result(advice)
-      !> Place of the key in the registry
-      integer, intent(in) :: key
-      !> Words after a semicolon
-      character(len=:), allocatable :: advice
+      integer, intent(in) :: key               !! Place of the key in the registry
+      character(len=:), allocatable :: advice  !! Words after a semicolon
 
       advice = "; correct it"
       if (len_trim(deck_key(key)%default) > 0) then
@@ -195,11 +184,9 @@ contains
 
    !> The word of a list that is nearest to a word, which may be the beginning of one
    pure function nearest_word(word, list) result(found)
-      !> Word to compare
-      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: word    !! Word to compare
       character(len=*), intent(in) :: list(:)
-      !> The first of the nearest ones
-      character(len=:), allocatable :: found
+      character(len=:), allocatable :: found  !! The first of the nearest ones
       integer :: i, changes, fewest
 
       found = ""
@@ -236,18 +223,15 @@ contains
 
    !> All groups and keys with unit, range, default and meaning: what `dda help keys` prints
    pure function deck_help() result(text)
-      !> Lines, each ended by a line feed
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
 
       text = registry_help(deck_group, deck_key)
    end function deck_help
 
    !> The groups and keys of a registry with unit, range, default and meaning
    pure function registry_help(groups, keys) result(text)
-      !> The groups
-      type(group_t), intent(in) :: groups(:)
-      !> The keys
-      type(key_t), intent(in) :: keys(:)
+      type(group_t), intent(in) :: groups(:)  !! The groups
+      type(key_t), intent(in) :: keys(:)      !! The keys
       character(len=:), allocatable :: text
       character(len=1), parameter :: lf = achar(10)
       integer :: g, i
@@ -266,10 +250,8 @@ contains
    !> Help on one key
    pure function key_help(key, lf) result(text)
       type(key_t), intent(in) :: key
-      !> End of a line
-      character(len=*), intent(in) :: lf
-      !> Two or three lines
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: lf     !! End of a line
+      character(len=:), allocatable :: text  !! Two or three lines
       character(len=*), parameter :: indent = "      "
 
       text = "   "//trim(key%name)

@@ -70,14 +70,11 @@ contains
    !> Read one group
    pure subroutine read_group(scan, first, last, groups, keys, group, error)
       type(deck_scan_t), intent(in) :: scan
-      !> Token with its name
-      integer, intent(in) :: first
-      !> Token that closes it
-      integer, intent(in) :: last
+      integer, intent(in) :: first               !! Token with its name
+      integer, intent(in) :: last                !! Token that closes it
       type(group_t), intent(in) :: groups(:)
       type(key_t), intent(in) :: keys(:)
-      !> The group, empty before
-      type(key_group_t), intent(inout) :: group
+      type(key_group_t), intent(inout) :: group  !! The group, empty before
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       integer :: i, k, next
@@ -124,8 +121,7 @@ contains
    pure subroutine read_value(scan, first, last, key, value, error)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first
-      !> Last token of its values
-      integer, intent(in) :: last
+      integer, intent(in) :: last  !! Last token of its values
       type(key_t), intent(in) :: key
       type(key_value_t), intent(out) :: value
       type(error_t), allocatable, intent(out) :: error
@@ -157,8 +153,7 @@ contains
    pure logical function fits(key, text, kind)
       type(key_t), intent(in) :: key
       character(len=*), intent(in) :: text
-      !> Kind of its token
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind  !! Kind of its token
       real(wp) :: number
       integer :: whole
 
@@ -182,8 +177,7 @@ contains
    !> Whether a text is one form of a truth value
    pure logical function is_flag(text, letter)
       character(len=*), intent(in) :: text
-      !> Its letter, t or f
-      character(len=1), intent(in) :: letter
+      character(len=1), intent(in) :: letter  !! Its letter, t or f
 
       is_flag = lower_case(text) == letter .or. lower_case(text) == "."//letter//"." &
          & .or. lower_case(text) == trim(merge(".true. ", ".false.", letter == "t"))
@@ -192,10 +186,8 @@ contains
    !> Numbers of a key; the default where it is not given, none where there is none
    pure function numbers_in(group, name) result(number)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: name
-      !> The numbers: (n)
-      real(wp), allocatable :: number(:)
+      character(len=*), intent(in) :: name  !! Name of the key
+      real(wp), allocatable :: number(:)    !! The numbers: (n)
       logical :: ok
       integer :: i, k
 
@@ -287,8 +279,7 @@ contains
    !> An error that speaks of a group
    pure subroutine group_error(group, message, error)
       type(key_group_t), intent(in) :: group
-      !> What was expected, what was found
-      character(len=*), intent(in) :: message
+      character(len=*), intent(in) :: message  !! What was expected, what was found
       type(error_t), allocatable, intent(out) :: error
 
       call fatal_error(error, "&"//trim(group%name)//": "//message, line=group%row)

@@ -88,14 +88,10 @@ contains
 
    !> Why blocks of a kind cannot be run so
    pure function model_problem(kind, mode, geometry) result(why)
-      !> Word of scene%kind
-      character(len=*), intent(in) :: kind
-      !> Word of analysis%mode
-      character(len=*), intent(in) :: mode
-      !> Word of analysis%geometry
-      character(len=*), intent(in) :: geometry
-      !> The reason; empty if they can
-      character(len=:), allocatable :: why
+      character(len=*), intent(in) :: kind      !! Word of scene%kind
+      character(len=*), intent(in) :: mode      !! Word of analysis%mode
+      character(len=*), intent(in) :: geometry  !! Word of analysis%geometry
+      character(len=:), allocatable :: why      !! The reason; empty if they can
       integer :: i
 
       why = "there is no such model"
@@ -108,11 +104,9 @@ contains
 
    !> Why a key cannot be searched
    pure function search_problem(key, kind, mode) result(why)
-      !> The key, which has real values
-      type(key_t), intent(in) :: key
+      type(key_t), intent(in) :: key        !! The key, which has real values
       character(len=*), intent(in) :: kind, mode
-      !> The reason; empty if it can
-      character(len=:), allocatable :: why
+      character(len=:), allocatable :: why  !! The reason; empty if it can
       integer :: i
 
       why = "no rule says what it does"
@@ -128,8 +122,7 @@ contains
    pure function kinds_of(rule, mode) result(list)
       type(search_t), intent(in) :: rule
       character(len=*), intent(in) :: mode
-      !> The kinds, parted by blanks
-      character(len=24) :: list
+      character(len=24) :: list  !! The kinds, parted by blanks
 
       list = ""
       if (mode == "static") list = rule%static
@@ -139,10 +132,8 @@ contains
 
    !> Whether a list of words holds one
    pure logical function holds(list, word)
-      !> The words, parted by blanks
-      character(len=*), intent(in) :: list
-      !> The word
-      character(len=*), intent(in) :: word
+      character(len=*), intent(in) :: list  !! The words, parted by blanks
+      character(len=*), intent(in) :: word  !! The word
 
       holds = index(" "//list//" ", " "//trim(word)//" ") > 0
    end function holds
@@ -150,8 +141,7 @@ contains
    !> Modes and geometries that blocks of a kind are run with
    pure function models_of(kind) result(text)
       character(len=*), intent(in) :: kind
-      !> Such as: static reference, static current
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Such as: static reference, static current
       integer :: i
 
       text = ""
@@ -165,8 +155,7 @@ contains
    !> What is searched in scenes of a kind with a mode
    pure function searches_of(kind, mode) result(text)
       character(len=*), intent(in) :: kind, mode
-      !> Such as: numbers of &material, numbers of &load
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Such as: numbers of &material, numbers of &load
       integer :: i
 
       text = ""
@@ -179,10 +168,8 @@ contains
    !> Names of keys that are searched alike
    pure function name_of(rule, quote) result(text)
       type(search_t), intent(in) :: rule
-      !> What stands before and after a name
-      character(len=*), intent(in) :: quote
-      !> Such as: tension, or: other numbers of &joint
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: quote  !! What stands before and after a name
+      character(len=:), allocatable :: text  !! Such as: tension, or: other numbers of &joint
       integer :: first, blank
 
       if (rule%names == "") then
@@ -202,8 +189,7 @@ contains
 
    !> Both tables as docs/input.md has them
    pure function models_help() result(text)
-      !> Lines, each ended by a line feed
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
       integer :: i, k
 
       text = "| mode | geometry | arch | shape | lines | blocks | why not |"//lf &
@@ -230,8 +216,7 @@ contains
    pure function modes_of(rule, kind) result(text)
       type(search_t), intent(in) :: rule
       character(len=*), intent(in) :: kind
-      !> Such as: static, limerick
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Such as: static, limerick
 
       text = ""
       if (holds(rule%static, kind)) text = ", static"
@@ -243,10 +228,8 @@ contains
 
    !> Last field of a row
    pure function ending(why) result(text)
-      !> Why something is not; may be empty
-      character(len=*), intent(in) :: why
-      !> The field and the end of the line
-      character(len=:), allocatable :: text
+      character(len=*), intent(in) :: why    !! Why something is not; may be empty
+      character(len=:), allocatable :: text  !! The field and the end of the line
 
       text = trim(" "//why)//" |"//lf
    end function ending

@@ -70,19 +70,13 @@ module dda_read_blocks
       pure module subroutine add_plan_block(growing, corner, fixed, material, line, file, &
          & warnings, error)
          type(growing_plan_t), intent(inout) :: growing
-         !> Corners in order: (2, n) [m]
-         real(wp), intent(in) :: corner(:, :)
-         !> Whether it cannot move
-         logical, intent(in) :: fixed
-         !> Number of its material
-         integer, intent(in) :: material
-         !> Line of the file, 0 if there is none
-         integer, intent(in) :: line
-         !> Name of the file, for warnings
-         character(len=*), intent(in) :: file
+         real(wp), intent(in) :: corner(:, :)              !! Corners in order: (2, n) [m]
+         logical, intent(in) :: fixed                      !! Whether it cannot move
+         integer, intent(in) :: material                   !! Number of its material
+         integer, intent(in) :: line                       !! Line of the file, 0 if there is none
+         character(len=*), intent(in) :: file              !! Name of the file, for warnings
          type(warnings_t), intent(inout) :: warnings
-         !> Allocated if the corners make no block
-         type(error_t), allocatable, intent(out) :: error
+         type(error_t), allocatable, intent(out) :: error  !! Allocated if the corners make no block
       end subroutine add_plan_block
 
       !> Add a law
@@ -111,8 +105,7 @@ module dda_read_blocks
       module subroutine check_overlaps(plan, site, error, watch)
          type(block_plan_t), intent(in) :: plan
          type(site_t), intent(in) :: site
-         !> Blocks that do
-         type(error_t), allocatable, intent(out) :: error
+         type(error_t), allocatable, intent(out) :: error  !! Blocks that do
          class(watch_t), intent(inout), optional :: watch
       end subroutine check_overlaps
 
@@ -122,10 +115,8 @@ contains
 
    !> Blocks from the text of a file
    subroutine parse_blocks(text, file, plan, warnings, error, watch)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
-      !> Name that errors will show
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
+      character(len=*), intent(in) :: file  !! Name that errors will show
       type(block_plan_t), intent(out) :: plan
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -164,8 +155,7 @@ contains
    !> Place of the last character of a line
    pure integer function line_end(text, start)
       character(len=*), intent(in) :: text
-      !> Place of its first character
-      integer, intent(in) :: start
+      integer, intent(in) :: start  !! Place of its first character
 
       do line_end = start - 1, len(text) - 1
          if (text(line_end + 1:line_end + 1) == achar(10)) return
@@ -285,8 +275,7 @@ contains
 
    !> Take in a block: block [fixed] [material N] [velocity vx vy w] [stress sx sy txy]
    pure subroutine close_block(reading, warnings, error)
-      !> What has been read so far; receives the block
-      type(reading_t), intent(inout) :: reading
+      type(reading_t), intent(inout) :: reading  !! What has been read so far; receives the block
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(key_t), parameter :: key(4) = [key_t(name="fixed", kind=key_kind%flag), &

@@ -27,8 +27,7 @@ module dda_read_deck
 
       !> Read all of them
       module subroutine read_ground_records(deck, error)
-         !> The deck, checked; receives the records
-         type(deck_t), intent(inout) :: deck
+         type(deck_t), intent(inout) :: deck  !! The deck, checked; receives the records
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_ground_records
 
@@ -44,8 +43,7 @@ module dda_read_deck
       !> more
       pure module subroutine name_key(deck, key, error)
          type(deck_t), intent(in) :: deck
-         !> The key of &scene that names the file
-         character(len=*), intent(in) :: key
+         character(len=*), intent(in) :: key  !! The key of &scene that names the file
          type(error_t), allocatable, intent(inout) :: error
       end subroutine name_key
 
@@ -61,16 +59,14 @@ module dda_read_deck
       !> Read one group
       pure module subroutine read_group(scan, i, deck, error)
          type(deck_scan_t), intent(in) :: scan
-         !> Token of the group; then the token after the group
-         integer, intent(inout) :: i
+         integer, intent(inout) :: i  !! Token of the group; then the token after the group
          type(deck_t), intent(inout) :: deck
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_group
 
       !> Put the value of a --set into the deck
       pure module subroutine apply_setting(setting, place, deck, error)
-         !> Such as arch%radius=5.0
-         character(len=*), intent(in) :: setting
+         character(len=*), intent(in) :: setting  !! Such as arch%radius=5.0
          type(deck_place_t), intent(in) :: place
          type(deck_t), intent(inout) :: deck
          type(error_t), allocatable, intent(out) :: error
@@ -127,17 +123,13 @@ contains
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error, cases, tight)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
-      !> Name that errors will show
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text             !! The text, lines ended by line feeds
+      character(len=*), intent(in) :: file             !! Name that errors will show
       character(len=*), intent(in) :: settings(:)
       type(deck_t), intent(out) :: deck
       type(error_t), allocatable, intent(out) :: error
-      !> As of read_deck
-      character(len=*), intent(in), optional :: cases
-      !> As of read_deck
-      logical, intent(in), optional :: tight
+      character(len=*), intent(in), optional :: cases  !! As of read_deck
+      logical, intent(in), optional :: tight           !! As of read_deck
       type(deck_scan_t) :: scan
       character(len=:), allocatable :: checked, problem
       integer :: i

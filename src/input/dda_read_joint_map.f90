@@ -21,11 +21,9 @@ contains
 
    !> Read a file
    subroutine read_joint_map(file, map, is_ddaml, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       type(joint_map_t), intent(out) :: map
-      !> Whether lines are to be written in DDAML
-      logical, intent(out) :: is_ddaml
+      logical, intent(out) :: is_ddaml      !! Whether lines are to be written in DDAML
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
 
@@ -36,10 +34,8 @@ contains
 
    !> Read a text
    pure subroutine parse_joint_map(text, file, map, is_ddaml, error)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
-      !> Name that errors show
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
+      character(len=*), intent(in) :: file  !! Name that errors show
       type(joint_map_t), intent(out) :: map
       logical, intent(out) :: is_ddaml
       type(error_t), allocatable, intent(out) :: error
@@ -86,8 +82,7 @@ contains
    !> A set of joints
    pure subroutine take_set(group, seed, map, error)
       type(key_group_t), intent(in) :: group
-      !> Seed of the map
-      integer, intent(in) :: seed
+      integer, intent(in) :: seed  !! Seed of the map
       type(joint_map_t), intent(inout) :: map
       type(error_t), allocatable, intent(out) :: error
       type(joint_set_t) :: set
@@ -113,8 +108,7 @@ contains
    !> A length with its law
    pure type(length_t) function length_in(group, name)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the key
 
       length_in%mean = number_in(group, name)
       length_in%randomness = number_in(group, name//"_randomness")
@@ -173,8 +167,7 @@ contains
 
    !> Whether the openings of all bolts are there
    pure subroutine check_bolts(group, map, error)
-      !> All groups
-      type(key_group_t), intent(in) :: group(:)
+      type(key_group_t), intent(in) :: group(:)  !! All groups
       type(joint_map_t), intent(in) :: map
       type(error_t), allocatable, intent(out) :: error
       integer :: i
@@ -192,8 +185,7 @@ contains
    pure subroutine take_outline(group, map, error)
       type(key_group_t), intent(in) :: group(:)
       type(joint_map_t), intent(inout) :: map
-      !> No outline, or no simple one
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! No outline, or no simple one
       character(len=16), allocatable :: side(:)
       character(len=*), parameter :: sides(3) = [character(len=6) :: "left", "right", "bottom"]
       real(wp), allocatable :: box(:), surface(:, :)
@@ -247,10 +239,8 @@ contains
    !> The surface of the ground from the left side to the right one
    pure subroutine take_surface(group, left, right, surface, error)
       type(key_group_t), intent(in) :: group
-      !> The two sides [m]
-      real(wp), intent(in) :: left, right
-      !> Points from left to right: (2, n) [m]
-      real(wp), allocatable, intent(out) :: surface(:, :)
+      real(wp), intent(in) :: left, right                  !! The two sides [m]
+      real(wp), allocatable, intent(out) :: surface(:, :)  !! Points from left to right: (2, n) [m]
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: point(:, :)
       real(wp) :: tangent, rise
@@ -314,10 +304,8 @@ contains
    pure subroutine take_polygon(group, x_name, y_name, corner, error)
       type(key_group_t), intent(in) :: group
       character(len=*), intent(in) :: x_name, y_name
-      !> Its corners: (2, n) [m]
-      real(wp), allocatable, intent(out) :: corner(:, :)
-      !> No simple polygon
-      type(error_t), allocatable, intent(out) :: error
+      real(wp), allocatable, intent(out) :: corner(:, :)  !! Its corners: (2, n) [m]
+      type(error_t), allocatable, intent(out) :: error    !! No simple polygon
       type(area_moments_t) :: moments
 
       call take_points(group, x_name, y_name, 3, corner, error)

@@ -49,8 +49,7 @@ contains
 
    !> A record from its text. Lines before the first that begins with a number are its header
    pure subroutine parse_record(text, column, scale, row, error)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
       character(len=*), intent(in) :: column(3)
       real(wp), intent(in) :: scale
       real(wp), allocatable, intent(out) :: row(:, :)
@@ -92,8 +91,7 @@ contains
 
    !> Whether a line says nothing
    pure logical function is_blank(line)
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
       integer :: first
 
       first = verify(line, " "//achar(9))
@@ -149,13 +147,10 @@ contains
 
    !> Numbers of the columns; a name is looked for in the last line of the header
    pure subroutine find_columns(header, column, line, place, error)
-      !> That line; empty if there is none
-      character(len=*), intent(in) :: header
+      character(len=*), intent(in) :: header  !! That line; empty if there is none
       character(len=*), intent(in) :: column(3)
-      !> Number of the line below it
-      integer, intent(in) :: line
-      !> Their numbers, 0 for none: (3)
-      integer, intent(out) :: place(3)
+      integer, intent(in) :: line             !! Number of the line below it
+      integer, intent(out) :: place(3)        !! Their numbers, 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k
       logical :: ok
@@ -195,11 +190,9 @@ contains
    pure subroutine take_row(line, number, place, scale, row, error)
       character(len=*), intent(in) :: line
       integer, intent(in) :: number
-      !> Columns of time, x and y; 0 for none: (3)
-      integer, intent(in) :: place(3)
+      integer, intent(in) :: place(3)  !! Columns of time, x and y; 0 for none: (3)
       real(wp), intent(in) :: scale
-      !> Time and components: (3)
-      real(wp), intent(out) :: row(3)
+      real(wp), intent(out) :: row(3)  !! Time and components: (3)
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: ok
@@ -219,8 +212,7 @@ contains
 
    !> Check that time goes on
    pure subroutine check_time(time, line, error)
-      !> Time of the row before and of this one: (2) [s]
-      real(wp), intent(in) :: time(2)
+      real(wp), intent(in) :: time(2)  !! Time of the row before and of this one: (2) [s]
       integer, intent(in) :: line
       type(error_t), allocatable, intent(out) :: error
 

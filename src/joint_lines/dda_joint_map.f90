@@ -144,32 +144,22 @@ contains
 
    !> A circle or an ellipse with its corners on the curve
    pure function ring(centre, half_axis, n) result(corner)
-      !> Its centre: (2) [m]
-      real(wp), intent(in) :: centre(2)
-      !> Half axes along x and y: (2) [m]
-      real(wp), intent(in) :: half_axis(2)
-      !> Number of corners
-      integer, intent(in) :: n
-      !> The corners, anticlockwise: (2, n) [m]
-      real(wp) :: corner(2, n)
+      real(wp), intent(in) :: centre(2)     !! Its centre: (2) [m]
+      real(wp), intent(in) :: half_axis(2)  !! Half axes along x and y: (2) [m]
+      integer, intent(in) :: n              !! Number of corners
+      real(wp) :: corner(2, n)              !! The corners, anticlockwise: (2, n) [m]
 
       corner = arc(centre, half_axis, 0.0_wp, 2.0_wp*pi*real(n - 1, wp)/real(n, wp), n)
    end function ring
 
    !> Walls on a level floor with half an ellipse above them
    pure function arched_opening(middle, width, wall, rise, n) result(corner)
-      !> Middle of the floor: (2) [m]
-      real(wp), intent(in) :: middle(2)
-      !> Distance of the walls [m]
-      real(wp), intent(in) :: width
-      !> Height of the walls [m]
-      real(wp), intent(in) :: wall
-      !> Height of the arch above the walls [m]
-      real(wp), intent(in) :: rise
-      !> Number of edges of the arch
-      integer, intent(in) :: n
-      !> The corners, anticlockwise: (2, n_corner) [m]
-      real(wp), allocatable :: corner(:, :)
+      real(wp), intent(in) :: middle(2)      !! Middle of the floor: (2) [m]
+      real(wp), intent(in) :: width          !! Distance of the walls [m]
+      real(wp), intent(in) :: wall           !! Height of the walls [m]
+      real(wp), intent(in) :: rise           !! Height of the arch above the walls [m]
+      integer, intent(in) :: n               !! Number of edges of the arch
+      real(wp), allocatable :: corner(:, :)  !! The corners, anticlockwise: (2, n_corner) [m]
       real(wp) :: roof(2, n + 1)
 
       roof = arc(middle + [0.0_wp, wall], [0.5_wp*width, rise], 0.0_wp, pi, n + 1)
@@ -206,12 +196,9 @@ contains
    !> Points on an ellipse
    pure function arc(centre, half_axis, from, to, n) result(point)
       real(wp), intent(in) :: centre(2), half_axis(2)
-      !> First and last angle [rad]
-      real(wp), intent(in) :: from, to
-      !> Number of points
-      integer, intent(in) :: n
-      !> The points: (2, n) [m]
-      real(wp) :: point(2, n)
+      real(wp), intent(in) :: from, to  !! First and last angle [rad]
+      integer, intent(in) :: n          !! Number of points
+      real(wp) :: point(2, n)           !! The points: (2, n) [m]
       real(wp) :: angle
       integer :: i
 

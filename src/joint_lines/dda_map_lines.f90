@@ -23,8 +23,7 @@ module dda_map_lines
       !> How many joints a set has across a circle, about
       pure real(wp) module function joint_count(set, radius)
          type(joint_set_t), intent(in) :: set
-         !> Radius of the circle [m]
-         real(wp), intent(in) :: radius
+         real(wp), intent(in) :: radius  !! Radius of the circle [m]
       end function joint_count
 
       !> Traces of a set that meet a circle
@@ -42,10 +41,8 @@ module dda_map_lines
       !> A length by its law
       pure module subroutine draw_length(length, random, value)
          type(length_t), intent(in) :: length
-         !> Random numbers
-         type(random_t), intent(inout) :: random
-         !> The length [m]
-         real(wp), intent(out) :: value
+         type(random_t), intent(inout) :: random  !! Random numbers
+         real(wp), intent(out) :: value           !! The length [m]
       end subroutine draw_length
 
       !> A length that covers a given point: long ones do so more often. With such a one over the
@@ -71,26 +68,21 @@ module dda_map_lines
       !> A point inside a polygon: half way between its first two crossings with a level line
       pure module function inner_point(corner) result(point)
          real(wp), intent(in) :: corner(:, :)
-         !> The point: (2) [m]
-         real(wp) :: point(2)
+         real(wp) :: point(2)  !! The point: (2) [m]
       end function inner_point
 
       !> Where a ray leaves a polygon for the last time
       pure module function ray_exit(corner, origin, direction) result(point)
          real(wp), intent(in) :: corner(:, :)
-         !> A point inside: (2) [m]
-         real(wp), intent(in) :: origin(2)
-         !> Unit vector: (2)
-         real(wp), intent(in) :: direction(2)
+         real(wp), intent(in) :: origin(2)     !! A point inside: (2) [m]
+         real(wp), intent(in) :: direction(2)  !! Unit vector: (2)
          real(wp) :: point(2)
       end function ray_exit
 
       !> Whether two polygons have edges that cross, or one holds the other
       pure logical module function outlines_cross(one, other)
-         !> Corners: (2, n) [m]
-         real(wp), intent(in) :: one(:, :)
-         !> Corners: (2, n) [m]
-         real(wp), intent(in) :: other(:, :)
+         real(wp), intent(in) :: one(:, :)    !! Corners: (2, n) [m]
+         real(wp), intent(in) :: other(:, :)  !! Corners: (2, n) [m]
       end function outlines_cross
 
    end interface
@@ -101,8 +93,7 @@ contains
    pure subroutine map_lines(map, model, error)
       type(joint_map_t), intent(in) :: map
       type(line_model_t), intent(out) :: model
-      !> What cannot be drawn, with file and line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What cannot be drawn, with file and line
       real(wp) :: inside(2)
       integer :: i
 
@@ -159,12 +150,9 @@ contains
 
    !> Add the edges of a polygon
    pure subroutine add_outline(corner, material, row, model)
-      !> Its corners: (2, n) [m]
-      real(wp), intent(in) :: corner(:, :)
-      !> Number of the joint material
-      integer, intent(in) :: material
-      !> Line of the file
-      integer, intent(in) :: row
+      real(wp), intent(in) :: corner(:, :)  !! Its corners: (2, n) [m]
+      integer, intent(in) :: material       !! Number of the joint material
+      integer, intent(in) :: row            !! Line of the file
       type(line_model_t), intent(inout) :: model
       integer :: i
 
@@ -199,8 +187,7 @@ contains
    !> Draw a set of joints
    pure subroutine add_set(map, i, model, error)
       type(joint_map_t), intent(in) :: map
-      !> Number of the set
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Number of the set
       type(line_model_t), intent(inout) :: model
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: trace(:, :)
@@ -227,8 +214,7 @@ contains
    !> Keep what of some lines lies in rock
    pure subroutine clip_to_rock(map, line, n)
       type(joint_map_t), intent(in) :: map
-      !> Columns of ends: (4, n or more) [m]
-      real(wp), allocatable, intent(inout) :: line(:, :)
+      real(wp), allocatable, intent(inout) :: line(:, :)  !! Columns of ends: (4, n or more) [m]
       integer, intent(inout) :: n
       integer :: i
 

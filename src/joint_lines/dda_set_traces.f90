@@ -132,8 +132,7 @@ contains
    !> The law of traces or of bridges
    pure type(length_t) function part_law(set, is_trace)
       type(joint_set_t), intent(in) :: set
-      !> Whether it is a trace
-      logical, intent(in) :: is_trace
+      logical, intent(in) :: is_trace  !! Whether it is a trace
 
       part_law = set%bridge
       if (is_trace) part_law = set%trace
@@ -142,11 +141,9 @@ contains
    !> Add the part of a joint between two places, as far as it is in the window
    pure subroutine add_part(axis, part, trace, n)
       type(axis_t), intent(in) :: axis
-      !> Where the part begins and ends along it: (2) [m]
-      real(wp), intent(in) :: part(2)
+      real(wp), intent(in) :: part(2)  !! Where the part begins and ends along it: (2) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
-      !> Number of traces
-      integer, intent(inout) :: n
+      integer, intent(inout) :: n      !! Number of traces
       real(wp) :: from, to
 
       from = max(part(1), axis%window(1))

@@ -53,10 +53,8 @@ contains
    pure function bolt_rows(model, blocks, i) result(row)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Number of the bolt
-      integer, intent(in) :: i
-      !> (6, 2)
-      real(wp) :: row(6, 2)
+      integer, intent(in) :: i  !! Number of the bolt
+      real(wp) :: row(6, 2)     !! (6, 2)
       real(wp) :: along(2)
       integer :: side
 
@@ -74,11 +72,9 @@ contains
    !> Elongation of a bolt in a step
    pure real(wp) function bolt_elongation(model, blocks, i, motion)
       type(limerick_model_t), intent(in) :: model
-      !> The blocks at the beginning of the step
-      type(limerick_blocks_t), intent(in) :: blocks
+      type(limerick_blocks_t), intent(in) :: blocks  !! The blocks at the beginning of the step
       integer, intent(in) :: i
-      !> Motion of the blocks: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)           !! Motion of the blocks: (6, n_block)
       real(wp) :: row(6, 2)
       integer :: side
 
@@ -304,14 +300,10 @@ contains
 
    !> Add a multiple of the product of a column and a row
    pure subroutine add_outer(factor, column, row, sum)
-      !> The multiple
-      real(wp), intent(in) :: factor
-      !> The column: (6)
-      real(wp), intent(in) :: column(n_unknown)
-      !> The row: (6)
-      real(wp), intent(in) :: row(n_unknown)
-      !> What is added to: (6, 6)
-      real(wp), intent(inout) :: sum(n_unknown, n_unknown)
+      real(wp), intent(in) :: factor                        !! The multiple
+      real(wp), intent(in) :: column(n_unknown)             !! The column: (6)
+      real(wp), intent(in) :: row(n_unknown)                !! The row: (6)
+      real(wp), intent(inout) :: sum(n_unknown, n_unknown)  !! What is added to: (6, 6)
       integer :: j
 
       do j = 1, n_unknown

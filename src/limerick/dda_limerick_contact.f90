@@ -86,14 +86,10 @@ contains
 
    !> Work of a force per unit of each unknown: the row f'T
    pure function generalised(force, point, centroid) result(row)
-      !> Force: (2)
-      real(wp), intent(in) :: force(2)
-      !> Where it acts: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Centre of gravity of the block: (2) [m]
-      real(wp), intent(in) :: centroid(2)
-      !> The row: (6)
-      real(wp) :: row(6)
+      real(wp), intent(in) :: force(2)     !! Force: (2)
+      real(wp), intent(in) :: point(2)     !! Where it acts: (2) [m]
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
+      real(wp) :: row(6)                   !! The row: (6)
       real(wp) :: x, y
 
       x = point(1) - centroid(1)
@@ -141,10 +137,8 @@ contains
    !> 59)
    pure subroutine place_shear_spring(blocks, contact, spring)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The contact of a vertex and an edge
-      type(limerick_contact_t), intent(in) :: contact
-      !> Its springs; the shear spring is set
-      type(contact_spring_t), intent(inout) :: spring
+      type(limerick_contact_t), intent(in) :: contact  !! The contact of a vertex and an edge
+      type(contact_spring_t), intent(inout) :: spring  !! Its springs; the shear spring is set
       real(wp), dimension(2) :: p1, p2, p3, set_at, away, tangent
 
       p1 = blocks%vertex(:, contact%vertex(1, 1))
@@ -164,12 +158,9 @@ contains
 
    !> Foot of a point on a line: 0 at its first end, 1 at its second
    pure real(wp) function projection(point, first, second)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> First end of the line: (2) [m]
-      real(wp), intent(in) :: first(2)
-      !> Second end, not the same: (2) [m]
-      real(wp), intent(in) :: second(2)
+      real(wp), intent(in) :: point(2)   !! The point: (2) [m]
+      real(wp), intent(in) :: first(2)   !! First end of the line: (2) [m]
+      real(wp), intent(in) :: second(2)  !! Second end, not the same: (2) [m]
 
       projection = dot_product(point - first, second - first) &
          & /dot_product(second - first, second - first)
@@ -178,8 +169,7 @@ contains
    !> Give the contacts of a step the states of the step before; a contact is known by its vertices
    pure subroutine transfer_contacts(blocks, before, now)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Contacts of the step before
-      type(contact_list_t), intent(in) :: before
+      type(contact_list_t), intent(in) :: before  !! Contacts of the step before
       type(contact_list_t), intent(inout) :: now
       integer :: head(size(blocks%area)), following(before%n), c, b, p
       logical :: keeps_place
@@ -239,8 +229,7 @@ contains
    pure subroutine measure_line(blocks, contact, keeps_place)
       type(limerick_blocks_t), intent(in) :: blocks
       type(limerick_contact_t), intent(inout) :: contact
-      !> Whether the shear spring stays where it was set
-      logical, intent(in) :: keeps_place
+      logical, intent(in) :: keeps_place  !! Whether the shear spring stays where it was set
       real(wp), dimension(2) :: p2, p3
       real(wp) :: here, there
 
@@ -258,10 +247,8 @@ contains
    !> Contacts of the first step: all open in a static run, in a dynamic one those that touch locked
    pure subroutine begin_contacts(blocks, dynamic, touch, list)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Whether velocities are kept
-      logical, intent(in) :: dynamic
-      !> Distance that counts as touching [m]
-      real(wp), intent(in) :: touch
+      logical, intent(in) :: dynamic  !! Whether velocities are kept
+      real(wp), intent(in) :: touch   !! Distance that counts as touching [m]
       type(contact_list_t), intent(inout) :: list
       real(wp) :: gap(2)
       integer :: c, line

@@ -77,8 +77,7 @@ contains
 
    !> How steep a direction is, from 0 to 1
    pure real(wp) function steepness(direction)
-      !> The direction [deg]
-      real(wp), intent(in) :: direction
+      real(wp), intent(in) :: direction  !! The direction [deg]
 
       steepness = abs(sin(direction*degree))
    end function steepness
@@ -112,10 +111,8 @@ contains
 
    !> Put indices in the order of their keys; quick if they nearly are
    pure subroutine sort_by(key, order)
-      !> Key of each index: (n)
-      real(wp), intent(in) :: key(:)
-      !> The indices: (n)
-      integer, intent(inout) :: order(:)
+      real(wp), intent(in) :: key(:)      !! Key of each index: (n)
+      integer, intent(inout) :: order(:)  !! The indices: (n)
       integer :: i, j, moving
 
       do i = 2, size(order)
@@ -132,10 +129,8 @@ contains
    pure subroutine meet_blocks(blocks, corners, a, b, reach, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
-      !> First block
-      integer, intent(in) :: a
-      !> Second block
-      integer, intent(in) :: b
+      integer, intent(in) :: a  !! First block
+      integer, intent(in) :: b  !! Second block
       real(wp), intent(in) :: reach, overlap_deg
       type(contact_list_t), intent(inout) :: list
       integer :: i, j
@@ -157,10 +152,8 @@ contains
    !> Whether two vertices lie near one another
    pure logical function near(blocks, i, j, reach)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> First vertex
-      integer, intent(in) :: i
-      !> Second vertex
-      integer, intent(in) :: j
+      integer, intent(in) :: i  !! First vertex
+      integer, intent(in) :: j  !! Second vertex
       real(wp), intent(in) :: reach
 
       near = (blocks%vertex(1, i) - blocks%vertex(1, j))**2 &
@@ -172,8 +165,7 @@ contains
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
       integer, intent(in) :: i
-      !> Where the edge starts
-      integer, intent(in) :: j
+      integer, intent(in) :: j  !! Where the edge starts
       real(wp), intent(in) :: reach
       real(wp) :: edge(2), arm(2), square
 
@@ -191,10 +183,8 @@ contains
    pure subroutine meet_vertices(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
-      !> Vertex of the first block
-      integer, intent(in) :: i
-      !> Vertex of the second block
-      integer, intent(in) :: j
+      integer, intent(in) :: i  !! Vertex of the first block
+      integer, intent(in) :: j  !! Vertex of the second block
       real(wp), intent(in) :: overlap_deg
       type(contact_list_t), intent(inout) :: list
 

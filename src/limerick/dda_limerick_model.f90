@@ -73,10 +73,8 @@ contains
    !> Law of a corner on an edge: that of the edge, for corners of the block's kind
    pure type(joint_law_t) function contact_law(model, block, edge) result(law)
       type(limerick_model_t), intent(in) :: model
-      !> Block of the corner
-      integer, intent(in) :: block
-      !> Vertex at which the edge starts
-      integer, intent(in) :: edge
+      integer, intent(in) :: block  !! Block of the corner
+      integer, intent(in) :: edge   !! Vertex at which the edge starts
 
       law = model%law(model%kind(block), model%edge_law(edge))
    end function contact_law
@@ -84,12 +82,9 @@ contains
    !> Force on a load point at a time: linear between the records (Shi: df09)
    pure function force_at(model, point, time) result(force)
       type(limerick_model_t), intent(in) :: model
-      !> Number of the load point
-      integer, intent(in) :: point
-      !> The time [s]
-      real(wp), intent(in) :: time
-      !> The force: (2) [N/m]
-      real(wp) :: force(2)
+      integer, intent(in) :: point  !! Number of the load point
+      real(wp), intent(in) :: time  !! The time [s]
+      real(wp) :: force(2)          !! The force: (2) [N/m]
       real(wp) :: share
       integer :: i, n
 

@@ -48,8 +48,7 @@ contains
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Motion of the blocks: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (6, n_block)
       type(limerick_march_t), intent(in) :: march
       type(limerick_contact_t), intent(inout) :: contact
       type(contact_spring_t), intent(inout) :: spring
@@ -76,10 +75,8 @@ contains
       type(limerick_constants_t), intent(in) :: constants
       type(joint_law_t), intent(in) :: law
       type(limerick_march_t), intent(in) :: march
-      !> Opening at both lines: (2) [m]
-      real(wp), intent(in) :: gap(2)
-      !> The contact; state and gap are set
-      type(limerick_contact_t), intent(inout) :: contact
+      real(wp), intent(in) :: gap(2)                      !! Opening at both lines: (2) [m]
+      type(limerick_contact_t), intent(inout) :: contact  !! The contact; state and gap are set
       real(wp) :: sprung, held
       logical :: opens
 
@@ -131,12 +128,9 @@ contains
    pure subroutine set_shear_spring(blocks, motion, half_size, contact, spring)
       type(limerick_blocks_t), intent(in) :: blocks
       real(wp), intent(in) :: motion(:, :)
-      !> Half the larger side of the model [m]
-      real(wp), intent(in) :: half_size
-      !> The contact; its place is set
-      type(limerick_contact_t), intent(inout) :: contact
-      !> Its springs; the shear spring is set
-      type(contact_spring_t), intent(inout) :: spring
+      real(wp), intent(in) :: half_size                   !! Half the larger side of the model [m]
+      type(limerick_contact_t), intent(inout) :: contact  !! The contact; its place is set
+      type(contact_spring_t), intent(inout) :: spring     !! Its springs; the shear spring is set
       real(wp) :: at(2, 3), share, closing
       integer :: k, b, v
 
@@ -158,10 +152,8 @@ contains
 
    !> Scalar product of six numbers
    pure real(wp) function dot(a, b)
-      !> First row: (6)
-      real(wp), intent(in) :: a(6)
-      !> Second row: (6)
-      real(wp), intent(in) :: b(6)
+      real(wp), intent(in) :: a(6)  !! First row: (6)
+      real(wp), intent(in) :: b(6)  !! Second row: (6)
 
       dot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + a(4)*b(4) + a(5)*b(5) + a(6)*b(6)
    end function dot

@@ -226,12 +226,9 @@ contains
    !> What still moves when the steps are spent is called stable, as a user of the original would
    !> have said; but not before all loads have come
    pure subroutine spend_steps(time, end, outcome)
-      !> Time that the steps have reached [s]
-      real(wp), intent(in) :: time
-      !> Time of the last record of a load [s]
-      real(wp), intent(in) :: end
-      !> The outcome; verdict and reason are set
-      type(limerick_outcome_t), intent(inout) :: outcome
+      real(wp), intent(in) :: time                        !! Time that the steps have reached [s]
+      real(wp), intent(in) :: end                         !! Time of the last record of a load [s]
+      type(limerick_outcome_t), intent(inout) :: outcome  !! The outcome; verdict and reason are set
 
       if (time < end) then
          outcome%reason = "step limit reached before the last record of a load; raise "// &

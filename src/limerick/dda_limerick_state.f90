@@ -141,8 +141,7 @@ contains
 
    !> Areas and moments of the blocks as they are now (Shi: area)
    pure subroutine measure_blocks(blocks)
-      !> The blocks; their vertices are set
-      type(limerick_blocks_t), intent(inout) :: blocks
+      type(limerick_blocks_t), intent(inout) :: blocks  !! The blocks; their vertices are set
       type(area_moments_t) :: moments
       integer :: b
 

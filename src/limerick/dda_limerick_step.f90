@@ -76,38 +76,27 @@ module dda_limerick_step
 
       !> Anticlockwise angle from one direction to another
       pure real(wp) module function turn(from, to)
-         !> First direction [deg]
-         real(wp), intent(in) :: from
-         !> Second direction [deg]
-         real(wp), intent(in) :: to
+         real(wp), intent(in) :: from  !! First direction [deg]
+         real(wp), intent(in) :: to    !! Second direction [deg]
       end function turn
 
       !> Whether two sectors overlap by more than is overlooked
       pure logical module function overlap(start_a, angle_a, start_b, angle_b, least)
-         !> Where the first sector starts [deg]
-         real(wp), intent(in) :: start_a
-         !> Its angle [deg]
-         real(wp), intent(in) :: angle_a
-         !> Where the second sector starts [deg]
-         real(wp), intent(in) :: start_b
-         !> Its angle [deg]
-         real(wp), intent(in) :: angle_b
-         !> What is overlooked [deg]
-         real(wp), intent(in) :: least
+         real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
+         real(wp), intent(in) :: angle_a  !! Its angle [deg]
+         real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
+         real(wp), intent(in) :: angle_b  !! Its angle [deg]
+         real(wp), intent(in) :: least    !! What is overlooked [deg]
       end function overlap
 
       !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
       pure module function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
          type(limerick_blocks_t), intent(in) :: blocks
          type(corners_t), intent(in) :: corners
-         !> Vertex of the first block
-         integer, intent(in) :: i
-         !> Vertex of the second block
-         integer, intent(in) :: j
-         !> Overlap that is overlooked [deg]
-         real(wp), intent(in) :: overlap_deg
-         !> Vertex and ends of the edge: (3, 2)
-         integer :: line(3, 2)
+         integer, intent(in) :: i             !! Vertex of the first block
+         integer, intent(in) :: j             !! Vertex of the second block
+         real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
+         integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
       end function entrance_lines
 
       !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
@@ -126,12 +115,9 @@ module dda_limerick_step
       pure module subroutine move_vertices(model, blocks, motion, march, moved)
          type(limerick_model_t), intent(in) :: model
          type(limerick_blocks_t), intent(in) :: blocks
-         !> Motion of the blocks: (6, n_block)
-         real(wp), intent(in) :: motion(:, :)
-         !> The march; the displacement ratio is set
-         type(limerick_march_t), intent(inout) :: march
-         !> The corners: (2, n_vertex) [m]
-         real(wp), intent(inout) :: moved(:, :)
+         real(wp), intent(in) :: motion(:, :)            !! Motion of the blocks: (6, n_block)
+         type(limerick_march_t), intent(inout) :: march  !! The march; the displacement ratio is set
+         real(wp), intent(inout) :: moved(:, :)          !! The corners: (2, n_vertex) [m]
       end subroutine move_vertices
 
       !> What an accepted step leaves behind (Shi: df25)
@@ -172,8 +158,7 @@ contains
    pure subroutine advance_limerick(model, run, error)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
-      !> Allocated if no attempt was accepted
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if no attempt was accepted
       logical :: first_pass, settled, accepted
       integer :: attempt
 
@@ -203,8 +188,7 @@ contains
 
    !> Whether the equations gave a motion; one that is not finite is none
    pure logical function solved(equations)
-      !> The equations after a solution
-      type(limerick_equations_t), intent(in) :: equations
+      type(limerick_equations_t), intent(in) :: equations  !! The equations after a solution
 
       solved = equations%factor%usable
       if (solved) solved = sum(abs(equations%motion)) <= huge(1.0_wp)
@@ -243,8 +227,7 @@ contains
    !> record of a load
    pure subroutine choose_interval(model, march)
       type(limerick_model_t), intent(in) :: model
-      !> The march; its time step is set
-      type(limerick_march_t), intent(inout) :: march
+      type(limerick_march_t), intent(inout) :: march  !! The march; its time step is set
       real(wp) :: acceleration, velocity, allowed, mass, longest, record
 
       if (.not. model%constants%auto_time_step) return
@@ -297,10 +280,8 @@ contains
    !> Largest component of the loads at a time or of all that are tabulated [N/m]
    pure real(wp) function largest_load(model, time, ever)
       type(limerick_model_t), intent(in) :: model
-      !> The time [s]
-      real(wp), intent(in) :: time
-      !> Whether all tabulated forces count instead
-      logical, intent(in) :: ever
+      real(wp), intent(in) :: time  !! The time [s]
+      logical, intent(in) :: ever   !! Whether all tabulated forces count instead
       integer :: i
 
       largest_load = 0.0_wp

@@ -30,10 +30,8 @@ contains
    !> What a rotation does to an arm: along it and across it
    pure function turning(model, angle) result(turn)
       type(limerick_model_t), intent(in) :: model
-      !> The rotation [rad]
-      real(wp), intent(in) :: angle
-      !> Parts of the arm's change along it and across it: (2)
-      real(wp) :: turn(2)
+      real(wp), intent(in) :: angle  !! The rotation [rad]
+      real(wp) :: turn(2)            !! Parts of the arm's change along it and across it: (2)
 
       turn = [0.0_wp, angle]
       if (model%constants%exact_rotation) turn = [cos(angle) - 1.0_wp, sin(angle)]
@@ -102,10 +100,8 @@ contains
 
       !> Displacement of a point in the step
       pure function point_step(point, block) result(step)
-         !> The point at the beginning of the step: (2) [m]
-         real(wp), intent(in) :: point(2)
-         !> Its block
-         integer, intent(in) :: block
+         real(wp), intent(in) :: point(2)  !! The point at the beginning of the step: (2) [m]
+         integer, intent(in) :: block      !! Its block
          real(wp) :: step(2)
 
          step = displacement(motion(:, block), &

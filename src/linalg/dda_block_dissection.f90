@@ -72,10 +72,8 @@ contains
 
    !> Let a group wait for its parting; one that is too small stays as it is
    pure subroutine put_off(first, last, d)
-      !> First place of the group in the order
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
+      integer, intent(in) :: first  !! First place of the group in the order
+      integer, intent(in) :: last   !! Last place
       type(dissection_t), intent(inout) :: d
 
       d%group(d%order(first:last)) = first
@@ -87,10 +85,8 @@ contains
    !> Search a connected group in breadth from its corners: each is farthest from those before it
    pure subroutine search_from_corners(first, last, d, n)
       integer, intent(in) :: first, last
-      !> The blocks; steps and queue are set
-      type(dissection_t), intent(inout) :: d
-      !> Number of blocks that a search has reached
-      integer, intent(out) :: n
+      type(dissection_t), intent(inout) :: d  !! The blocks; steps and queue are set
+      integer, intent(out) :: n               !! Number of blocks that a search has reached
       integer :: corner, near(last - first + 1), root
 
       associate (block => d%order(first:last))
@@ -114,12 +110,9 @@ contains
 
    !> Search in breadth from a block through its group
    pure subroutine spread_from(root, d, n)
-      !> The block
-      integer, intent(in) :: root
-      !> The blocks; levels and queue are set
-      type(dissection_t), intent(inout) :: d
-      !> Number of blocks in the queue
-      integer, intent(inout) :: n
+      integer, intent(in) :: root             !! The block
+      type(dissection_t), intent(inout) :: d  !! The blocks; levels and queue are set
+      integer, intent(inout) :: n             !! Number of blocks in the queue
       integer :: b, head, i
 
       head = n

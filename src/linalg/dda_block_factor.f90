@@ -110,8 +110,7 @@ contains
    pure function factored_condition(matrix, factor) result(condition)
       type(block_matrix_t), intent(in) :: matrix
       type(block_factor_t), intent(in) :: factor
-      !> Estimate of the condition number, at least 1
-      real(wp) :: condition
+      real(wp) :: condition  !! Estimate of the condition number, at least 1
       real(wp) :: root(matrix%n_dof, size(matrix%diagonal, 3))
       integer :: b, c
 
@@ -155,10 +154,8 @@ contains
    !> safeguard (ACM Transactions on Mathematical Software 14, 1988, 381)
    pure function inverse_norm(factor, root) result(norm)
       type(block_factor_t), intent(in) :: factor
-      !> Roots of the matrix's diagonal: (n_dof, n_block)
-      real(wp), intent(in) :: root(:, :)
-      !> The norm
-      real(wp) :: norm
+      real(wp), intent(in) :: root(:, :)  !! Roots of the matrix's diagonal: (n_dof, n_block)
+      real(wp) :: norm                    !! The norm
       real(wp) :: x(size(root, 1), size(root, 2)), y(size(root, 1), size(root, 2))
       integer :: i, place(2), step
 
@@ -184,10 +181,8 @@ contains
    pure function scaled_solution(factor, root, load) result(x)
       type(block_factor_t), intent(in) :: factor
       real(wp), intent(in) :: root(:, :)
-      !> The right-hand side: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> The solution: (n_dof, n_block)
-      real(wp) :: x(size(load, 1), size(load, 2))
+      real(wp), intent(in) :: load(:, :)           !! The right-hand side: (n_dof, n_block)
+      real(wp) :: x(size(load, 1), size(load, 2))  !! The solution: (n_dof, n_block)
 
       x = root*load
       call substitute(factor, x)

@@ -48,10 +48,8 @@ contains
 
    !> Couplings, tree and columns of an order
    pure subroutine new_elimination(place, pair, elimination)
-      !> Place of each block: (n_block)
-      integer, intent(in) :: place(:)
-      !> Coupled blocks: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
+      integer, intent(in) :: place(:)    !! Place of each block: (n_block)
+      integer, intent(in) :: pair(:, :)  !! Coupled blocks: (2, n_entry)
       type(elimination_t), intent(out) :: elimination
 
       allocate (elimination%place, source=place)
@@ -75,8 +73,7 @@ contains
 
    !> List couplings by rows
    pure subroutine list_columns(place, pair, elimination)
-      !> Place of each block in the order of elimination: (n_block)
-      integer, intent(in) :: place(:)
+      integer, intent(in) :: place(:)  !! Place of each block in the order of elimination: (n_block)
       integer, intent(in) :: pair(:, :)
       type(elimination_t), intent(inout) :: elimination
       integer :: e, i, next(size(place))
@@ -102,8 +99,7 @@ contains
    !> The column that each column is eliminated into first; 0 for a root
    pure function tree(elimination) result(parent)
       type(elimination_t), intent(in) :: elimination
-      !> The parents: (n_block)
-      integer :: parent(size(elimination%first) - 1)
+      integer :: parent(size(elimination%first) - 1)  !! The parents: (n_block)
       integer :: ancestor(size(parent)), above, g, i, j
 
       parent = 0
@@ -126,8 +122,7 @@ contains
    !> eliminated shortly before it, and still near at hand: branch by branch of the tree
    pure function by_branches(place, pair) result(better)
       integer, intent(in) :: place(:), pair(:, :)
-      !> Better place of each block: (n_block)
-      integer :: better(size(place))
+      integer :: better(size(place))  !! Better place of each block: (n_block)
       type(elimination_t) :: rows
       integer, dimension(0:size(place)) :: parent, last, branch
       integer :: at(size(place)), i
@@ -152,10 +147,8 @@ contains
    !> Rows below the diagonal of each column: a row has its couplings, and from the column of each
    !> the way to the root of the tree
    pure function count_rows(elimination) result(below)
-      !> Couplings by rows and the tree
-      type(elimination_t), intent(in) :: elimination
-      !> Number of rows: (n_block)
-      integer :: below(size(elimination%parent))
+      type(elimination_t), intent(in) :: elimination  !! Couplings by rows and the tree
+      integer :: below(size(elimination%parent))      !! Number of rows: (n_block)
       integer :: seen(size(below)), g, i, j
 
       seen = 0

@@ -48,8 +48,7 @@ contains
    pure function narrow_order(n_block, pair) result(place)
       integer, intent(in) :: n_block
       integer, intent(in) :: pair(:, :)
-      !> Place of each block in the matrix: (n_block)
-      integer :: place(n_block)
+      integer :: place(n_block)  !! Place of each block in the matrix: (n_block)
       integer, allocatable :: start(:), neighbour(:)
       integer :: queue(n_block), head, tail, root
       logical :: queued(n_block)
@@ -101,14 +100,10 @@ contains
    !> A block at the rim of the group that a block belongs to: the last one that a search in
    !> breadth reaches, searched again from there until it gets no farther
    pure function outermost(root, start, neighbour) result(rim)
-      !> Any block of the group
-      integer, intent(in) :: root
-      !> First entry of each block's list: (n_block + 1)
-      integer, intent(in) :: start(:)
-      !> Neighbour lists
-      integer, intent(in) :: neighbour(:)
-      !> The block to begin with
-      integer :: rim
+      integer, intent(in) :: root          !! Any block of the group
+      integer, intent(in) :: start(:)      !! First entry of each block's list: (n_block + 1)
+      integer, intent(in) :: neighbour(:)  !! Neighbour lists
+      integer :: rim                       !! The block to begin with
       integer :: queue(size(start) - 1), level(size(start) - 1), head, tail, reached, i
 
       rim = root
@@ -136,15 +131,11 @@ contains
 
    !> Append the neighbours of a block that wait nowhere yet, those with the fewest neighbours first
    pure subroutine enqueue_neighbours(block, start, neighbour, queue, tail, queued)
-      !> The block
-      integer, intent(in) :: block
+      integer, intent(in) :: block         !! The block
       integer, intent(in) :: start(:), neighbour(:)
-      !> Blocks in order of visit: (n_block)
-      integer, intent(inout) :: queue(:)
-      !> Number of blocks in the queue
-      integer, intent(inout) :: tail
-      !> Which blocks are in the queue: (n_block)
-      logical, intent(inout) :: queued(:)
+      integer, intent(inout) :: queue(:)   !! Blocks in order of visit: (n_block)
+      integer, intent(inout) :: tail       !! Number of blocks in the queue
+      logical, intent(inout) :: queued(:)  !! Which blocks are in the queue: (n_block)
       integer :: first, i, at, candidate
 
       first = tail + 1
@@ -166,8 +157,7 @@ contains
 
       !> Number of neighbours of a block
       pure integer function degree(b)
-         !> The block
-         integer, intent(in) :: b
+         integer, intent(in) :: b  !! The block
 
          degree = start(b + 1) - start(b)
       end function degree

@@ -53,8 +53,7 @@ contains
 
    !> Lay out the panels of a matrix
    pure subroutine plan_panels(matrix, plan)
-      !> The matrix, of which the pattern counts
-      type(block_matrix_t), intent(in) :: matrix
+      type(block_matrix_t), intent(in) :: matrix  !! The matrix, of which the pattern counts
       type(elimination_plan_t), intent(out) :: plan
       type(elimination_t) :: elimination
       integer :: panel(size(matrix%place)), i
@@ -131,10 +130,8 @@ contains
    !> places of these, what its numbers cost in substitutions, and what any panel costs. Measured on
    !> walls of 36 to 10000 blocks: times hardly change where these figures are halved or doubled
    pure real(wp) function work(n_column, n_row)
-      !> Its columns
-      integer, intent(in) :: n_column
-      !> Its rows below the diagonal
-      integer, intent(in) :: n_row
+      integer, intent(in) :: n_column  !! Its columns
+      integer, intent(in) :: n_row     !! Its rows below the diagonal
       real(wp), parameter :: per_entry = 3.0_wp, per_target = 1.0_wp, per_panel = 20.0_wp
       real(wp) :: c, r
 
@@ -235,14 +232,10 @@ contains
 
    !> Where the couplings of the matrix lie in the panels
    pure subroutine list_given(pair, place, panel, plan)
-      !> Coupled blocks: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
-      !> Place of each block: (n_block)
-      integer, intent(in) :: place(:)
-      !> Panel of each place: (n_block)
-      integer, intent(in) :: panel(:)
-      !> The plan; receives the couplings
-      type(elimination_plan_t), intent(inout) :: plan
+      integer, intent(in) :: pair(:, :)                !! Coupled blocks: (2, n_entry)
+      integer, intent(in) :: place(:)                  !! Place of each block: (n_block)
+      integer, intent(in) :: panel(:)                  !! Panel of each place: (n_block)
+      type(elimination_plan_t), intent(inout) :: plan  !! The plan; receives the couplings
       integer :: next(size(plan%first)), at(size(place)), e, g, i, p, width, height
 
       next = 0

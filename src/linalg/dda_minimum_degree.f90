@@ -110,10 +110,8 @@ contains
    !> Eliminate a block, and with it all that are left without other neighbours than its own
    pure subroutine eliminate(q, p, least)
       type(quotient_t), intent(inout) :: q
-      !> The block
-      integer, intent(in) :: p
-      !> A degree that no block is below
-      integer, intent(inout) :: least
+      integer, intent(in) :: p         !! The block
+      integer, intent(inout) :: least  !! A degree that no block is below
       integer, allocatable :: member(:)
       integer :: b, i, k
 
@@ -170,18 +168,12 @@ contains
 
    !> Add blocks to a group that are left and not in it yet
    pure subroutine add_new(block, p, weight, mark, member, n)
-      !> The blocks
-      integer, intent(in) :: block(:)
-      !> Number of the group
-      integer, intent(in) :: p
-      !> Zero for a block that is not left: (n_block)
-      integer, intent(in) :: weight(:)
-      !> Newest group of each block: (n_block)
-      integer, intent(inout) :: mark(:)
-      !> Members of the group: (n_block)
-      integer, intent(inout) :: member(:)
-      !> Number of them
-      integer, intent(inout) :: n
+      integer, intent(in) :: block(:)      !! The blocks
+      integer, intent(in) :: p             !! Number of the group
+      integer, intent(in) :: weight(:)     !! Zero for a block that is not left: (n_block)
+      integer, intent(inout) :: mark(:)    !! Newest group of each block: (n_block)
+      integer, intent(inout) :: member(:)  !! Members of the group: (n_block)
+      integer, intent(inout) :: n          !! Number of them
       integer :: i
 
       do i = 1, size(block)
@@ -196,10 +188,8 @@ contains
    !> the degree
    pure subroutine renew(q, p, b)
       type(quotient_t), intent(inout) :: q
-      !> The newest group
-      integer, intent(in) :: p
-      !> The member
-      integer, intent(in) :: b
+      integer, intent(in) :: p  !! The newest group
+      integer, intent(in) :: b  !! The member
       integer :: kept(q%n_list(b) + 1), degree, i, n
 
       kept(1) = p
@@ -240,8 +230,7 @@ contains
    !> Blocks of the newest group with the same groups and neighbours become one
    pure subroutine join_same(q, member)
       type(quotient_t), intent(inout) :: q
-      !> Members of the newest group
-      integer, intent(in) :: member(:)
+      integer, intent(in) :: member(:)  !! Members of the newest group
       integer :: key(size(member)), i, k
 
       do i = 1, size(member)
@@ -264,10 +253,8 @@ contains
 
       !> Whether two blocks have the same lists
       pure logical function same(a, b)
-         !> The one
-         integer, intent(in) :: a
-         !> The other
-         integer, intent(in) :: b
+         integer, intent(in) :: a  !! The one
+         integer, intent(in) :: b  !! The other
          integer :: j
 
          same = q%n_list(a) == q%n_list(b) .and. q%n_group(a) == q%n_group(b)
@@ -284,8 +271,7 @@ contains
    !> Let a block stand for another one
    pure subroutine join(q, a, b)
       type(quotient_t), intent(inout) :: q
-      !> The block that stands for both
-      integer, intent(in) :: a
+      integer, intent(in) :: a  !! The block that stands for both
       integer, intent(in) :: b
 
       q%next_same(q%last_same(a)) = b
@@ -296,8 +282,7 @@ contains
    !> Put a block into the list of its degree
    pure subroutine put_in(q, b)
       type(quotient_t), intent(inout) :: q
-      !> The block
-      integer, intent(in) :: b
+      integer, intent(in) :: b  !! The block
 
       associate (first => q%first(q%degree(b)))
          q%next(b) = first

@@ -14,12 +14,9 @@ contains
 
    !> Factor a matrix in its place
    pure subroutine eliminate_full(a, exchange, regular)
-      !> Matrix in, factors out: (n, n)
-      real(wp), intent(inout) :: a(:, :)
-      !> Row that each row changed places with: (n)
-      integer, intent(out) :: exchange(:)
-      !> Whether no pivot is 0
-      logical, intent(out) :: regular
+      real(wp), intent(inout) :: a(:, :)   !! Matrix in, factors out: (n, n)
+      integer, intent(out) :: exchange(:)  !! Row that each row changed places with: (n)
+      logical, intent(out) :: regular      !! Whether no pivot is 0
       real(wp) :: row(size(a, 1))
       integer :: c, k, n, p
 
@@ -43,10 +40,8 @@ contains
    !> Solve with the factors
    pure subroutine substitute_full(a, exchange, x)
       real(wp), intent(in) :: a(:, :)
-      !> Exchanges of rows: (n)
-      integer, intent(in) :: exchange(:)
-      !> Right-hand side in, solution out: (n)
-      real(wp), intent(inout) :: x(:)
+      integer, intent(in) :: exchange(:)  !! Exchanges of rows: (n)
+      real(wp), intent(inout) :: x(:)     !! Right-hand side in, solution out: (n)
       integer :: k
 
       ! the exchanges first: those of a later column move factors of earlier ones, too
@@ -64,10 +59,8 @@ contains
 
    !> Lower triangle L of a = L L'
    pure function cholesky(a) result(lower)
-      !> Symmetric and positive definite: (n, n)
-      real(wp), intent(in) :: a(:, :)
-      !> The triangle: (n, n)
-      real(wp) :: lower(size(a, 1), size(a, 1))
+      real(wp), intent(in) :: a(:, :)            !! Symmetric and positive definite: (n, n)
+      real(wp) :: lower(size(a, 1), size(a, 1))  !! The triangle: (n, n)
       integer :: c, r
 
       lower = 0.0_wp
@@ -81,12 +74,9 @@ contains
 
    !> x of L L' x = b
    pure function solved(lower, b) result(x)
-      !> Lower triangle: (n, n)
-      real(wp), intent(in) :: lower(:, :)
-      !> Right-hand side: (n)
-      real(wp), intent(in) :: b(:)
-      !> Solution: (n)
-      real(wp) :: x(size(b))
+      real(wp), intent(in) :: lower(:, :)  !! Lower triangle: (n, n)
+      real(wp), intent(in) :: b(:)         !! Right-hand side: (n)
+      real(wp) :: x(size(b))               !! Solution: (n)
       integer :: r
 
       x = b

@@ -104,10 +104,8 @@ contains
    !> Corners of one block
    pure function block_vertices(cut, block) result(vertex)
       type(cut_model_t), intent(in) :: cut
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Its corners, anticlockwise: (2, n) [m]
-      real(wp), allocatable :: vertex(:, :)
+      integer, intent(in) :: block           !! Number of the block
+      real(wp), allocatable :: vertex(:, :)  !! Its corners, anticlockwise: (2, n) [m]
 
       allocate (vertex, source=cut%vertex(:, cut%first_vertex(block): &
          & cut%first_vertex(block + 1) - 1))
@@ -171,10 +169,8 @@ contains
    !> A corner on an edge, unless it is at one of its ends
    pure subroutine add_corner(cut, side, point, corners)
       type(cut_model_t), intent(in) :: cut
-      !> Block and edge: (2)
-      integer, intent(in) :: side(2)
-      !> The place: (2) [m]
-      real(wp), intent(in) :: point(2)
+      integer, intent(in) :: side(2)    !! Block and edge: (2)
+      real(wp), intent(in) :: point(2)  !! The place: (2) [m]
       type(corners_t), intent(inout) :: corners
       integer :: first, n, at
       real(wp) :: finish(2)
@@ -194,8 +190,7 @@ contains
    !> Bring the corners into their order around the blocks, each once
    pure subroutine sort_corners(corners, reach)
       type(corners_t), intent(inout) :: corners
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: reach  !! Distance within which things touch [m]
       integer, allocatable :: order(:)
       integer :: k, n
 

@@ -156,14 +156,11 @@ contains
 
    !> One fixed point for each edge that a fixed line crosses, a little inside the edge's block
    pure subroutine add_crossed(line, source, boxes, cut, point, n)
-      !> The fixed line: (4) [m]
-      real(wp), intent(in) :: line(4)
-      !> Its number
-      integer, intent(in) :: source
+      real(wp), intent(in) :: line(4)                              !! The fixed line: (4) [m]
+      integer, intent(in) :: source                                !! Its number
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
-      !> Receives the points
-      type(block_point_t), allocatable, intent(inout) :: point(:)
+      type(block_point_t), allocatable, intent(inout) :: point(:)  !! Receives the points
       integer, intent(inout) :: n
       real(wp) :: segment(4), edge(4), share(2), crossing(2)
       logical :: crossed
@@ -189,16 +186,11 @@ contains
 
    !> A point inside a block, off one of its edges; where there is no room, the centre of gravity
    pure function inside_point(vertex, crossing, edge, depth) result(point)
-      !> Corners of the block: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Place on the edge: (2) [m]
-      real(wp), intent(in) :: crossing(2)
-      !> Ends of the edge: (4) [m]
-      real(wp), intent(in) :: edge(4)
-      !> Wanted distance from the edge [m]
-      real(wp), intent(in) :: depth
-      !> The point: (2) [m]
-      real(wp) :: point(2)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners of the block: (2, n) [m]
+      real(wp), intent(in) :: crossing(2)   !! Place on the edge: (2) [m]
+      real(wp), intent(in) :: edge(4)       !! Ends of the edge: (4) [m]
+      real(wp), intent(in) :: depth         !! Wanted distance from the edge [m]
+      real(wp) :: point(2)                  !! The point: (2) [m]
       type(area_moments_t) :: moments
       real(wp) :: inward(2)
       integer :: i
@@ -259,11 +251,9 @@ contains
 
    !> Whether the box of a block lies away from a segment's
    pure logical function misses(segment, boxes, block)
-      !> Ends of the segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
+      real(wp), intent(in) :: segment(4)  !! Ends of the segment: (4) [m]
       type(boxes_t), intent(in) :: boxes
-      !> Number of the block
-      integer, intent(in) :: block
+      integer, intent(in) :: block        !! Number of the block
 
       misses = any(max(segment(1:2), segment(3:4)) < boxes%low(:, block)) &
          & .or. any(min(segment(1:2), segment(3:4)) > boxes%high(:, block))
@@ -271,8 +261,7 @@ contains
 
    !> Add a point to a list
    pure subroutine append_point(point, n, new)
-      !> The list
-      type(block_point_t), allocatable, intent(inout) :: point(:)
+      type(block_point_t), allocatable, intent(inout) :: point(:)  !! The list
       integer, intent(inout) :: n
       type(block_point_t), intent(in) :: new
       type(block_point_t), allocatable :: longer(:)
@@ -289,8 +278,7 @@ contains
    !> Say that a thing lies in no block
    pure subroutine no_block(error, what, model, entities, i)
       type(error_t), allocatable, intent(out) :: error
-      !> What the thing is called
-      character(len=*), intent(in) :: what
+      character(len=*), intent(in) :: what  !! What the thing is called
       type(line_model_t), intent(in) :: model
       type(entities_t), intent(in) :: entities
       integer, intent(in) :: i

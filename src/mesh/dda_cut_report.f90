@@ -46,14 +46,10 @@ contains
    !> Add a remark
    pure subroutine add_remark(remarks, line, reason, other, place)
       type(cut_remarks_t), intent(inout) :: remarks
-      !> Number of the line
-      integer, intent(in) :: line
-      !> One of cut_reason
-      integer, intent(in) :: reason
-      !> Number of the line in the way, or 0
-      integer, intent(in) :: other
-      !> Ends of the part: (4) [m]
-      real(wp), intent(in) :: place(4)
+      integer, intent(in) :: line       !! Number of the line
+      integer, intent(in) :: reason     !! One of cut_reason
+      integer, intent(in) :: other      !! Number of the line in the way, or 0
+      real(wp), intent(in) :: place(4)  !! Ends of the part: (4) [m]
       type(cut_remark_t), allocatable :: longer(:)
 
       if (.not. allocated(remarks%item)) allocate (remarks%item(16))

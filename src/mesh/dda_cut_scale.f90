@@ -48,12 +48,9 @@ contains
    !> Origin of a coordinate: 0 near zero; far from it a power of two near the model, from which
    !> coordinates are subtracted without rounding
    pure real(wp) function far_origin(low, high, size)
-      !> Smallest coordinate [m]
-      real(wp), intent(in) :: low
-      !> Largest coordinate [m]
-      real(wp), intent(in) :: high
-      !> Size of the model [m]
-      real(wp), intent(in) :: size
+      real(wp), intent(in) :: low   !! Smallest coordinate [m]
+      real(wp), intent(in) :: high  !! Largest coordinate [m]
+      real(wp), intent(in) :: size  !! Size of the model [m]
       real(wp) :: middle, step
 
       far_origin = 0.0_wp

@@ -73,17 +73,14 @@ module dda_cutting
       pure integer module function block_around(cut, boxes, point)
          type(cut_model_t), intent(in) :: cut
          type(boxes_t), intent(in) :: boxes
-         !> The point, from the origin of the cut: (2) [m]
-         real(wp), intent(in) :: point(2)
+         real(wp), intent(in) :: point(2)  !! The point, from the origin of the cut: (2) [m]
       end function block_around
 
       !> Take out the blocks that hold hole points (Shi: dc11)
       pure module subroutine remove_holes(model, cut, error)
          type(line_model_t), intent(in) :: model
-         !> The blocks; those with a hole point go
-         type(cut_model_t), intent(inout) :: cut
-         !> A hole point that lies in no block
-         type(error_t), allocatable, intent(out) :: error
+         type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point go
+         type(error_t), allocatable, intent(out) :: error  !! A hole point that lies in no block
       end subroutine remove_holes
 
       !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
@@ -105,8 +102,7 @@ module dda_cutting
       pure module subroutine give_materials(model, cut, error)
          type(line_model_t), intent(in) :: model
          type(cut_model_t), intent(inout) :: cut
-         !> A material line that meets no block
-         type(error_t), allocatable, intent(out) :: error
+         type(error_t), allocatable, intent(out) :: error  !! A material line that meets no block
       end subroutine give_materials
 
       !> Blocks of the loops that run around an area; scales, points and materials are left to
@@ -128,8 +124,7 @@ contains
    pure subroutine cut_blocks(model, cut, error)
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(out) :: cut
-      !> What keeps the lines from making blocks
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What keeps the lines from making blocks
       type(network_t) :: network
       type(loops_t) :: loops
 
@@ -151,8 +146,7 @@ contains
    !> Nodes and edges that bound blocks (Shi: dc04 to dc06)
    pure subroutine make_network(model, cut, network, error)
       type(line_model_t), intent(in) :: model
-      !> Receives the scales and what was dropped
-      type(cut_model_t), intent(inout) :: cut
+      type(cut_model_t), intent(inout) :: cut  !! Receives the scales and what was dropped
       type(network_t), intent(out) :: network
       type(error_t), allocatable, intent(out) :: error
       type(crossings_t) :: crossings
@@ -190,11 +184,9 @@ contains
 
    !> Areas of blocks add up to those that the outer loops enclose (Shi: dc16, dc17)
    pure subroutine check_areas(loops, cut, file, error)
-      !> All loops
-      type(loops_t), intent(in) :: loops
+      type(loops_t), intent(in) :: loops    !! All loops
       type(cut_model_t), intent(in) :: cut
-      !> Name of the geometry file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the geometry file
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: enclosed, room
 
@@ -247,11 +239,9 @@ contains
       type(line_model_t), intent(in) :: model
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
-      !> Number of the loop around the inner group
-      integer, intent(in) :: inner
+      integer, intent(in) :: inner  !! Number of the loop around the inner group
       type(cut_model_t), intent(in) :: cut
-      !> Number of the outer block
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the outer block
       type(error_t), allocatable, intent(out) :: error
       integer :: h, line
 
@@ -300,8 +290,7 @@ contains
 
    !> The half-edge on the other side of the same edge
    elemental integer function opposite(half_edge)
-      !> Its number
-      integer, intent(in) :: half_edge
+      integer, intent(in) :: half_edge  !! Its number
 
       opposite = half_edge - 1 + 2*mod(half_edge, 2)
    end function opposite
@@ -348,8 +337,7 @@ contains
    !> Area inside a loop, by triangles seen from its first node
    pure real(wp) function loop_area(network, half_edge)
       type(network_t), intent(in) :: network
-      !> The half-edges of the loop: (n)
-      integer, intent(in) :: half_edge(:)
+      integer, intent(in) :: half_edge(:)  !! The half-edges of the loop: (n)
       real(wp) :: start(2), a(2), b(2)
       integer :: k
 

@@ -53,8 +53,7 @@ contains
    !> An empty list with room
    pure subroutine new_entities(entities, room)
       type(entities_t), intent(out) :: entities
-      !> How many are expected
-      integer, intent(in) :: room
+      integer, intent(in) :: room  !! How many are expected
 
       allocate (entities%place(4, room), entities%material(room), entities%row(room))
    end subroutine new_entities
@@ -93,8 +92,7 @@ contains
    pure subroutine add_entity(entities, place, material, row)
       type(entities_t), intent(inout) :: entities
       real(wp), intent(in) :: place(4)
-      !> Its material; 0 if the kind has none
-      integer, intent(in) :: material
+      integer, intent(in) :: material  !! Its material; 0 if the kind has none
       integer, intent(in) :: row
       type(entities_t) :: longer
 

@@ -57,13 +57,10 @@ contains
 
    !> All crossings, ordered by the first line, then by the second
    pure subroutine find_crossings(line, reach, crossings, error)
-      !> Ends of the lines: (4, n) [m]
-      real(wp), intent(in) :: line(:, :)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: line(:, :)                !! Ends of the lines: (4, n) [m]
+      real(wp), intent(in) :: reach                     !! Distance within which things touch [m]
       type(crossings_t), intent(out) :: crossings
-      !> Allocated if there are too many
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if there are too many
       type(cell_grid_t) :: grid
       integer, allocatable :: order(:)
       integer :: cell
@@ -89,8 +86,7 @@ contains
    pure subroutine cross_in_cell(line, reach, grid, cell, crossings)
       real(wp), intent(in) :: line(:, :), reach
       type(cell_grid_t), intent(in) :: grid
-      !> Number of the cell
-      integer, intent(in) :: cell
+      integer, intent(in) :: cell  !! Number of the cell
       type(crossings_t), intent(inout) :: crossings
       real(wp) :: point(2, 2), low(2), high(2)
       integer :: a, b, i, j, k, n
@@ -116,12 +112,9 @@ contains
    !> Add a crossing
    pure subroutine add_crossing(crossings, i, j, point)
       type(crossings_t), intent(inout) :: crossings
-      !> One line
-      integer, intent(in) :: i
-      !> The other, with a larger number
-      integer, intent(in) :: j
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      integer, intent(in) :: i          !! One line
+      integer, intent(in) :: j          !! The other, with a larger number
+      real(wp), intent(in) :: point(2)  !! The point: (2) [m]
       type(crossings_t) :: longer
 
       if (crossings%n == size(crossings%point, 2)) then
@@ -159,10 +152,8 @@ contains
    !> Ends of an edge
    pure function edge_place(network, edge) result(place)
       type(network_t), intent(in) :: network
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> Its ends: (4) [m]
-      real(wp) :: place(4)
+      integer, intent(in) :: edge  !! Number of the edge
+      real(wp) :: place(4)         !! Its ends: (4) [m]
 
       place(1:2) = network%node(:, network%edge(1, edge))
       place(3:4) = network%node(:, network%edge(2, edge))
@@ -172,10 +163,8 @@ contains
    pure subroutine drop_edge(network, edge, reason, other, remarks)
       type(network_t), intent(inout) :: network
       integer, intent(in) :: edge
-      !> One of cut_reason
-      integer, intent(in) :: reason
-      !> Number of the line in the way, or 0
-      integer, intent(in) :: other
+      integer, intent(in) :: reason  !! One of cut_reason
+      integer, intent(in) :: other   !! Number of the line in the way, or 0
       type(cut_remarks_t), intent(inout) :: remarks
 
       network%alive(edge) = .false.
@@ -188,8 +177,7 @@ contains
       type(cut_scale_t), intent(in) :: scale
       type(crossings_t), intent(in) :: crossings
       type(network_t), intent(inout) :: network
-      !> Node of each crossing: (n)
-      integer, allocatable, intent(out) :: node_of(:)
+      integer, allocatable, intent(out) :: node_of(:)  !! Node of each crossing: (n)
       type(node_table_t) :: table
       real(wp) :: distance
       integer :: k
@@ -300,10 +288,8 @@ contains
 
    !> An empty table of small squares
    pure subroutine new_node_table(room, side, table)
-      !> Most nodes
-      integer, intent(in) :: room
-      !> Largest distance at which a node will be looked for [m]
-      real(wp), intent(in) :: side
+      integer, intent(in) :: room   !! Most nodes
+      real(wp), intent(in) :: side  !! Largest distance at which a node will be looked for [m]
       type(node_table_t), intent(out) :: table
 
       allocate (table%point(2, room), table%next(room))
@@ -314,8 +300,7 @@ contains
    !> Add a node; the table must have room
    pure subroutine add_node(table, point)
       type(node_table_t), intent(inout) :: table
-      !> Its place: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: point(2)  !! Its place: (2) [m]
       integer :: chain
 
       chain = chain_of(table, square_of(table, point))
@@ -329,8 +314,7 @@ contains
    pure integer function nearest_node(table, point, distance)
       type(node_table_t), intent(in) :: table
       real(wp), intent(in) :: point(2)
-      !> How far a node may be, at most the side of the table [m]
-      real(wp), intent(in) :: distance
+      real(wp), intent(in) :: distance  !! How far a node may be, at most the side of the table [m]
       real(wp) :: nearest, here
       integer(int64) :: square(2)
       integer :: i, j, node
@@ -358,8 +342,7 @@ contains
    pure function square_of(table, point) result(square)
       type(node_table_t), intent(in) :: table
       real(wp), intent(in) :: point(2)
-      !> Column and row: (2)
-      integer(int64) :: square(2)
+      integer(int64) :: square(2)  !! Column and row: (2)
 
       square = floor(point/table%side, int64)
    end function square_of
@@ -367,8 +350,7 @@ contains
    !> The chain that a square belongs to; several squares share one
    pure integer function chain_of(table, square)
       type(node_table_t), intent(in) :: table
-      !> Column and row: (2)
-      integer(int64), intent(in) :: square(2)
+      integer(int64), intent(in) :: square(2)  !! Column and row: (2)
       integer(int64), parameter :: prime(2) = [73856093_int64, 19349663_int64]
       integer(int64), parameter :: room = 1000000007_int64
 
@@ -379,8 +361,7 @@ contains
    !> Node where a half-edge starts
    pure integer function half_edge_start(network, half_edge)
       type(network_t), intent(in) :: network
-      !> Number of the half-edge
-      integer, intent(in) :: half_edge
+      integer, intent(in) :: half_edge  !! Number of the half-edge
 
       half_edge_start = network%edge(2 - mod(half_edge, 2), (half_edge + 1)/2)
    end function half_edge_start

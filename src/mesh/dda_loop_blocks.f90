@@ -86,10 +86,8 @@ contains
 
    !> The corner that follows a place of a loop
    pure integer function next_turn(turns, k)
-      !> Which places are corners: (n)
-      logical, intent(in) :: turns(:)
-      !> The place
-      integer, intent(in) :: k
+      logical, intent(in) :: turns(:)  !! Which places are corners: (n)
+      integer, intent(in) :: k         !! The place
       integer :: i
 
       next_turn = k
@@ -101,12 +99,9 @@ contains
 
    !> Whether a point lies on the straight way between two others
    pure logical function is_between(point, start, finish, reach)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Where the way starts: (2) [m]
-      real(wp), intent(in) :: start(2)
-      !> Where it ends: (2) [m]
-      real(wp), intent(in) :: finish(2)
+      real(wp), intent(in) :: point(2)   !! The point: (2) [m]
+      real(wp), intent(in) :: start(2)   !! Where the way starts: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]
       real(wp), intent(in) :: reach
       real(wp) :: way(2), arm(2)
 
@@ -191,8 +186,7 @@ contains
    !> Let a pair of edges reach over one more part
    pure subroutine join_parts(pair, place)
       type(edge_pair_t), intent(inout) :: pair
-      !> Ends of the part, in the same direction: (4) [m]
-      real(wp), intent(in) :: place(4)
+      real(wp), intent(in) :: place(4)  !! Ends of the part, in the same direction: (4) [m]
       real(wp) :: way(2)
 
       way = pair%place(3:4) - pair%place(1:2)

@@ -134,12 +134,9 @@ contains
    pure logical function edges_cross(network, reach, edge, first, second)
       type(network_t), intent(in) :: network
       real(wp), intent(in) :: reach
-      !> Numbers of the edges: (2)
-      integer, intent(in) :: edge(2)
-      !> Ends of the first: (4) [m]
-      real(wp), intent(in) :: first(4)
-      !> Ends of the second: (4) [m]
-      real(wp), intent(in) :: second(4)
+      integer, intent(in) :: edge(2)     !! Numbers of the edges: (2)
+      real(wp), intent(in) :: first(4)   !! Ends of the first: (4) [m]
+      real(wp), intent(in) :: second(4)  !! Ends of the second: (4) [m]
       real(wp) :: share(2), rim(2)
 
       edges_cross = .false.

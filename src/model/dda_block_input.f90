@@ -83,10 +83,8 @@ contains
 
    !> The first movable block that no chain of joints ties to a fixed one; 0 if there is none
    pure integer function unsupported_block(fixed, pair)
-      !> Blocks that cannot move, or are held: (n_block)
-      logical, intent(in) :: fixed(:)
-      !> Blocks of each joint: (2, n_joint)
-      integer, intent(in) :: pair(:, :)
+      logical, intent(in) :: fixed(:)    !! Blocks that cannot move, or are held: (n_block)
+      integer, intent(in) :: pair(:, :)  !! Blocks of each joint: (2, n_joint)
       integer :: leader(0:size(fixed)), b, j
 
       ! blocks with one leader are tied to one another, those that are fixed to the ground, block 0
@@ -122,8 +120,7 @@ contains
    !> Go from a block to its leader, and halve the way for those who come after (Tarjan 1975)
    pure subroutine find_leader(leader, block)
       integer, intent(inout) :: leader(0:)
-      !> The block in, its leader out
-      integer, intent(inout) :: block
+      integer, intent(inout) :: block  !! The block in, its leader out
 
       do while (leader(block) /= block)
          leader(block) = leader(leader(block))

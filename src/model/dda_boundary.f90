@@ -105,8 +105,7 @@ contains
 
    !> A history that is the same at all times
    pure type(history_t) function constant_history(value)
-      !> Components along x and y: (2)
-      real(wp), intent(in) :: value(2)
+      real(wp), intent(in) :: value(2)  !! Components along x and y: (2)
 
       allocate (constant_history%time(1), source=0.0_wp)
       allocate (constant_history%value(2, 1))
@@ -135,8 +134,7 @@ contains
    !> Times at which blocks are built or taken away
    pure function stage_times(boundary) result(time)
       type(boundary_t), intent(in) :: boundary
-      !> The times, ascending, each once: (n) [s]
-      real(wp), allocatable :: time(:)
+      real(wp), allocatable :: time(:)  !! The times, ascending, each once: (n) [s]
       integer :: i, n
 
       allocate (time(0))
@@ -149,12 +147,9 @@ contains
    !> Which blocks are there after the changes of a time
    pure function present_at(boundary, n_block, time) result(present)
       type(boundary_t), intent(in) :: boundary
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> The time [s]
-      real(wp), intent(in) :: time
-      !> Whether each is there: (n_block)
-      logical :: present(n_block)
+      integer, intent(in) :: n_block  !! Number of blocks
+      real(wp), intent(in) :: time    !! The time [s]
+      logical :: present(n_block)     !! Whether each is there: (n_block)
       integer :: i
 
       present = .true.
@@ -173,8 +168,7 @@ contains
    pure function value_at(history, time) result(value)
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: time
-      !> Components along x and y: (2)
-      real(wp) :: value(2)
+      real(wp) :: value(2)  !! Components along x and y: (2)
       real(wp) :: share
       integer :: i
 
@@ -194,10 +188,8 @@ contains
    !> Displacement of a led point: where its path begins is reached in the second before time zero
    pure function led_displacement(path, time) result(displacement)
       type(history_t), intent(in) :: path
-      !> The time, not before that second [s]
-      real(wp), intent(in) :: time
-      !> Components along x and y: (2) [m]
-      real(wp) :: displacement(2)
+      real(wp), intent(in) :: time  !! The time, not before that second [s]
+      real(wp) :: displacement(2)   !! Components along x and y: (2) [m]
 
       displacement = min(1.0_wp, 1.0_wp + time)*value_at(path, max(0.0_wp, time))
    end function led_displacement
@@ -205,12 +197,9 @@ contains
    !> Mean of a history over a time, so that short pulses bring in their whole impulse
    pure function mean_over(history, start, finish) result(mean)
       type(history_t), intent(in) :: history
-      !> Beginning of the time [s]
-      real(wp), intent(in) :: start
-      !> End of the time, after its beginning [s]
-      real(wp), intent(in) :: finish
-      !> Components along x and y: (2)
-      real(wp) :: mean(2)
+      real(wp), intent(in) :: start   !! Beginning of the time [s]
+      real(wp), intent(in) :: finish  !! End of the time, after its beginning [s]
+      real(wp) :: mean(2)             !! Components along x and y: (2)
       real(wp) :: before(2), after(2), left, right
       integer :: i
 
@@ -238,8 +227,7 @@ contains
    pure function rate_at(history, time) result(rate)
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: time
-      !> Components along x and y, per second: (2)
-      real(wp) :: rate(2)
+      real(wp) :: rate(2)  !! Components along x and y, per second: (2)
       integer :: i
 
       rate = 0.0_wp
@@ -252,8 +240,7 @@ contains
 
    !> How many of some increasing times lie before a time
    pure integer function records_before(times, time)
-      !> The times: (n) [s]
-      real(wp), intent(in) :: times(:)
+      real(wp), intent(in) :: times(:)  !! The times: (n) [s]
       real(wp), intent(in) :: time
       integer :: high, middle
 

@@ -10,12 +10,9 @@ contains
 
    !> Matrix T that carries the six block unknowns to the displacement of a point
    pure function displacement_matrix(point, centroid) result(t)
-      !> Where the displacement is wanted: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Centre of gravity of the block: (2) [m]
-      real(wp), intent(in) :: centroid(2)
-      !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
-      real(wp) :: t(2, 6)
+      real(wp), intent(in) :: point(2)     !! Where the displacement is wanted: (2) [m]
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
+      real(wp) :: t(2, 6)                  !! Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
       real(wp) :: x, y
 
       x = point(1) - centroid(1)

@@ -18,10 +18,8 @@ contains
 
    !> Acceleration of a record that holds it; none before and after
    pure function acceleration_of_record(record) result(acceleration)
-      !> The record: two times or more [m/s2]
-      type(history_t), intent(in) :: record
-      !> The acceleration [m/s2]
-      type(history_t) :: acceleration
+      type(history_t), intent(in) :: record  !! The record: two times or more [m/s2]
+      type(history_t) :: acceleration        !! The acceleration [m/s2]
       integer :: n
 
       n = size(record%time)
@@ -35,10 +33,8 @@ contains
 
    !> Acceleration of a velocity that is linear between its times; none before and after
    pure function acceleration_of_velocity(velocity) result(acceleration)
-      !> The velocity: two times or more [m/s]
-      type(history_t), intent(in) :: velocity
-      !> Its rate [m/s2]
-      type(history_t) :: acceleration
+      type(history_t), intent(in) :: velocity  !! The velocity: two times or more [m/s]
+      type(history_t) :: acceleration          !! Its rate [m/s2]
       real(wp) :: length
       integer :: i, n
 
@@ -61,10 +57,8 @@ contains
    !> through two); none before the first time and after the last, where the ground goes on as fast
    !> as it was
    pure function acceleration_of_displacement(displacement) result(acceleration)
-      !> The displacement: two times or more [m]
-      type(history_t), intent(in) :: displacement
-      !> Its second derivative [m/s2]
-      type(history_t) :: acceleration
+      type(history_t), intent(in) :: displacement  !! The displacement: two times or more [m]
+      type(history_t) :: acceleration              !! Its second derivative [m/s2]
       integer :: n
 
       n = size(displacement%time)
@@ -81,20 +75,16 @@ contains
 
    !> Length of a jump at an end of an interval: no time, but more than rounding
    pure real(wp) function jump_beside(interval)
-      !> Beginning and end: (2) [s]
-      real(wp), intent(in) :: interval(2)
+      real(wp), intent(in) :: interval(2)  !! Beginning and end: (2) [s]
 
       jump_beside = max(share*(interval(2) - interval(1)), 4.0_wp*spacing(maxval(abs(interval))))
    end function jump_beside
 
    !> Second derivatives of the spline at its points: a tridiagonal system for the inner ones
    pure function second_derivatives(time, value) result(second)
-      !> Where the points are, increasing: (n)
-      real(wp), intent(in) :: time(:)
-      !> The points: (2, n)
-      real(wp), intent(in) :: value(:, :)
-      !> Second derivatives: (2, n)
-      real(wp) :: second(2, size(time))
+      real(wp), intent(in) :: time(:)      !! Where the points are, increasing: (n)
+      real(wp), intent(in) :: value(:, :)  !! The points: (2, n)
+      real(wp) :: second(2, size(time))    !! Second derivatives: (2, n)
       real(wp) :: length(size(time) - 1), slope(2, size(time) - 1)
       real(wp) :: diagonal(size(time)), above(size(time)), below(size(time)), ratio
       integer :: i, n

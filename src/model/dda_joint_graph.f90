@@ -69,10 +69,8 @@ contains
    !> Whether a joint may slide against friction: under Coulomb friction that is another thing than
    !> under the associated rule
    elemental logical function rubs(kind, friction)
-      !> What the joint can carry, one of joint_kind
-      integer, intent(in) :: kind
-      !> Its coefficient of friction
-      real(wp), intent(in) :: friction
+      integer, intent(in) :: kind       !! What the joint can carry, one of joint_kind
+      real(wp), intent(in) :: friction  !! Its coefficient of friction
 
       rubs = (kind == joint_kind%contact .or. kind == joint_kind%corner) &
          & .and. friction > 0.0_wp .and. friction < rough
@@ -88,8 +86,7 @@ contains
 
    !> Keep some of the joints
    pure subroutine keep_joints(kept, graph)
-      !> Which: (n_joint)
-      logical, intent(in) :: kept(:)
+      logical, intent(in) :: kept(:)  !! Which: (n_joint)
       type(joint_graph_t), intent(inout) :: graph
       integer :: k(count(kept)), j
 

@@ -45,8 +45,7 @@ contains
    !> Hooke's law of the plane: stress (sx, sy, txy) from strain (ex, ey, gxy)
    pure function elasticity_matrix(material) result(d)
       type(material_t), intent(in) :: material
-      !> Symmetric matrix: (3, 3) [Pa]
-      real(wp) :: d(3, 3)
+      real(wp) :: d(3, 3)  !! Symmetric matrix: (3, 3) [Pa]
       real(wp) :: young, poisson
 
       young = material%young
@@ -74,18 +73,15 @@ contains
    !> Coefficient of friction of a joint that has lost some of its strength
    elemental real(wp) function friction_left(law, intact)
       type(joint_law_t), intent(in) :: law
-      !> Share of the strength that is left
-      real(wp), intent(in) :: intact
+      real(wp), intent(in) :: intact  !! Share of the strength that is left
 
       friction_left = law%friction - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
    end function friction_left
 
    !> Coefficient of friction of a friction angle
    elemental function friction_coefficient(friction_deg) result(coefficient)
-      !> Angle of friction, 0 <= angle < 90 [deg]
-      real(wp), intent(in) :: friction_deg
-      !> tan(phi)
-      real(wp) :: coefficient
+      real(wp), intent(in) :: friction_deg  !! Angle of friction, 0 <= angle < 90 [deg]
+      real(wp) :: coefficient               !! tan(phi)
 
       coefficient = tan(friction_deg*degree)
    end function friction_coefficient

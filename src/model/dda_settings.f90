@@ -82,8 +82,7 @@ contains
    !> that what is symmetric stays so
    pure function load_direction(settings) result(direction)
       type(settings_t), intent(in) :: settings
-      !> Components to the right and up: (2)
-      real(wp) :: direction(2)
+      real(wp) :: direction(2)  !! Components to the right and up: (2)
 
       direction = gravity_direction(settings%tilt)
       direction(1) = direction(1) + full_push(settings)
@@ -107,10 +106,8 @@ contains
 
    !> Direction of gravity that is turned from upright
    pure function gravity_direction(tilt) result(direction)
-      !> Angle to the right [rad]
-      real(wp), intent(in) :: tilt
-      !> Unit vector: (2)
-      real(wp) :: direction(2)
+      real(wp), intent(in) :: tilt  !! Angle to the right [rad]
+      real(wp) :: direction(2)      !! Unit vector: (2)
 
       direction = [sin(tilt), -cos(tilt)]
       where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp

@@ -37,12 +37,9 @@ contains
    !> Forces at both ends of a part of an edge whose block lies on its left
    pure function edge_forces(water, rise, part) result(force)
       type(water_t), intent(in) :: water
-      !> By how much the line of heads has risen [m]
-      real(wp), intent(in) :: rise
-      !> Its ends: (4) [m]
-      real(wp), intent(in) :: part(4)
-      !> At its start and at its end: (2, 2) [N/m]
-      real(wp) :: force(2, 2)
+      real(wp), intent(in) :: rise     !! By how much the line of heads has risen [m]
+      real(wp), intent(in) :: part(4)  !! Its ends: (4) [m]
+      real(wp) :: force(2, 2)          !! At its start and at its end: (2, 2) [N/m]
       real(wp) :: low, high, share(2), way, reach
       integer :: k
 
@@ -72,14 +69,10 @@ contains
    pure subroutine add_leg(water, rise, part, leg, share, force)
       type(water_t), intent(in) :: water
       real(wp), intent(in) :: rise
-      !> Ends of the part of the edge: (4) [m]
-      real(wp), intent(in) :: part(4)
-      !> Number of the place at which the leg ends
-      integer, intent(in) :: leg
-      !> Where it begins and ends along the part: (2)
-      real(wp), intent(in) :: share(2)
-      !> Receives the forces at both ends: (2, 2) [N/m]
-      real(wp), intent(inout) :: force(2, 2)
+      real(wp), intent(in) :: part(4)         !! Ends of the part of the edge: (4) [m]
+      integer, intent(in) :: leg              !! Number of the place at which the leg ends
+      real(wp), intent(in) :: share(2)        !! Where it begins and ends along the part: (2)
+      real(wp), intent(inout) :: force(2, 2)  !! Receives the forces at both ends: (2, 2) [N/m]
       real(wp) :: depth(2), s(2), place(2), inward(2), at, pressure, weight
       integer :: i
 

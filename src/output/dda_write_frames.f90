@@ -74,8 +74,7 @@ contains
    !> Rows of one frame in frame_joints.csv
    pure function frame_joint_lines(stamp, row) result(lines)
       type(frame_stamp_t), intent(in) :: stamp
-      !> The joints: (n_joint)
-      type(frame_joint_row_t), intent(in) :: row(:)
+      type(frame_joint_row_t), intent(in) :: row(:)  !! The joints: (n_joint)
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       integer :: j

@@ -167,8 +167,7 @@ contains
 
    !> Rows of the blocks of one case in blocks.csv
    pure function block_lines(number, blocks) result(lines)
-      !> Number of the case
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the case
       type(told_blocks_t), intent(in) :: blocks
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
@@ -238,8 +237,7 @@ contains
 
    !> A known number
    elemental type(number_t) function some_number(value)
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The value
 
       some_number = number_t(.true., value)
    end function some_number
@@ -299,8 +297,7 @@ contains
 
    !> Numbers as texts with commas between them, nothing for what is unknown
    pure function number_fields(number) result(text)
-      !> The numbers: (n)
-      type(number_t), intent(in) :: number(:)
+      type(number_t), intent(in) :: number(:)  !! The numbers: (n)
       character(len=:), allocatable :: text
       character(len=33*size(number)) :: buffer
       integer :: i, k, n
@@ -328,8 +325,7 @@ contains
 
    !> Angles joined by semicolons, without the last digits that only rounding makes
    pure function joined(angles) result(text)
-      !> The angles: (:) [deg]
-      real(wp), intent(in), allocatable :: angles(:)
+      real(wp), intent(in), allocatable :: angles(:)  !! The angles: (:) [deg]
       character(len=:), allocatable :: text
       integer :: i
 
@@ -343,8 +339,7 @@ contains
 
    !> A text as a field of CSV, in quotes where it needs them
    pure function quoted(text) result(field)
-      !> Any text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Any text
       character(len=:), allocatable :: field
       integer :: i
 

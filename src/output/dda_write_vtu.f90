@@ -81,10 +81,8 @@ contains
    !> no error
    subroutine write_points(file, point, point_fields, error)
       character(len=*), intent(in) :: file
-      !> The points: (2, n_point) [m]
-      real(wp), intent(in) :: point(:, :)
-      !> Fields with a value at each point: (:)
-      type(field_t), intent(in) :: point_fields(:)
+      real(wp), intent(in) :: point(:, :)           !! The points: (2, n_point) [m]
+      type(field_t), intent(in) :: point_fields(:)  !! Fields with a value at each point: (:)
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: none(0)
       integer :: i
@@ -137,8 +135,7 @@ contains
    subroutine append_cells(vtu, kind, n_point, next_point)
       type(binary_file_t), intent(in) :: vtu
       integer, intent(in) :: kind
-      !> Number of points
-      integer, intent(in) :: n_point
+      integer, intent(in) :: n_point  !! Number of points
       integer, intent(in) :: next_point(:)
       integer(int32), allocatable :: connectivity(:)
       integer :: i
@@ -158,11 +155,9 @@ contains
    !> All of the file before its data: arrays in the order in which they are written
    pure function grid_header(n_point, n_cell, point_fields, cell_fields) result(text)
       integer, intent(in) :: n_point
-      !> Number of cells
-      integer, intent(in) :: n_cell
+      integer, intent(in) :: n_cell          !! Number of cells
       type(field_t), intent(in) :: point_fields(:), cell_fields(:)
-      !> The text, up to the mark behind which the data begin
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The text, up to the mark behind which the data begin
       type(header_t) :: header
 
       header%text = file_head("UnstructuredGrid")
@@ -191,10 +186,8 @@ contains
    !> Announce the fields of the points or of the cells
    pure subroutine add_fields(header, element, fields)
       type(header_t), intent(inout) :: header
-      !> PointData or CellData
-      character(len=*), intent(in) :: element
-      !> The fields: (:)
-      type(field_t), intent(in) :: fields(:)
+      character(len=*), intent(in) :: element  !! PointData or CellData
+      type(field_t), intent(in) :: fields(:)   !! The fields: (:)
       integer :: i
 
       call add_line(header, "      <"//element//">")
@@ -222,16 +215,14 @@ contains
    !> Put a line below the header
    pure subroutine add_line(header, line)
       type(header_t), intent(inout) :: header
-      !> The line
-      character(len=*), intent(in) :: line
+      character(len=*), intent(in) :: line  !! The line
 
       header%text = header%text//line//new_line("a")
    end subroutine add_line
 
    !> Begin an index without entries
    subroutine open_index(name, index, error)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the file; one that exists is replaced
       type(pvd_index_t), intent(out) :: index
       type(error_t), allocatable, intent(out) :: error
 
@@ -310,10 +301,8 @@ contains
    !> The row of a block
    pure function block_line(cut, block, held) result(line)
       type(cut_model_t), intent(in) :: cut
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Its fixed, load and measured points: (3)
-      integer, intent(in) :: held(3)
+      integer, intent(in) :: block    !! Number of the block
+      integer, intent(in) :: held(3)  !! Its fixed, load and measured points: (3)
       character(len=:), allocatable :: line
       character(len=:), allocatable :: x, y, joint
       type(area_moments_t) :: moments

@@ -101,8 +101,7 @@ contains
    !> Chords of a voussoir at the intrados and at the extrados
    pure subroutine add_chords(system, block, model)
       type(block_system_t), intent(in) :: system
-      !> Number of the voussoir
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the voussoir
       type(line_model_t), intent(inout) :: model
       integer :: first, last, k
 
@@ -117,8 +116,7 @@ contains
    !> The joint between a voussoir and the next one, a little too long
    pure subroutine add_joint(system, block, model)
       type(block_system_t), intent(in) :: system
-      !> Number of the voussoir on the left
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the voussoir on the left
       type(line_model_t), intent(inout) :: model
       real(wp) :: intrados(2), extrados(2), more(2)
       integer :: first, n
@@ -133,10 +131,8 @@ contains
 
    !> An abutment with its four fixed points
    pure subroutine add_abutment(corner, material, model)
-      !> Its corners, the face first: (2, 4) [m]
-      real(wp), intent(in) :: corner(2, 4)
-      !> Joint material of the face
-      integer, intent(in) :: material
+      real(wp), intent(in) :: corner(2, 4)  !! Its corners, the face first: (2, 4) [m]
+      integer, intent(in) :: material       !! Joint material of the face
       type(line_model_t), intent(inout) :: model
       real(wp) :: share(2), point(2)
       integer :: k, i, j
@@ -157,10 +153,8 @@ contains
    !> Add a line
    pure subroutine add_line(model, start, finish, material)
       type(line_model_t), intent(inout) :: model
-      !> Where it starts: (2) [m]
-      real(wp), intent(in) :: start(2)
-      !> Where it ends: (2) [m]
-      real(wp), intent(in) :: finish(2)
+      real(wp), intent(in) :: start(2)   !! Where it starts: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]
       integer, intent(in) :: material
 
       call add_entity(model%line, [start, finish], material, 0)
@@ -227,8 +221,7 @@ contains
    !> What the files cannot carry
    pure function what_is_lost(deck) result(text)
       type(deck_t), intent(in) :: deck
-      !> Keys, parted by commas; empty if nothing is lost
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
 
       text = ""
       if (abs(deck%load%gravity_direction_deg%number + 90.0_wp) > 0.0_wp) &

@@ -65,8 +65,7 @@ contains
    !> Angles of all joints from the crown, positive to the right
    pure function joint_angles_deg(deck) result(angle)
       type(deck_t), intent(in) :: deck
-      !> The angles, from left to right: (n_joint) [deg]
-      real(wp), allocatable :: angle(:)
+      real(wp), allocatable :: angle(:)  !! The angles, from left to right: (n_joint) [deg]
       real(wp), allocatable :: half(:)
       integer :: n
 
@@ -108,8 +107,7 @@ contains
    !> Joints of one half of the arch, from the crown
    pure function half_joints_deg(deck) result(joints)
       type(deck_t), intent(in) :: deck
-      !> Angles from the crown: (n) [deg]
-      real(wp), allocatable :: joints(:)
+      real(wp), allocatable :: joints(:)  !! Angles from the crown: (n) [deg]
 
       if (deck%arch%joints_deg%given) then
          joints = deck%arch%joints_deg%numbers
@@ -200,8 +198,7 @@ contains
    !> weight of a voussoir wrong by eps over the thickness ratio
    pure real(wp) function weight_rounding(half_angle, thickness_ratio)
       real(wp), intent(in) :: half_angle
-      !> Thickness over radius
-      real(wp), intent(in) :: thickness_ratio
+      real(wp), intent(in) :: thickness_ratio  !! Thickness over radius
 
       weight_rounding = min(1.0_wp, half_angle**2/2.0_wp)*epsilon(1.0_wp)/thickness_ratio
    end function weight_rounding
@@ -209,10 +206,8 @@ contains
    !> Exact critical thickness ratio of the very same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)
       type(deck_t), intent(in) :: deck
-      !> The ratio
-      real(wp), intent(out) :: eta
-      !> Whether there is one and it is known
-      logical, intent(out) :: known
+      real(wp), intent(out) :: eta   !! The ratio
+      logical, intent(out) :: known  !! Whether there is one and it is known
       type(arch_shape_t) :: shape
       type(discrete_solution_t) :: solution
       real(wp) :: friction

@@ -47,8 +47,7 @@ contains
    !> Add the forces of all water to the loaded points
    pure subroutine add_water_loads(plan, rise, boundary)
       type(block_plan_t), intent(in) :: plan
-      !> By how much all lines of heads have risen [m]
-      real(wp), intent(in) :: rise
+      real(wp), intent(in) :: rise  !! By how much all lines of heads have risen [m]
       type(boundary_t), intent(inout) :: boundary
       type(loaded_point_t), allocatable :: point(:)
       real(wp), allocatable :: force(:, :, :), time(:), part(:, :)
@@ -94,8 +93,7 @@ contains
    !> Times at which the forces are recorded
    pure subroutine times_of(water, time)
       type(water_t), intent(in) :: water
-      !> The times: (n) [s]
-      real(wp), allocatable, intent(out) :: time(:)
+      real(wp), allocatable, intent(out) :: time(:)  !! The times: (n) [s]
       integer :: i, k, n
 
       n = size(water%time)
@@ -115,8 +113,7 @@ contains
    !> By how much a line of heads has risen at a time
    pure real(wp) function rise_at(water, time)
       type(water_t), intent(in) :: water
-      !> The time [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! The time [s]
       integer :: i, n
 
       n = size(water%time)
@@ -182,13 +179,10 @@ contains
    pure subroutine split_edge(plan, tree, block, edge, part, covered)
       type(block_plan_t), intent(in) :: plan
       type(box_tree_t), intent(in) :: tree
-      !> Block of the edge
-      integer, intent(in) :: block
+      integer, intent(in) :: block                      !! Block of the edge
       real(wp), intent(in) :: edge(4)
-      !> Ends of the parts: (4, n) [m]
-      real(wp), allocatable, intent(out) :: part(:, :)
-      !> Whether another block lies on each: (n)
-      logical, allocatable, intent(out) :: covered(:)
+      real(wp), allocatable, intent(out) :: part(:, :)  !! Ends of the parts: (4, n) [m]
+      logical, allocatable, intent(out) :: covered(:)   !! Whether another block lies on each: (n)
       integer, allocatable :: near(:)
       real(wp), allocatable :: share(:)
       real(wp) :: along(2), length, outward(2), s, place(2)
@@ -227,10 +221,8 @@ contains
    !> Make the scene of a plan; its settings are the caller's, with the plan's points
    pure subroutine block_scene(plan, base, scene)
       type(block_plan_t), intent(in) :: plan
-      !> What the deck says of all blocks and joints
-      type(base_t), intent(in) :: base
-      !> The scene; its settings are set
-      type(scene_t), intent(inout) :: scene
+      type(base_t), intent(in) :: base       !! What the deck says of all blocks and joints
+      type(scene_t), intent(inout) :: scene  !! The scene; its settings are set
       type(joint_law_t), allocatable :: law(:, :)
       type(material_t), allocatable :: material(:)
       real(wp), allocatable :: unit_weight(:)
@@ -324,10 +316,8 @@ contains
    pure function laws_of(plan, base, n) result(law)
       type(block_plan_t), intent(in) :: plan
       type(base_t), intent(in) :: base
-      !> Number of materials
-      integer, intent(in) :: n
-      !> The laws: (n, n)
-      type(joint_law_t) :: law(n, n)
+      integer, intent(in) :: n        !! Number of materials
+      type(joint_law_t) :: law(n, n)  !! The laws: (n, n)
       real(wp) :: value(5)
       integer :: i
 

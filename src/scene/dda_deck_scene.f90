@@ -51,8 +51,7 @@ module dda_deck_scene
       pure module subroutine new_family(plan, parameter, family)
          type(scene_plan_t), intent(in) :: plan
          type(parameter_t), intent(in) :: parameter
-         !> New but for the deck
-         type(deck_family_t), intent(inout) :: family
+         type(deck_family_t), intent(inout) :: family  !! New but for the deck
       end subroutine new_family
 
       !> Make the chain of one thickness ratio
@@ -70,8 +69,7 @@ module dda_deck_scene
       !> Make the scene of one value of the parameter
       pure module subroutine build_deck_scene(family, value, scene, error)
          class(deck_family_t), intent(in) :: family
-         !> Value of its parameter
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value  !! Value of its parameter
          type(scene_t), intent(out) :: scene
          type(error_t), allocatable, intent(out) :: error
       end subroutine build_deck_scene
@@ -173,8 +171,7 @@ contains
 
    !> By how much the corners of a broken line lie outside its sine, that it have the same impulse
    pure real(wp) function swell(half_step)
-      !> Half the angle from corner to corner [rad]
-      real(wp), intent(in) :: half_step
+      real(wp), intent(in) :: half_step  !! Half the angle from corner to corner [rad]
 
       swell = tan(half_step)/half_step
    end function swell
@@ -182,8 +179,7 @@ contains
    !> Unit vector of the direction of a pulse; the four main ones are free of rounding
    pure function direction_of(deck) result(direction)
       type(deck_t), intent(in) :: deck
-      !> Components along x and y: (2)
-      real(wp) :: direction(2)
+      real(wp) :: direction(2)  !! Components along x and y: (2)
 
       direction = degree*deck%ground%direction_deg%number
       direction = [cos(direction(1)), sin(direction(1))]

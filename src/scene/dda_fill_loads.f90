@@ -63,8 +63,7 @@ contains
 
    !> The fill of a deck
    pure type(fill_t) function fill_of(deck, assembly) result(fill)
-      !> The deck of the case, with &fill
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(in) :: deck  !! The deck of the case, with &fill
       type(arch_assembly_t), intent(in) :: assembly
       integer :: i
 
@@ -94,8 +93,7 @@ contains
    !> Where the extrados of a span turns from rising to falling, between the middles of two chords
    !> in proportion to their slopes; where it does not turn, its highest point [m]
    pure real(wp) function crown_of(chord) result(x)
-      !> Its chords from left to right: (n)
-      type(top_chord_t), intent(in) :: chord(:)
+      type(top_chord_t), intent(in) :: chord(:)  !! Its chords from left to right: (n)
       real(wp) :: middle(size(chord)), slope(size(chord)), highest
       integer :: i
 
@@ -119,8 +117,7 @@ contains
    !> Put the weight of the fill on the blocks below it: of what stands above each chord
    pure subroutine add_fill_weight(fill, scene)
       type(fill_t), intent(in) :: fill
-      !> The scene; the loads are added
-      type(scene_t), intent(inout) :: scene
+      type(scene_t), intent(inout) :: scene  !! The scene; the loads are added
       type(loaded_point_t) :: loaded(size(fill%chord))
       real(wp) :: weight, x
       integer :: i
@@ -139,10 +136,8 @@ contains
    pure subroutine weigh(fill, chord, weight, x)
       type(fill_t), intent(in) :: fill
       type(top_chord_t), intent(in) :: chord
-      !> The weight [N/m]
-      real(wp), intent(out) :: weight
-      !> Where it acts along x [m]
-      real(wp), intent(out) :: x
+      real(wp), intent(out) :: weight  !! The weight [N/m]
+      real(wp), intent(out) :: x       !! Where it acts along x [m]
       real(wp) :: area, first, part(2), bend
 
       ! all of it as fill, then what is backing is heavier or lighter by the difference
@@ -179,14 +174,10 @@ contains
 
    !> Area below a level line above a chord, and its first moment along x
    pure function trapezium(left, right, top) result(part)
-      !> Left end of the chord: (2) [m]
-      real(wp), intent(in) :: left(2)
-      !> Right end of the chord: (2) [m]
-      real(wp), intent(in) :: right(2)
-      !> Height of the line [m]
-      real(wp), intent(in) :: top
-      !> Area and moment: (2) [m2, m3]
-      real(wp) :: part(2)
+      real(wp), intent(in) :: left(2)   !! Left end of the chord: (2) [m]
+      real(wp), intent(in) :: right(2)  !! Right end of the chord: (2) [m]
+      real(wp), intent(in) :: top       !! Height of the line [m]
+      real(wp) :: part(2)               !! Area and moment: (2) [m2, m3]
       real(wp) :: depth(2), width
 
       depth = top - [left(2), right(2)]
@@ -212,8 +203,7 @@ contains
    !> of a span, on both sides of a span without
    pure subroutine press_side(fill, side, scene)
       type(fill_t), intent(in) :: fill
-      !> Where the live load is, see live_side
-      integer, intent(in) :: side
+      integer, intent(in) :: side  !! Where the live load is, see live_side
       type(scene_t), intent(inout) :: scene
       type(bounded_force_t) :: force(size(fill%chord))
       real(wp) :: height(size(fill%chord)), middle(2), rise
@@ -318,8 +308,7 @@ contains
    !> Add the sizes of live loads, and their moments along x
    pure subroutine add_live(loaded, total)
       type(loaded_point_t), intent(in) :: loaded(:)
-      !> The sums: (2) [N/m, N]
-      real(wp), intent(inout) :: total(2)
+      real(wp), intent(inout) :: total(2)  !! The sums: (2) [N/m, N]
       integer :: i
 
       do i = 1, size(loaded)

@@ -85,10 +85,8 @@ contains
 
    !> Coordinates of the points that hold a block: its corners, moved towards their middle
    pure function inner_points(corner) result(point)
-      !> A coordinate of all corners: (n) [m]
-      real(wp), intent(in) :: corner(:)
-      !> That of the points: (n) [m]
-      real(wp) :: point(size(corner))
+      real(wp), intent(in) :: corner(:)  !! A coordinate of all corners: (n) [m]
+      real(wp) :: point(size(corner))    !! That of the points: (n) [m]
 
       point = (1.0_wp - inset)*corner + inset*sum(corner)/real(size(corner), wp)
    end function inner_points
@@ -97,12 +95,9 @@ contains
    !> directions, knows no motion of the ground, and begins every static step at rest
    pure subroutine check_limerick_blocks(plan, file, dynamic, error)
       type(block_plan_t), intent(in) :: plan
-      !> Name of its file
-      character(len=*), intent(in) :: file
-      !> Whether velocities are kept
-      logical, intent(in) :: dynamic
-      !> What it cannot do
-      type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in) :: file              !! Name of its file
+      logical, intent(in) :: dynamic                    !! Whether velocities are kept
+      type(error_t), allocatable, intent(out) :: error  !! What it cannot do
       integer :: b, i
 
       if (allocated(plan%boundary%base_acceleration%time)) then

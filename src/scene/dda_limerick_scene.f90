@@ -87,10 +87,8 @@ contains
    !> How large the abutments are
    pure subroutine abutment_sides(deck, depth, overhang)
       type(deck_t), intent(in) :: deck
-      !> Depth, away from the springing joint [m]
-      real(wp), intent(out) :: depth
-      !> How far they reach beyond the joint at either end [m]
-      real(wp), intent(out) :: overhang
+      real(wp), intent(out) :: depth     !! Depth, away from the springing joint [m]
+      real(wp), intent(out) :: overhang  !! How far they reach beyond the joint at either end [m]
 
       depth = usual_depth*deck%arch%radius%number
       if (deck%arch%abutment_size%given) depth = deck%arch%abutment_size%number
@@ -117,12 +115,9 @@ contains
    !> Laws of the edges: the first for all joints, the second for springings that cannot slide
    pure subroutine set_laws(scene, n, nv, model)
       type(scene_t), intent(in) :: scene
-      !> Number of voussoirs
-      integer, intent(in) :: n
-      !> Number of their vertices
-      integer, intent(in) :: nv
-      !> The model; its laws are set
-      type(limerick_model_t), intent(inout) :: model
+      integer, intent(in) :: n                        !! Number of voussoirs
+      integer, intent(in) :: nv                       !! Number of their vertices
+      type(limerick_model_t), intent(inout) :: model  !! The model; its laws are set
       integer :: i
 
       allocate (model%law(1, 2))
@@ -163,8 +158,7 @@ contains
    !> Take a number that the deck gives
    pure subroutine take(value, number)
       type(input_value_t), intent(in) :: value
-      !> The number; left as it is if the deck does not give it
-      real(wp), intent(inout) :: number
+      real(wp), intent(inout) :: number  !! The number; left as it is if the deck does not give it
 
       if (value%given) number = value%number
    end subroutine take
@@ -172,8 +166,7 @@ contains
    !> The model of the blocks that a deck's files make, without its constants. The corners of the
    !> scene's joints are measured points, the last ones
    pure subroutine lines_model(deck, scene, model)
-      !> The deck of one case, with its blocks; checked
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(in) :: deck  !! The deck of one case, with its blocks; checked
       type(scene_t), intent(in) :: scene
       type(limerick_model_t), intent(inout) :: model
       integer :: j
@@ -195,8 +188,7 @@ contains
    pure subroutine set_materials(deck, scene, model)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> The model; its materials are set
-      type(limerick_model_t), intent(inout) :: model
+      type(limerick_model_t), intent(inout) :: model  !! The model; its materials are set
       integer :: b, m
 
       allocate (model%material(size(scene%system%materials)))

@@ -47,8 +47,7 @@ contains
 
    !> The scene of the blocks that a deck's files make
    pure subroutine line_scene(deck, plan, scene)
-      !> The deck of a case, with its blocks; checked
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(in) :: deck  !! The deck of a case, with its blocks; checked
       type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
       type(cut_model_t) :: split
@@ -78,8 +77,7 @@ contains
    !> Points of the files that hold, load and measure blocks
    pure subroutine points_of_lines(deck, fixed, boundary)
       type(deck_t), intent(in) :: deck
-      !> Whether a block needs no points to be held: (n_block)
-      logical, intent(in) :: fixed(:)
+      logical, intent(in) :: fixed(:)  !! Whether a block needs no points to be held: (n_block)
       type(boundary_t), intent(inout) :: boundary
       integer :: n(3), i
 
@@ -111,8 +109,7 @@ contains
    !> Force on a load point; one of which the analysis says nothing has none
    pure type(history_t) function force_of(deck, source)
       type(deck_t), intent(in) :: deck
-      !> Number of the load point
-      integer, intent(in) :: source
+      integer, intent(in) :: source  !! Number of the load point
 
       force_of = constant_history([0.0_wp, 0.0_wp])
       if (.not. allocated(deck%file_analysis)) return
@@ -127,8 +124,7 @@ contains
    pure function bars_of(deck, cut) result(bar)
       type(deck_t), intent(in) :: deck
       type(cut_model_t), intent(in) :: cut
-      !> The bars: (n)
-      type(bar_t), allocatable :: bar(:)
+      type(bar_t), allocatable :: bar(:)  !! The bars: (n)
       real(wp) :: property(3), length
       integer :: i
 
@@ -154,8 +150,7 @@ contains
    !> Whether this version can run the blocks of a deck
    pure subroutine check_line_scene(deck, error)
       type(deck_t), intent(in) :: deck
-      !> What it cannot do
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What it cannot do
       type(block_system_t) :: system
       character(len=:), allocatable :: problem
 
@@ -178,8 +173,7 @@ contains
    !> The blocks with their materials, weights and states at the beginning
    pure subroutine line_system(deck, cut, system)
       type(deck_t), intent(in) :: deck
-      !> The blocks, perhaps with more corners than the deck's
-      type(cut_model_t), intent(in) :: cut
+      type(cut_model_t), intent(in) :: cut  !! The blocks, perhaps with more corners than the deck's
       type(block_system_t), intent(out) :: system
       integer :: b, m
 
@@ -227,8 +221,7 @@ contains
    !> The law of a joint; keys that the deck gives go before the analysis file
    pure type(joint_law_t) function law_of_joint(deck, number) result(law)
       type(deck_t), intent(in) :: deck
-      !> Number of the joint's material
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the joint's material
       type(limerick_joint_t) :: listed
 
       law = joint_law(deck)
@@ -246,8 +239,7 @@ contains
    !> Blocks that cannot move: those with two fixed points apart from one another
    pure function held_blocks(cut) result(held)
       type(cut_model_t), intent(in) :: cut
-      !> Whether each is held: (n_block)
-      logical :: held(size(cut%area))
+      logical :: held(size(cut%area))  !! Whether each is held: (n_block)
       integer :: first(size(cut%area)), i
 
       held = .false.

@@ -23,8 +23,7 @@ contains
    !> Whether all joints of a deck's lines have one law: a file of blocks has laws of pairs of block
    !> materials, not of lines
    pure logical function has_one_law(deck)
-      !> The deck of the case, with its blocks
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(in) :: deck  !! The deck of the case, with its blocks
       type(joint_law_t) :: first, law
       integer :: j
 
@@ -62,8 +61,7 @@ contains
    !> The numbers that a file of blocks has for a law
    pure function numbers_of(law) result(number)
       type(joint_law_t), intent(in) :: law
-      !> Friction, cohesion, tension, residual friction, slip length: (5)
-      real(wp) :: number(5)
+      real(wp) :: number(5)  !! Friction, cohesion, tension, residual friction, slip length: (5)
 
       number = [law%friction, law%cohesion, law%tension, law%residual, law%slip_length]
    end function numbers_of
@@ -72,8 +70,7 @@ contains
    !> are counted from 2
    pure subroutine add_blocks(cut, system, lines)
       type(cut_model_t), intent(in) :: cut
-      !> What they are made of, and how they begin
-      type(block_system_t), intent(in) :: system
+      type(block_system_t), intent(in) :: system  !! What they are made of, and how they begin
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: line
       logical :: held(size(cut%area))
@@ -115,8 +112,7 @@ contains
    !> Add one law for the joints of all materials
    pure subroutine add_laws(law, n, lines)
       type(joint_law_t), intent(in) :: law
-      !> Number of materials
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of materials
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: friction, residual
       integer :: i, j
@@ -161,8 +157,7 @@ contains
    !> Add a force with its history
    pure subroutine add_load(load, at, lines)
       type(load_history_t), intent(in) :: load
-      !> Where it acts
-      character(len=*), intent(in) :: at
+      character(len=*), intent(in) :: at  !! Where it acts
       type(growing_text_t), intent(inout) :: lines
       integer :: i
 

@@ -90,8 +90,7 @@ contains
    !> fixed and does; 0 if none does
    pure integer function block_at(system, point)
       type(block_system_t), intent(in) :: system
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: point(2)  !! The point: (2) [m]
 
       block_at = deepest_block(system, system%equation > 0, point)
       if (block_at == 0) block_at = deepest_block(system, system%equation == 0, point)
@@ -100,8 +99,7 @@ contains
    !> Block of some that holds a point most deeply or has it on its outline; 0 if none does
    pure integer function deepest_block(system, of, point)
       type(block_system_t), intent(in) :: system
-      !> Which of them: (n_block)
-      logical, intent(in) :: of(:)
+      logical, intent(in) :: of(:)  !! Which of them: (n_block)
       real(wp), intent(in) :: point(2)
       real(wp) :: deepest, depth, low(2), high(2), margin
       integer :: b

@@ -23,8 +23,7 @@ contains
    !> Check every case of a deck; the ends of a search take the place of what is searched
    pure subroutine check_shapes(deck, error)
       type(deck_t), intent(in) :: deck
-      !> An arch that cannot be, or be run so
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! An arch that cannot be, or be run so
       type(deck_t) :: work
       integer :: number, n
       logical :: one_kind
@@ -77,8 +76,7 @@ contains
    !> Check that there is such an arch
    pure subroutine check_form(deck, error)
       type(deck_t), intent(in) :: deck
-      !> What makes none
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What makes none
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
       type(deck_place_t) :: place

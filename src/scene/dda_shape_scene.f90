@@ -22,8 +22,7 @@ contains
    pure subroutine shape_form(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(out) :: form
-      !> Keys that do not go together
-      type(form_problem_t), intent(out) :: problem
+      type(form_problem_t), intent(out) :: problem  !! Keys that do not go together
 
       form%shape = deck%arch%shape%word(:len(form%shape))
       form%by_radius = (form%shape == "circular" .or. form%shape == "segmental") &
@@ -127,10 +126,8 @@ contains
    !> Thickness of a form at the crown and at the springings
    pure subroutine take_thickness(deck, form, problem)
       type(deck_t), intent(in) :: deck
-      !> Its form; the thickness is set
-      type(arch_form_t), intent(inout) :: form
-      !> None, or several that contradict
-      type(form_problem_t), intent(inout) :: problem
+      type(arch_form_t), intent(inout) :: form        !! Its form; the thickness is set
+      type(form_problem_t), intent(inout) :: problem  !! None, or several that contradict
       logical :: constant, crown, ratio, springing
 
       constant = deck%arch%thickness%given
@@ -169,8 +166,7 @@ contains
 
    !> Add loads to those of a scene
    pure subroutine add_loads(more, scene)
-      !> The loads
-      type(loaded_point_t), intent(in) :: more(:)
+      type(loaded_point_t), intent(in) :: more(:)  !! The loads
       type(scene_t), intent(inout) :: scene
       type(loaded_point_t), allocatable :: loaded(:)
       integer :: before
@@ -186,8 +182,7 @@ contains
    !> Number of the joint between two voussoirs that is nearest to the crown of the first span
    pure subroutine find_crown_joint(assembly, scene)
       type(arch_assembly_t), intent(in) :: assembly
-      !> Their scene; the number is set
-      type(scene_t), intent(inout) :: scene
+      type(scene_t), intent(inout) :: scene  !! Their scene; the number is set
       real(wp) :: off, least
       integer :: j
 
@@ -233,10 +228,8 @@ contains
    !> Integrals of abs(x), abs(x) x and abs(x) y over a block
    pure function wedge_sums(system, block) result(sums)
       type(block_system_t), intent(in) :: system
-      !> Number of the block
-      integer, intent(in) :: block
-      !> The integrals: (3)
-      real(wp) :: sums(3)
+      integer, intent(in) :: block  !! Number of the block
+      real(wp) :: sums(3)           !! The integrals: (3)
       type(area_moments_t) :: moments
       integer :: side
 
@@ -255,12 +248,9 @@ contains
 
    !> The part of a polygon on one side of the axis
    pure function half_plane(vertex, side) result(part)
-      !> Its corners: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> 1 for what is right of x = 0, -1 for what is left
-      real(wp), intent(in) :: side
-      !> Corners of the part: (2, m) [m]
-      real(wp), allocatable :: part(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
+      real(wp), intent(in) :: side          !! 1 for what is right of x = 0, -1 for what is left
+      real(wp), allocatable :: part(:, :)   !! Corners of the part: (2, m) [m]
       real(wp) :: corner(2, 2*size(vertex, 2)), share
       integer :: i, m, n, next
 

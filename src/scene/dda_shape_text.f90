@@ -23,8 +23,7 @@ contains
    !> The blocks of a deck's arch, with what acts on points of them
    pure function shape_text(deck) result(text)
       type(deck_t), intent(in) :: deck
-      !> Lines, each ended by a line feed
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
       type(growing_text_t) :: lines
@@ -66,8 +65,7 @@ contains
    !> Add a force on a point
    pure subroutine add_load(loaded, origin, lines)
       type(loaded_point_t), intent(in) :: loaded
-      !> Where the origin of its coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Where the origin of its coordinates is: (2) [m]
       type(growing_text_t), intent(inout) :: lines
 
       call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
@@ -104,8 +102,7 @@ contains
    !> What a file of blocks has no place for
    pure function shape_losses(deck) result(text)
       type(deck_t), intent(in) :: deck
-      !> Keys, parted by commas; empty if nothing is lost
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
 
       text = ""
       if (deck%arch%lune_deg%given) text = ", arch%lune_deg"

@@ -20,10 +20,8 @@ contains
 
    !> Put the bars of &tie between the blocks that hold their ends
    pure subroutine add_ties(deck, plan)
-      !> The deck of the case, with &tie, checked
-      type(deck_t), intent(in) :: deck
-      !> The blocks; receives the bars
-      type(block_plan_t), intent(inout) :: plan
+      type(deck_t), intent(in) :: deck           !! The deck of the case, with &tie, checked
+      type(block_plan_t), intent(inout) :: plan  !! The blocks; receives the bars
       type(bar_t), allocatable :: bar(:)
       type(site_t) :: site
       real(wp), allocatable :: ends(:, :)

@@ -54,10 +54,8 @@ contains
 
    !> The vehicle of a deck
    pure type(vehicle_t) function vehicle_of(deck, fill) result(vehicle)
-      !> The deck of the case, with &vehicle
-      type(deck_t), intent(in) :: deck
-      !> Fill that it stands on
-      type(fill_t), intent(in), optional :: fill
+      type(deck_t), intent(in) :: deck            !! The deck of the case, with &vehicle
+      type(fill_t), intent(in), optional :: fill  !! Fill that it stands on
       real(wp), allocatable :: spacing(:)
       integer :: i
 
@@ -175,8 +173,7 @@ contains
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
-      !> Where the axle is, in these coordinates [m]
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! Where the axle is, in these coordinates [m]
 
       half = 0.5_wp*vehicle%length
       if (vehicle%spread > 0.0_wp) half = half + vehicle%spread &
@@ -189,8 +186,7 @@ contains
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
-      !> The positions, rising: (n) [m]
-      real(wp), allocatable :: at(:)
+      real(wp), allocatable :: at(:)  !! The positions, rising: (n) [m]
       real(wp), allocatable :: corner(:), edge(:), place(:)
       real(wp) :: far, half, middle
       integer :: i, j, n
@@ -220,8 +216,7 @@ contains
    !> of the nearest end
    pure real(wp) function top_below(road, x) result(lower_end)
       type(road_t), intent(in) :: road
-      !> The place [m]
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! The place [m]
       real(wp) :: top
       integer :: edge
 
@@ -234,10 +229,8 @@ contains
    pure subroutine find_top(road, x, edge, top)
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: x
-      !> Its number; 0 if there is none
-      integer, intent(out) :: edge
-      !> Its height [m]
-      real(wp), intent(out) :: top
+      integer, intent(out) :: edge  !! Its number; 0 if there is none
+      real(wp), intent(out) :: top  !! Its height [m]
       integer :: after, before, k, middle
 
       edge = 0
@@ -264,11 +257,9 @@ contains
    !> Take an edge that is higher than the others
    pure subroutine take_higher(road, k, x, edge, top)
       type(road_t), intent(in) :: road
-      !> Number of the edge, or 0
-      integer, intent(in) :: k
+      integer, intent(in) :: k        !! Number of the edge, or 0
       real(wp), intent(in) :: x
-      !> Number of the highest edge so far
-      integer, intent(inout) :: edge
+      integer, intent(inout) :: edge  !! Number of the highest edge so far
       real(wp), intent(inout) :: top
 
       if (k == 0) return
@@ -291,8 +282,7 @@ contains
    !> Places of the corners of the upper faces, where an axle goes from block to block
    pure function upper_corners(road) result(x)
       type(road_t), intent(in) :: road
-      !> Their places, each once, rising: (n) [m]
-      real(wp), allocatable :: x(:)
+      real(wp), allocatable :: x(:)  !! Their places, each once, rising: (n) [m]
       real(wp) :: corner(2, 2*size(road%block)), top
       logical :: upper(2*size(road%block))
       integer :: edge, k

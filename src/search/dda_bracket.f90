@@ -52,8 +52,7 @@ contains
    pure subroutine close_bracket(family, search, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      !> What was found; chains may be halves
-      type(critical_t), intent(out) :: critical
+      type(critical_t), intent(out) :: critical  !! What was found; chains may be halves
       type(proposal_t) :: proposal
       type(joint_face_t), allocatable :: foreseen(:)
       real(wp) :: limit, start, value
@@ -145,11 +144,9 @@ contains
    pure subroutine ascend(family, search, value, critical, answer)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      !> The undecided value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value   !! The undecided value
       type(critical_t), intent(inout) :: critical
-      !> One of verdict
-      integer, intent(out) :: answer
+      integer, intent(out) :: answer  !! One of verdict
       integer :: attempt
 
       do attempt = 1, max_descent
@@ -242,11 +239,9 @@ contains
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit, in_vain) result(value)
       type(critical_t), intent(in) :: critical
-      !> Where the last collapse stops
-      type(proposal_t), intent(in) :: proposal
+      type(proposal_t), intent(in) :: proposal  !! Where the last collapse stops
       real(wp), intent(in) :: limit
-      !> Decisions since the last collapse
-      integer, intent(in) :: in_vain
+      integer, intent(in) :: in_vain            !! Decisions since the last collapse
       real(wp) :: value
       real(wp) :: beyond, before, far, toward
 
@@ -275,8 +270,7 @@ contains
 
       !> Whether a value lies strictly between the ends of the bracket
       pure logical function inside(x)
-         !> The value
-         real(wp), intent(in) :: x
+         real(wp), intent(in) :: x  !! The value
 
          inside = toward*(x - critical%falls) > 0.0_wp .and. toward*(far - x) > 0.0_wp
       end function inside
@@ -285,11 +279,9 @@ contains
    !> A value beside the one that has just been undecided: the middle of a bracket may be critical
    !> to the last digit, where nothing rests and nothing moves
    pure real(wp) function not_again(value, critical, undecided)
-      !> The value to decide next
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value     !! The value to decide next
       type(critical_t), intent(in) :: critical
-      !> How many values in a row were undecided
-      integer, intent(in) :: undecided
+      integer, intent(in) :: undecided  !! How many values in a row were undecided
       real(wp) :: share
 
       not_again = value
@@ -301,10 +293,8 @@ contains
 
    !> Middle of a bracket; the geometric one where the ends are of different magnitude
    pure real(wp) function middle(a, b)
-      !> One end
-      real(wp), intent(in) :: a
-      !> The other end
-      real(wp), intent(in) :: b
+      real(wp), intent(in) :: a  !! One end
+      real(wp), intent(in) :: b  !! The other end
 
       middle = (a + b)/2.0_wp
       if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
@@ -316,8 +306,7 @@ contains
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: limit
       type(critical_t), intent(in) :: critical
-      !> Where the collapse before the last stops
-      type(proposal_t), intent(in) :: proposal
+      type(proposal_t), intent(in) :: proposal  !! Where the collapse before the last stops
 
       proved = proposal%usable
       if (proved) proved = proposal%half <= 0.5001_wp*search%tolerance*abs(proposal%value) &

@@ -51,11 +51,9 @@ contains
 
    !> Faces of the left half of a collapse that was decided as a whole
    pure subroutine fold(chain, decision, face)
-      !> Half the chain
-      type(chain_t), intent(in) :: chain
+      type(chain_t), intent(in) :: chain                       !! Half the chain
       type(decision_t), intent(in) :: decision
-      !> Faces of its joints: (m)
-      type(joint_face_t), allocatable, intent(out) :: face(:)
+      type(joint_face_t), allocatable, intent(out) :: face(:)  !! Faces of its joints: (m)
       integer :: m
 
       m = size(chain%joint)

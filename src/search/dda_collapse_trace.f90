@@ -96,12 +96,9 @@ contains
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(frozen_t), intent(in) :: mechanism
-      !> Where it stops
-      real(wp), intent(in) :: next
-      !> Change of its power with the value
-      real(wp), intent(in) :: coarse_slope
-      !> Noise of the power; raised where rounding shows
-      real(wp), intent(inout) :: noise
+      real(wp), intent(in) :: next          !! Where it stops
+      real(wp), intent(in) :: coarse_slope  !! Change of its power with the value
+      real(wp), intent(inout) :: noise      !! Noise of the power; raised where rounding shows
       type(critical_t), intent(inout) :: critical
       type(proposal_t), intent(inout) :: proposal
 
@@ -165,11 +162,9 @@ contains
    pure subroutine average_root(family, mechanism, slope, critical, proposal)
       class(family_t), intent(in) :: family
       type(frozen_t), intent(in) :: mechanism
-      !> Change of the power with the value
-      real(wp), intent(in) :: slope
+      real(wp), intent(in) :: slope                !! Change of the power with the value
       type(critical_t), intent(inout) :: critical
-      !> The proposal; its value is set
-      type(proposal_t), intent(inout) :: proposal
+      type(proposal_t), intent(inout) :: proposal  !! The proposal; its value is set
       real(wp) :: power, ignored, total
       logical :: usable
       integer :: i
@@ -189,8 +184,7 @@ contains
    pure subroutine refine_noise(family, mechanism, value, critical, noise)
       class(family_t), intent(in) :: family
       type(frozen_t), intent(in) :: mechanism
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The value
       type(critical_t), intent(inout) :: critical
       real(wp), intent(inout) :: noise
       type(frozen_t) :: other
@@ -210,8 +204,7 @@ contains
    !> How near to its stop a mechanism becomes too slow for a decision to tell it from rest
    pure real(wp) function rest_resolution(critical, stop)
       type(critical_t), intent(in) :: critical
-      !> Value at which the last collapse stops
-      real(wp), intent(in) :: stop
+      real(wp), intent(in) :: stop  !! Value at which the last collapse stops
 
       associate (outcome => critical%fallen%outcome)
          rest_resolution = 2.0_wp*abs(stop - critical%falls)*outcome%rest_tolerance &
@@ -225,12 +218,9 @@ contains
       type(frozen_t), intent(in) :: mechanism
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
-      !> The power
-      real(wp), intent(out) :: power
-      !> What the rounding of coordinates alone makes of it
-      real(wp), intent(out) :: noise
-      !> Whether the power could be found
-      logical, intent(out) :: usable
+      real(wp), intent(out) :: power  !! The power
+      real(wp), intent(out) :: noise  !! What the rounding of coordinates alone makes of it
+      logical, intent(out) :: usable  !! Whether the power could be found
       type(error_t), allocatable :: error
       type(scene_t) :: scene
 
@@ -304,10 +294,8 @@ contains
    !> Multiply a motion by the inertia
    pure subroutine weigh(equations, dt, motion)
       type(equations_t), intent(in) :: equations
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> Motion in, inertia force out: (n_dof, n_equation)
-      real(wp), intent(inout) :: motion(:, :)
+      real(wp), intent(in) :: dt               !! Length of the step [s]
+      real(wp), intent(inout) :: motion(:, :)  !! Motion in, inertia force out: (n_dof, n_equation)
       integer :: e
 
       do e = 1, size(motion, 2)
@@ -318,8 +306,7 @@ contains
    !> Relative error of a block's area by the rounding of its corners' coordinates
    pure real(wp) function area_rounding(system, block)
       type(block_system_t), intent(in) :: system
-      !> Number of the block
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the block
 
       associate (vertex => system%vertex(:, &
          & system%first_vertex(block):system%first_vertex(block + 1) - 1))

@@ -98,8 +98,7 @@ module dda_critical
          class(family_t), intent(in) :: family
          type(search_t), intent(in) :: search
          type(critical_t), intent(inout) :: critical
-         !> Whether the search could be done so
-         logical, intent(out) :: done
+         logical, intent(out) :: done  !! Whether the search could be done so
       end subroutine find_critical_load
 
       !> Search the critical value

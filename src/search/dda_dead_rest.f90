@@ -82,8 +82,7 @@ contains
    !> The state of joints at rest
    pure subroutine take_state(graph, contacts, state)
       type(joint_graph_t), intent(in) :: graph
-      !> The contacts after the run
-      type(contacts_t), intent(in) :: contacts
+      type(contacts_t), intent(in) :: contacts  !! The contacts after the run
       type(coulomb_state_t), allocatable, intent(out) :: state
       type(coulomb_joints_t) :: joints
       real(wp) :: load(3, graph%n_block)

@@ -47,8 +47,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Whether forces and motions of what stands are not asked for
-      logical, intent(in) :: bare
+      logical, intent(in) :: bare  !! Whether forces and motions of what stands are not asked for
       type(decision_t), intent(out) :: decision
       type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof

@@ -66,8 +66,7 @@ module dda_decision
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
          type(contacts_t), intent(in) :: contacts
-         !> That it falls
-         type(graph_verdict_t), intent(in) :: proof
+         type(graph_verdict_t), intent(in) :: proof  !! That it falls
          type(decision_t), intent(inout) :: decision
          type(album_t), intent(inout), optional :: album
       end subroutine record_collapse
@@ -113,10 +112,8 @@ module dda_decision
          type(contacts_t), intent(in) :: contacts
          type(joint_graph_t), intent(in) :: graph
          type(load_stations_t), intent(in) :: stations
-         !> Whether forces balance the dead loads
-         logical, intent(in) :: is_balanced
-         !> How the path went
-         type(graph_verdict_t), intent(inout) :: proof
+         logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
+         type(graph_verdict_t), intent(inout) :: proof  !! How the path went
       end subroutine follow_from_rest
 
       !> Run the blocks under their dead loads alone
@@ -134,8 +131,7 @@ module dda_decision
 
       !> A path whose fall, before it has begun, counts
       pure module subroutine fall_at_once(proof)
-         !> The path, with the mechanism of its fall
-         type(graph_verdict_t), intent(inout) :: proof
+         type(graph_verdict_t), intent(inout) :: proof  !! The path, with the mechanism of its fall
       end subroutine fall_at_once
 
       !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first

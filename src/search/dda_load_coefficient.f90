@@ -25,12 +25,9 @@ contains
 
    !> Whether the coefficient comes last on a path that the joint graph can follow
    pure logical function can_follow(load, scene, largest)
-      !> One of searched_load
-      integer, intent(in) :: load
-      !> The scene at the high end
-      type(scene_t), intent(in) :: scene
-      !> Largest size of the coefficient in the range
-      real(wp), intent(in) :: largest
+      integer, intent(in) :: load         !! One of searched_load
+      type(scene_t), intent(in) :: scene  !! The scene at the high end
+      real(wp), intent(in) :: largest     !! Largest size of the coefficient in the range
 
       associate (settings => scene%settings)
          can_follow = decides_as_graph(settings, scene%contacts) &
@@ -55,8 +52,7 @@ contains
 
    !> Whether gravity that tilts so far is upright gravity and a push, but for its size
    pure logical function is_push(tilt)
-      !> The angle from upright [rad]
-      real(wp), intent(in) :: tilt
+      real(wp), intent(in) :: tilt  !! The angle from upright [rad]
 
       is_push = cos(tilt) > 1.0e-6_wp .and. abs(tilt) < 2.0_wp
    end function is_push
@@ -84,8 +80,7 @@ contains
    pure type(settings_t) function with_coefficient(settings, load, value) result(other)
       type(settings_t), intent(in) :: settings
       integer, intent(in) :: load
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The value
 
       other = settings
       select case (load)
@@ -101,12 +96,10 @@ contains
 
    !> Loads at the end of the loading path
    pure function full_loads(settings, scene, graph) result(load)
-      !> Settings of the run, without histories
-      type(settings_t), intent(in) :: settings
+      type(settings_t), intent(in) :: settings  !! Settings of the run, without histories
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> The loads: (3, n_block) [N/m, N/m, N]
-      real(wp) :: load(3, graph%n_block)
+      real(wp) :: load(3, graph%n_block)        !! The loads: (3, n_block) [N/m, N/m, N]
       type(load_stations_t) :: stations
       real(wp) :: opening(3, size(graph%kind))
 
@@ -136,8 +129,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> The loads: (3, n_block) [N/m, N/m, N]
-      real(wp) :: live(3, graph%n_block)
+      real(wp) :: live(3, graph%n_block)  !! The loads: (3, n_block) [N/m, N/m, N]
 
       live = (full_loads(with_coefficient(settings, load, many), scene, graph) &
          & - full_loads(with_coefficient(settings, load, 0.0_wp), scene, graph))/many
@@ -146,10 +138,8 @@ contains
    !> Value of what is searched at which a path ended
    pure real(wp) function value_at_end(load, far, stations, proof) result(value)
       integer, intent(in) :: load
-      !> Its value at the end of the path
-      real(wp), intent(in) :: far
-      !> Stations of the path
-      type(load_stations_t), intent(in) :: stations
+      real(wp), intent(in) :: far                    !! Its value at the end of the path
+      type(load_stations_t), intent(in) :: stations  !! Stations of the path
       type(graph_verdict_t), intent(in) :: proof
       real(wp) :: angle(2)
       integer :: i
@@ -193,14 +183,10 @@ contains
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> The range
-      real(wp), intent(in) :: low, high
-      !> The value
-      real(wp), intent(out) :: value
-      !> Whether there is one
-      logical, intent(out) :: found
-      !> Factorisations
-      integer, intent(out) :: n_factorisation
+      real(wp), intent(in) :: low, high        !! The range
+      real(wp), intent(out) :: value           !! The value
+      logical, intent(out) :: found            !! Whether there is one
+      integer, intent(out) :: n_factorisation  !! Factorisations
       integer, parameter :: most = 60
       type(load_decision_t) :: decision
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), from, to, power, stop

@@ -197,10 +197,8 @@ contains
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> Value that limit analysis begins with
-      real(wp), intent(in) :: origin
-      !> End of the range, from there
-      real(wp), intent(in) :: last
+      real(wp), intent(in) :: origin  !! Value that limit analysis begins with
+      real(wp), intent(in) :: last    !! End of the range, from there
       type(search_t), intent(in) :: search
       type(side_t), intent(inout) :: side
       type(limit_load_t), intent(out) :: limit
@@ -238,8 +236,7 @@ contains
 
    !> Take the associated limit as the answer
    pure subroutine take_associated(last, search, limit, side)
-      !> End of the range, from where the limit is counted
-      real(wp), intent(in) :: last
+      real(wp), intent(in) :: last  !! End of the range, from where the limit is counted
       type(search_t), intent(in) :: search
       type(limit_load_t), intent(in) :: limit
       type(side_t), intent(inout) :: side

@@ -142,12 +142,9 @@ contains
 
    !> Whether a joint slides: it is closed, at the Coulomb limit, and its slip is more than rounding
    elemental logical function slides(face, slip, largest)
-      !> Face that its force lies on
-      type(joint_face_t), intent(in) :: face
-      !> Its slip [m]
-      real(wp), intent(in) :: slip
-      !> Largest displacement in the same time [m]
-      real(wp), intent(in) :: largest
+      type(joint_face_t), intent(in) :: face  !! Face that its force lies on
+      real(wp), intent(in) :: slip            !! Its slip [m]
+      real(wp), intent(in) :: largest         !! Largest displacement in the same time [m]
 
       slides = face%slip /= 0 .and. .not. all(face%open) .and. abs(slip) > least_slip*largest
    end function slides
@@ -163,10 +160,8 @@ contains
 
    !> Numbers in rising order without repetition; equal but for rounding counts as equal
    pure function each_once(numbers) result(once)
-      !> Any numbers: (:)
-      real(wp), intent(in) :: numbers(:)
-      !> The numbers: (:)
-      real(wp), allocatable :: once(:)
+      real(wp), intent(in) :: numbers(:)  !! Any numbers: (:)
+      real(wp), allocatable :: once(:)    !! The numbers: (:)
       real(wp) :: sorted(size(numbers)), smallest
       integer :: n
 

@@ -65,8 +65,7 @@ module dda_scene
       pure subroutine build_scene(family, value, scene, error)
          import :: error_t, family_t, scene_t, wp
          class(family_t), intent(in) :: family
-         !> Value of its parameter
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value  !! Value of its parameter
          type(scene_t), intent(out) :: scene
          type(error_t), allocatable, intent(out) :: error
       end subroutine build_scene
@@ -90,8 +89,7 @@ contains
    pure subroutine link_once(family, value, link)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value
-      !> The last chain, whose arrays are used again
-      type(link_t), intent(inout) :: link
+      type(link_t), intent(inout) :: link  !! The last chain, whose arrays are used again
 
       if (link%known .and. .not. abs(value - link%value) > 0.0_wp) return
       call family%link(value, link%settings, link%chain, link%known)

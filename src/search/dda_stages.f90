@@ -188,8 +188,7 @@ contains
    !> Whether what was decided does not stand without any slip: its forces are not those of the way
    !> without slip, which are one whatever the order of the stages
    pure logical function has_slipped(decision)
-      !> What was decided of the last shape at once
-      type(decision_t), intent(in) :: decision
+      type(decision_t), intent(in) :: decision  !! What was decided of the last shape at once
 
       has_slipped = decision%outcome%verdict /= verdict%stable
       associate (contacts => decision%contacts)
@@ -246,8 +245,7 @@ contains
    !> what the others carried is a load on those that stay
    pure subroutine hand_over(settings, time, system, contacts, all, proof, start)
       type(settings_t), intent(in) :: settings
-      !> Time at which the next stage begins [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! Time at which the next stage begins [s]
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts, all
       type(graph_verdict_t), intent(in) :: proof
@@ -304,8 +302,7 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: all
       type(joint_graph_t), intent(in) :: graph
-      !> The numbers: (n_joint)
-      integer, allocatable :: label(:)
+      integer, allocatable :: label(:)  !! The numbers: (n_joint)
       logical :: there(size(all%joint))
       integer :: i, j, n
 

@@ -76,8 +76,7 @@ contains
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
    !> where both agree
    pure integer function first_change(runs)
-      !> What has been run; not all alike
-      type(runs_t), intent(in) :: runs
+      type(runs_t), intent(in) :: runs  !! What has been run; not all alike
       integer :: i, n
 
       n = runs%n
@@ -154,12 +153,10 @@ contains
    !> Run one value
    pure subroutine run_value(family, value, runs, critical, answer)
       class(family_t), intent(in) :: family
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value   !! The value
       type(runs_t), intent(inout) :: runs
       type(critical_t), intent(inout) :: critical
-      !> Stable, collapsed or undecided
-      integer, intent(out) :: answer
+      integer, intent(out) :: answer  !! Stable, collapsed or undecided
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene

@@ -51,8 +51,7 @@ contains
    pure subroutine add_bar_joints(settings, system, first, graph)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Joints before those of the bars
-      integer, intent(in) :: first
+      integer, intent(in) :: first  !! Joints before those of the bars
       type(joint_graph_t), intent(inout) :: graph
       real(wp) :: row(6, 2)
       integer :: equation(2), i, j, node, side
@@ -95,10 +94,8 @@ contains
    !> The joint that is a bar
    pure integer function bar_joint(settings, n_joint, bar)
       type(settings_t), intent(in) :: settings
-      !> Number of joints of the graph
-      integer, intent(in) :: n_joint
-      !> Number of the bar
-      integer, intent(in) :: bar
+      integer, intent(in) :: n_joint  !! Number of joints of the graph
+      integer, intent(in) :: bar      !! Number of the bar
 
       bar_joint = n_joint - n_bar_joints(settings) + bar + 2*count( &
          & settings%boundary%bar(:bar - 1)%strength < unbounded)
@@ -107,10 +104,8 @@ contains
    !> Forces of the bars from those of the joints
    pure subroutine keep_bar_forces(settings, force, system)
       type(settings_t), intent(in) :: settings
-      !> N1, N2, T of all joints: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> The blocks; the states of the bars are set
-      type(block_system_t), intent(inout) :: system
+      real(wp), intent(in) :: force(:, :)            !! N1, N2, T of all joints: (3, n_joint) [N/m]
+      type(block_system_t), intent(inout) :: system  !! The blocks; the states of the bars are set
       integer :: i
 
       if (.not. allocated(system%bar)) return

@@ -17,8 +17,7 @@ contains
    !> Bounds of the force of one joint
    pure type(cone_t) function cone_of(chain, j)
       type(chain_t), intent(in) :: chain
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: j  !! Number of the joint
 
       cone_of = cone_t(friction=chain%joint(j)%friction, limit=chain%joint(j)%limit, &
          & mirror=chain%keystone .and. j == size(chain%joint))
@@ -54,13 +53,10 @@ contains
    !> Force N1, N2, T of one joint
    pure function joint_force(chain, load, reaction, j) result(force)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The unknowns
-      real(wp), intent(in) :: reaction(3)
+      real(wp), intent(in) :: load(:, :)   !! Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: reaction(3)  !! The unknowns
       integer, intent(in) :: j
-      !> The force
-      real(wp) :: force(3)
+      real(wp) :: force(3)                 !! The force
       real(wp) :: s(3), normal, moment
 
       s = reaction + load(:, j)
@@ -77,8 +73,7 @@ contains
    pure function influence(chain, j) result(g)
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: j
-      !> Rows N1, N2, T: (3, 3)
-      real(wp) :: g(3, 3)
+      real(wp) :: g(3, 3)  !! Rows N1, N2, T: (3, 3)
       real(wp) :: normal(3), moment(3)
 
       normal = [chain%joint(j)%tangent(2), -chain%joint(j)%tangent(1), 0.0_wp]
@@ -91,8 +86,7 @@ contains
    !> Whether a force lies inside the cone of a joint
    pure logical function holds(chain, force, j)
       type(chain_t), intent(in) :: chain
-      !> N1, N2, T [N/m]
-      real(wp), intent(in) :: force(3)
+      real(wp), intent(in) :: force(3)  !! N1, N2, T [N/m]
       integer, intent(in) :: j
 
       holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp .and. abs(force(3)) &
@@ -102,12 +96,9 @@ contains
    !> Forces of all joints after a change of the unknowns
    pure subroutine add_reaction(chain, change, before, after)
       type(chain_t), intent(in) :: chain
-      !> The change: (3)
-      real(wp), intent(in) :: change(3)
-      !> Forces: (3, n + 1) [N/m]
-      real(wp), intent(in) :: before(:, :)
-      !> Forces: (3, n + 1) [N/m]
-      real(wp), intent(out) :: after(:, :)
+      real(wp), intent(in) :: change(3)     !! The change: (3)
+      real(wp), intent(in) :: before(:, :)  !! Forces: (3, n + 1) [N/m]
+      real(wp), intent(out) :: after(:, :)  !! Forces: (3, n + 1) [N/m]
       real(wp) :: normal, moment
       integer :: j
 
@@ -127,8 +118,7 @@ contains
    pure subroutine carry_forces(chain, load, reaction, force)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :), reaction(3)
-      !> The forces N1, N2, T: (3, n + 1) [N/m]
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(out) :: force(:, :)  !! The forces N1, N2, T: (3, n + 1) [N/m]
       real(wp) :: s(2), normal, along, moment
       integer :: b, from, ahead, n, side
 

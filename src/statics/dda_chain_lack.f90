@@ -98,8 +98,7 @@ contains
    pure function faces_of(chain, lack) result(face)
       type(chain_t), intent(in) :: chain
       type(lack_t), intent(in) :: lack
-      !> The faces: (n + 1)
-      type(joint_face_t) :: face(size(chain%joint))
+      type(joint_face_t) :: face(size(chain%joint))  !! The faces: (n + 1)
       integer :: r
 
       do r = 1, 4
@@ -118,13 +117,10 @@ contains
    !> unknowns finite
    pure subroutine begin(chain, load, lack, inverse, value)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)      !! Sums of the loads: (3, n + 1)
       type(lack_t), intent(inout) :: lack
-      !> Inverse of the rows of the bounds: (4, 4)
-      real(wp), intent(out) :: inverse(4, 4)
-      !> What these rows times the unknowns are
-      real(wp), intent(out) :: value(4)
+      real(wp), intent(out) :: inverse(4, 4)  !! Inverse of the rows of the bounds: (4, 4)
+      real(wp), intent(out) :: value(4)       !! What these rows times the unknowns are
       type(lack_t) :: given
       real(wp) :: change(4), row(5)
       integer :: i, r
@@ -167,12 +163,9 @@ contains
    pure subroutine find_worst(chain, load, place, joint, bound)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :)
-      !> The unknowns, and s
-      real(wp), intent(in) :: place(4)
-      !> Its joint
-      integer, intent(out) :: joint
-      !> Which of its bounds
-      integer, intent(out) :: bound
+      real(wp), intent(in) :: place(4)  !! The unknowns, and s
+      integer, intent(out) :: joint     !! Its joint
+      integer, intent(out) :: bound     !! Which of its bounds
       real(wp) :: along, force(3), least, moment, normal, room, s(3)
       integer :: j
 
@@ -209,8 +202,7 @@ contains
    !> Whether the shear force of a joint is bounded, and not zero as on a plane of symmetry
    pure logical function is_rough(chain, j)
       type(chain_t), intent(in) :: chain
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: j  !! Number of the joint
 
       is_rough = chain%joint(j)%limit < huge(1.0_wp) &
          & .and. .not. (chain%halved .and. j == size(chain%joint))
@@ -220,11 +212,9 @@ contains
    pure function bound_row(chain, load, joint, bound) result(row)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :)
-      !> Number of the joint
-      integer, intent(in) :: joint
+      integer, intent(in) :: joint  !! Number of the joint
       integer, intent(in) :: bound
-      !> The row
-      real(wp) :: row(5)
+      real(wp) :: row(5)            !! The row
       real(wp), parameter :: nothing(3) = 0.0_wp
       real(wp) :: force(3), g(3, 3)
 
@@ -245,10 +235,8 @@ contains
 
    !> The bound whose multiplier vanishes first as another one's grows; 0 if none does
    pure integer function first_to_vanish(share, change) result(first)
-      !> Multipliers: (4)
-      real(wp), intent(in) :: share(4)
-      !> What of each goes into the other one's: (4)
-      real(wp), intent(in) :: change(4)
+      real(wp), intent(in) :: share(4)   !! Multipliers: (4)
+      real(wp), intent(in) :: change(4)  !! What of each goes into the other one's: (4)
       real(wp) :: least
       integer :: r
 
@@ -264,10 +252,8 @@ contains
 
    !> Put another row in the place of one
    pure subroutine exchange(r, change, inverse)
-      !> The place
-      integer, intent(in) :: r
-      !> The other row times the inverse: (4)
-      real(wp), intent(in) :: change(4)
+      integer, intent(in) :: r           !! The place
+      real(wp), intent(in) :: change(4)  !! The other row times the inverse: (4)
       real(wp), intent(inout) :: inverse(4, 4)
       integer :: i
 
@@ -280,8 +266,7 @@ contains
    !> Freeze the joints of a collapse. Their openings are what the forces that least hinder it leave
    pure subroutine freeze_mechanism(chain, face, mechanism)
       type(chain_t), intent(in) :: chain
-      !> Faces of its joints: (n + 1)
-      type(joint_face_t), intent(in) :: face(:)
+      type(joint_face_t), intent(in) :: face(:)  !! Faces of its joints: (n + 1)
       type(chain_mechanism_t), intent(out) :: mechanism
       type(joint_face_t) :: held(size(face))
       real(wp) :: tangent(3, 3), constant(3), force(3, size(face)), carried

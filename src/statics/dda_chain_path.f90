@@ -103,8 +103,7 @@ contains
       type(chain_t), intent(in) :: chain
       type(chain_state_t), intent(out) :: state
       type(chain_leg_t), intent(out) :: push
-      !> Whether forces hold it and no joint slides
-      logical, intent(out) :: stands
+      logical, intent(out) :: stands  !! Whether forces hold it and no joint slides
       type(chain_leg_t) :: crack
       real(wp) :: load(3, size(chain%joint)), reaction(3)
       real(wp), parameter :: to_the_side(2, 2) = reshape([0, 0, -1, 0], [2, 2])
@@ -157,8 +156,7 @@ contains
    !> A leg along which a load grows
    pure subroutine new_leg(chain, load, leg)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)  !! Sums of the loads: (3, n + 1)
       type(chain_leg_t), intent(out) :: leg
       real(wp) :: along, moment, normal
       integer :: j
@@ -186,12 +184,10 @@ contains
    !> Go along so many times a leg, or back along it
    pure subroutine follow(chain, times, leg, state, sticks)
       type(chain_t), intent(in) :: chain
-      !> How often
-      real(wp), intent(in) :: times
+      real(wp), intent(in) :: times   !! How often
       type(chain_leg_t), intent(in) :: leg
       type(chain_state_t), intent(inout) :: state
-      !> Whether forces are found to its end, and no joint slides
-      logical, intent(out) :: sticks
+      logical, intent(out) :: sticks  !! Whether forces are found to its end, and no joint slides
       type(chain_leg_t) :: way
 
       sticks = .not. abs(times) > 0.0_wp
@@ -204,8 +200,7 @@ contains
    pure subroutine move_along(chain, leg, may_slide, state, sticks)
       type(chain_t), intent(in) :: chain
       type(chain_leg_t), intent(in) :: leg
-      !> Whether joints that would slide end it
-      logical, intent(in) :: may_slide
+      logical, intent(in) :: may_slide  !! Whether joints that would slide end it
       type(chain_state_t), intent(inout) :: state
       logical, intent(out) :: sticks
       real(wp) :: rate(3, size(chain%joint)), change(3), left, step
@@ -243,10 +238,8 @@ contains
    !> Rates of the unknowns and gaps while the corners stay open or closed
    pure subroutine find_rates(leg, state, change)
       type(chain_leg_t), intent(in) :: leg
-      !> The state; the rates of its gaps are set
-      type(chain_state_t), intent(inout) :: state
-      !> Rates of the unknowns: (3)
-      real(wp), intent(out) :: change(3)
+      type(chain_state_t), intent(inout) :: state  !! The state; the rates of its gaps are set
+      real(wp), intent(out) :: change(3)           !! Rates of the unknowns: (3)
       real(wp) :: matrix(3, 3), row(3, 3), rest(3), gap(3)
       integer :: i, n
 
@@ -286,18 +279,12 @@ contains
    !> The next corner that opens or closes, if any does
    pure subroutine next_event(state, rate, squeeze, longest, step, opening, closing)
       type(chain_state_t), intent(in) :: state
-      !> Rates of the forces: (3, n + 1)
-      real(wp), intent(in) :: rate(:, :)
-      !> Rate of the prestress
-      real(wp), intent(in) :: squeeze
-      !> What is left of the leg
-      real(wp), intent(in) :: longest
-      !> How far the event is
-      real(wp), intent(out) :: step
-      !> The corner that opens; joint 0 if none does
-      type(open_corner_t), intent(out) :: opening
-      !> Which open corner closes, or 0
-      integer, intent(out) :: closing
+      real(wp), intent(in) :: rate(:, :)           !! Rates of the forces: (3, n + 1)
+      real(wp), intent(in) :: squeeze              !! Rate of the prestress
+      real(wp), intent(in) :: longest              !! What is left of the leg
+      real(wp), intent(out) :: step                !! How far the event is
+      type(open_corner_t), intent(out) :: opening  !! The corner that opens; joint 0 if none does
+      integer, intent(out) :: closing              !! Which open corner closes, or 0
       logical :: is_open(2, size(rate, 2))
       real(wp) :: fall, force
       integer :: i, j
@@ -332,8 +319,7 @@ contains
    pure subroutine open_corner(corner, state, opens)
       type(open_corner_t), intent(in) :: corner
       type(chain_state_t), intent(inout) :: state
-      !> Whether one could
-      logical, intent(out) :: opens
+      logical, intent(out) :: opens  !! Whether one could
       real(wp) :: matrix(3, 3), row(3, 3), share(3), turn
       integer :: closing, i, n
 

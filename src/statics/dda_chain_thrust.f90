@@ -86,14 +86,10 @@ contains
    pure function around_weak(chain, load, reaction, stride, coarse) result(around)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :)
-      !> The place
-      real(wp), intent(in) :: reaction(3)
-      !> How far around
-      integer, intent(in) :: stride
-      !> Joints that are looked at, rising
-      integer, intent(in) :: coarse(:)
-      !> The joints, rising
-      integer, allocatable :: around(:)
+      real(wp), intent(in) :: reaction(3)  !! The place
+      integer, intent(in) :: stride        !! How far around
+      integer, intent(in) :: coarse(:)     !! Joints that are looked at, rising
+      integer, allocatable :: around(:)    !! The joints, rising
       logical :: is_near(size(chain%joint))
       real(wp) :: force(3), safety(0:size(coarse) + 1)
       integer :: i, j
@@ -116,10 +112,8 @@ contains
    pure subroutine descend(chain, load, glued, watched, thrust)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :)
-      !> Energy if no joint could fail, at zero
-      type(chain_energy_t), intent(in) :: glued
-      !> The joints that count
-      integer, intent(in) :: watched(:)
+      type(chain_energy_t), intent(in) :: glued  !! Energy if no joint could fail, at zero
+      integer, intent(in) :: watched(:)          !! The joints that count
       type(thrust_t), intent(inout) :: thrust
       type(chain_energy_t) :: here, there
       real(wp) :: bracket(2), direction(3), fall, steepness(2), way
@@ -148,8 +142,7 @@ contains
    pure subroutine find_energy(chain, load, glued, watched, reaction, energy)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: load(:, :)
-      !> Its part if no joint could fail, at zero
-      type(chain_energy_t), intent(in) :: glued
+      type(chain_energy_t), intent(in) :: glued  !! Its part if no joint could fail, at zero
       integer, intent(in) :: watched(:)
       real(wp), intent(in) :: reaction(3)
       type(chain_energy_t), intent(out) :: energy

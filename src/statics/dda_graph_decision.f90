@@ -119,8 +119,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
-      !> Whether a stage before has left a state
-      logical, intent(in) :: goes_on
+      logical, intent(in) :: goes_on  !! Whether a stage before has left a state
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
       logical :: coulomb
@@ -182,8 +181,7 @@ contains
    pure real(wp) function power_of_all(settings, system, velocity) result(power)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Velocities of the blocks: (3, n_block)
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities of the blocks: (3, n_block)
       real(wp) :: force(size(system%equation)), gyration
       integer :: b, e, i
 

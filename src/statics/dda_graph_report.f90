@@ -155,8 +155,7 @@ contains
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: pin_force(:, :)
       type(block_system_t), intent(in) :: system
-      !> Forces on the unknowns of all blocks: (6, n_block)
-      real(wp), intent(inout) :: moment(:, :)
+      real(wp), intent(inout) :: moment(:, :)  !! Forces on the unknowns of all blocks: (6, n_block)
       real(wp) :: t(2, 6)
       integer :: i, n
 

@@ -73,8 +73,7 @@ contains
 
    !> Go on from a rest
    pure subroutine set_forward(growth, clock)
-      !> By what the stride grows, or shrinks
-      real(wp), intent(in) :: growth
+      real(wp), intent(in) :: growth  !! By what the stride grows, or shrinks
       type(load_clock_t), intent(inout) :: clock
 
       if (clock%now >= clock%fails) clock%fails = huge(1.0_wp)
@@ -86,11 +85,9 @@ contains
    !> Go back to the last rest, for a stride half as long; there is none where the stride is the
    !> shortest already
    pure subroutine set_back(falls, clock, shorter)
-      !> Whether the blocks do not come to rest at the present time
-      logical, intent(in) :: falls
+      logical, intent(in) :: falls     !! Whether the blocks do not come to rest at the present time
       type(load_clock_t), intent(inout) :: clock
-      !> Whether there is a shorter stride
-      logical, intent(out) :: shorter
+      logical, intent(out) :: shorter  !! Whether there is a shorter stride
 
       ! rounding must not take the shortest for a longer one
       shorter = clock%now - clock%rested > barely_longer*shortest*leg_length(clock)

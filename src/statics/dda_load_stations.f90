@@ -90,10 +90,8 @@ contains
 
    !> Shares of a path in equal legs; all of it where there is none
    pure function shares(n) result(share)
-      !> Number of legs
-      integer, intent(in) :: n
-      !> The shares: (0:n)
-      real(wp) :: share(0:n)
+      integer, intent(in) :: n  !! Number of legs
+      real(wp) :: share(0:n)    !! The shares: (0:n)
       integer :: i
 
       share = [(real(i, wp)/real(max(n, 1), wp), i=0, n)]
@@ -237,8 +235,7 @@ contains
    !> Times at which a history bends, after the beginning
    pure function history_times(settings) result(time)
       type(settings_t), intent(in) :: settings
-      !> The times, ascending, each once: (n) [s]
-      real(wp), allocatable :: time(:)
+      real(wp), allocatable :: time(:)  !! The times, ascending, each once: (n) [s]
       integer :: i, n
 
       n = bends(settings%boundary%base_acceleration)
@@ -270,10 +267,8 @@ contains
    !> Add the times of one history to a list
    pure subroutine take_times(history, time, n)
       type(history_t), intent(in) :: history
-      !> The list, with room for them: (:) [s]
-      real(wp), intent(inout) :: time(:)
-      !> How many times it has
-      integer, intent(inout) :: n
+      real(wp), intent(inout) :: time(:)  !! The list, with room for them: (:) [s]
+      integer, intent(inout) :: n         !! How many times it has
 
       if (bends(history) == 0) return
       time(n + 1:n + size(history%time)) = history%time

@@ -158,8 +158,7 @@ contains
 
    !> How a path has ended
    pure subroutine conclude(result, verdict)
-      !> How its last leg ended
-      type(path_result_t), intent(inout) :: result
+      type(path_result_t), intent(inout) :: result  !! How its last leg ended
       type(graph_verdict_t), intent(inout) :: verdict
 
       verdict%end = result%end

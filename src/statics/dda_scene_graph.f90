@@ -152,10 +152,8 @@ contains
    pure subroutine add_bounded(settings, system, compliance, before, graph)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Compliance of a pin [m2/N]
-      real(wp), intent(in) :: compliance
-      !> Joints and pins before them
-      integer, intent(in) :: before
+      real(wp), intent(in) :: compliance  !! Compliance of a pin [m2/N]
+      integer, intent(in) :: before       !! Joints and pins before them
       type(joint_graph_t), intent(inout) :: graph
       real(wp) :: t(2, 6)
       integer :: e, i, j
@@ -221,8 +219,7 @@ contains
    pure function pins(settings, system) result(pin)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> The points: (n_pin)
-      type(held_point_t), allocatable :: pin(:)
+      type(held_point_t), allocatable :: pin(:)  !! The points: (n_pin)
 
       allocate (pin(0))
       if (.not. allocated(settings%boundary%held)) return
@@ -252,8 +249,7 @@ contains
 
    !> Joints without numbers
    pure subroutine allocate_joints(n, graph)
-      !> How many
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! How many
       type(joint_graph_t), intent(inout) :: graph
 
       allocate (graph%block(2, n), graph%kind(n))

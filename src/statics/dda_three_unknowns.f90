@@ -25,12 +25,9 @@ contains
    !> Whether a place along a direction is good enough: lower, and not as steep by far
    pure logical function is_better(here, there, direction, fall, way)
       type(chain_energy_t), intent(in) :: here, there
-      !> The direction
-      real(wp), intent(in) :: direction(3)
-      !> How steeply the function falls at the beginning
-      real(wp), intent(in) :: fall
-      !> How far the place is
-      real(wp), intent(in) :: way
+      real(wp), intent(in) :: direction(3)  !! The direction
+      real(wp), intent(in) :: fall          !! How steeply the function falls at the beginning
+      real(wp), intent(in) :: way           !! How far the place is
 
       is_better = there%value <= here%value*(1.0_wp + rounding) - barely*way*fall &
          & .and. (way >= 1.0_wp &
@@ -42,14 +39,10 @@ contains
    pure subroutine try_between(there, direction, bracket, steepness, try, way)
       type(chain_energy_t), intent(in) :: there
       real(wp), intent(in) :: direction(3)
-      !> How far its ends are: (2)
-      real(wp), intent(inout) :: bracket(2)
-      !> The slopes there: (2)
-      real(wp), intent(inout) :: steepness(2)
-      !> Number of the try
-      integer, intent(in) :: try
-      !> The last place in, the next out
-      real(wp), intent(inout) :: way
+      real(wp), intent(inout) :: bracket(2)    !! How far its ends are: (2)
+      real(wp), intent(inout) :: steepness(2)  !! The slopes there: (2)
+      integer, intent(in) :: try               !! Number of the try
+      real(wp), intent(inout) :: way           !! The last place in, the next out
       real(wp) :: curvature, next, slope
       integer :: side
 
@@ -67,10 +60,8 @@ contains
 
    !> Take the second of three unknowns out: a smooth plane bears no weight, and stops none
    pure subroutine hold_upright(slope, curvature)
-      !> First derivatives
-      real(wp), intent(inout) :: slope(3)
-      !> Second derivatives
-      real(wp), intent(inout) :: curvature(3, 3)
+      real(wp), intent(inout) :: slope(3)         !! First derivatives
+      real(wp), intent(inout) :: curvature(3, 3)  !! Second derivatives
 
       slope(2) = 0.0_wp
       curvature(:, 2) = 0.0_wp
@@ -81,12 +72,9 @@ contains
    !> Solve three equations with a symmetric matrix that is positive definite, but for directions
    !> without stiffness, in which nothing moves
    pure subroutine solve_3(a, b, x)
-      !> The matrix
-      real(wp), intent(in) :: a(3, 3)
-      !> Right-hand side
-      real(wp), intent(in) :: b(3)
-      !> The solution
-      real(wp), intent(out) :: x(3)
+      real(wp), intent(in) :: a(3, 3)  !! The matrix
+      real(wp), intent(in) :: b(3)     !! Right-hand side
+      real(wp), intent(out) :: x(3)    !! The solution
       real(wp) :: r(3), l21, l31, l32
 
       r(1) = inverse(a(1, 1))
@@ -105,8 +93,7 @@ contains
 
    !> One over a number, or 0
    pure real(wp) function inverse(number)
-      !> The number
-      real(wp), intent(in) :: number
+      real(wp), intent(in) :: number  !! The number
 
       inverse = 0.0_wp
       if (abs(number) > tiny(number)) inverse = 1.0_wp/number

@@ -15,8 +15,7 @@ contains
    pure function reference_rows(system, bar) result(row)
       type(block_system_t), intent(in) :: system
       type(bar_t), intent(in) :: bar
-      !> For both ends: (6, 2)
-      real(wp) :: row(6, 2)
+      real(wp) :: row(6, 2)  !! For both ends: (6, 2)
       real(wp) :: along(2)
       integer :: side
 

@@ -43,8 +43,7 @@ contains
    pure type(bar_springs_t) function new_bar_springs(system, settings, n_dof) result(bars)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> Unknowns of a block
-      integer, intent(in) :: n_dof
+      integer, intent(in) :: n_dof  !! Unknowns of a block
       integer :: i, n, side
 
       n = 0
@@ -89,10 +88,8 @@ contains
 
    !> What a bar does at a trial force
    pure integer function condition_of(trial, bound)
-      !> Force without bounds [N]
-      real(wp), intent(in) :: trial
-      !> Least and largest force: (2) [N]
-      real(wp), intent(in) :: bound(2)
+      real(wp), intent(in) :: trial     !! Force without bounds [N]
+      real(wp), intent(in) :: bound(2)  !! Least and largest force: (2) [N]
 
       condition_of = bar_condition%elastic
       if (trial < bound(1)) condition_of = bar_condition%slack
@@ -103,10 +100,8 @@ contains
    !> Stiffness of a bar that acts in this step, along and across
    pure function acting(bars, i) result(stiffness)
       type(bar_springs_t), intent(in) :: bars
-      !> Number of the bar
-      integer, intent(in) :: i
-      !> (2) [N/m]
-      real(wp) :: stiffness(2)
+      integer, intent(in) :: i  !! Number of the bar
+      real(wp) :: stiffness(2)  !! (2) [N/m]
 
       stiffness = bars%share*bars%stiffness(:, i)
       if (bars%condition(i) /= bar_condition%elastic) stiffness(1) = 0.0_wp
@@ -227,10 +222,8 @@ contains
    pure subroutine judge_bars(bars, motion, one_by_one, agreed)
       type(bar_springs_t), intent(inout) :: bars
       real(wp), intent(in) :: motion(:, :)
-      !> Whether only the bar that is farthest off changes
-      logical, intent(in) :: one_by_one
-      !> Whether all agreed
-      logical, intent(out) :: agreed
+      logical, intent(in) :: one_by_one  !! Whether only the bar that is farthest off changes
+      logical, intent(out) :: agreed     !! Whether all agreed
       real(wp) :: off(size(bars%trial)), trial
       integer :: i, wanted(size(bars%trial))
 
@@ -253,8 +246,7 @@ contains
    pure subroutine keep_bars(bars, settings, motion, system)
       type(bar_springs_t), intent(in) :: bars
       type(settings_t), intent(in) :: settings
-      !> Motion of the step: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the step: (n_dof, n_equation)
       type(block_system_t), intent(inout) :: system
       real(wp) :: trial
       integer :: i
@@ -277,8 +269,7 @@ contains
    !> How much the softest bar gives to a force
    pure real(wp) function longest_give(bars, force)
       type(bar_springs_t), intent(in) :: bars
-      !> The force [N]
-      real(wp), intent(in) :: force
+      real(wp), intent(in) :: force  !! The force [N]
       integer :: i
 
       longest_give = 0.0_wp
@@ -292,8 +283,7 @@ contains
    pure function bar_energies(bars, motion) result(energy)
       type(bar_springs_t), intent(in) :: bars
       real(wp), intent(in) :: motion(:, :)
-      !> Stored, spent: (2) [J/m]
-      real(wp) :: energy(2)
+      real(wp) :: energy(2)  !! Stored, spent: (2) [J/m]
       real(wp) :: longer, stiffness(2)
       integer :: i
 

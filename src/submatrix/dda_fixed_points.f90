@@ -49,10 +49,8 @@ contains
    !> Springs of all held points, free of force
    pure type(fixed_points_t) function new_fixed_points(system, held, n_dof) result(fixed)
       type(block_system_t), intent(in) :: system
-      !> The held points
-      type(held_point_t), intent(in) :: held(:)
-      !> Unknowns of a block
-      integer, intent(in) :: n_dof
+      type(held_point_t), intent(in) :: held(:)  !! The held points
+      integer, intent(in) :: n_dof               !! Unknowns of a block
       integer :: axis, h, n, number(2*size(held)), direction(2*size(held))
 
       n = 0
@@ -77,12 +75,9 @@ contains
    pure subroutine follow_fixed_points(system, settings, time, dt, fixed)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> Time of the paths at the end of the step [s]
-      real(wp), intent(in) :: time
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> The springs; forces are kept
-      type(fixed_points_t), intent(inout) :: fixed
+      real(wp), intent(in) :: time                  !! Time of the paths at the end of the step [s]
+      real(wp), intent(in) :: dt                    !! Length of the step [s]
+      type(fixed_points_t), intent(inout) :: fixed  !! The springs; forces are kept
       real(wp) :: t(2, 6), place(2), centre(2), path(2), rate(2)
       integer :: i
 

@@ -62,8 +62,7 @@ contains
       !> What a history is in the step
       pure function now(history) result(value)
          type(history_t), intent(in) :: history
-         !> Components along x and y: (2)
-         real(wp) :: value(2)
+         real(wp) :: value(2)  !! Components along x and y: (2)
 
          if (settings%dynamic) then
             value = mean_over(history, time, time + dt)
@@ -76,13 +75,10 @@ contains
    !> What a force at a point of a block is to its unknowns
    pure function load_at(loaded, force, system, current) result(of_block)
       type(loaded_point_t), intent(in) :: loaded
-      !> The force: (2) [N/m]
-      real(wp), intent(in) :: force(2)
+      real(wp), intent(in) :: force(2)  !! The force: (2) [N/m]
       type(block_system_t), intent(in) :: system
-      !> Whether the point has moved with its block
-      logical, intent(in) :: current
-      !> Load on the unknowns: (6)
-      real(wp) :: of_block(6)
+      logical, intent(in) :: current    !! Whether the point has moved with its block
+      real(wp) :: of_block(6)           !! Load on the unknowns: (6)
 
       associate (centre => system%centroid(:, loaded%block), &
          & motion => system%motion(:, loaded%block))

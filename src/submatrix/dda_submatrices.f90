@@ -64,11 +64,9 @@ contains
 
    !> Load on the strain unknowns by the stress that the block already has
    pure function stress_load(stress, area) result(load)
-      !> Stress sx, sy, txy: (3) [Pa]
-      real(wp), intent(in) :: stress(3)
+      real(wp), intent(in) :: stress(3)  !! Stress sx, sy, txy: (3) [Pa]
       real(wp), intent(in) :: area
-      !> Generalised load: (6)
-      real(wp) :: load(6)
+      real(wp) :: load(6)                !! Generalised load: (6)
 
       load(1:3) = 0.0_wp
       load(4:6) = -area*stress
@@ -76,11 +74,9 @@ contains
 
    !> Body force; it acts at the centre of gravity, so only u0 and v0 see it
    pure function body_load(force_per_volume, area) result(load)
-      !> Force per volume: (2) [N/m3]
-      real(wp), intent(in) :: force_per_volume(2)
+      real(wp), intent(in) :: force_per_volume(2)  !! Force per volume: (2) [N/m3]
       real(wp), intent(in) :: area
-      !> Generalised load: (6)
-      real(wp) :: load(6)
+      real(wp) :: load(6)                          !! Generalised load: (6)
 
       load = 0.0_wp
       load(1:2) = force_per_volume*area
@@ -137,8 +133,7 @@ contains
    pure function impedance(system, point) result(c)
       type(block_system_t), intent(in) :: system
       type(absorbing_point_t), intent(in) :: point
-      !> Symmetric matrix: (2, 2) [N s/m2]
-      real(wp) :: c(2, 2)
+      real(wp) :: c(2, 2)  !! Symmetric matrix: (2, 2) [N s/m2]
       real(wp) :: d(3, 3), speed(2)
       integer :: i, j
 

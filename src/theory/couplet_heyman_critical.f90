@@ -59,16 +59,11 @@ contains
 
    !> Critical solution at a small half angle
    elemental subroutine small_angle_solution(alpha, which, beta, eta, h)
-      !> Half angle of embrace; 0.1 gives eight digits or more [rad]
-      real(wp), intent(in) :: alpha
-      !> One of `theory`
-      integer, intent(in) :: which
-      !> alpha/sqrt(2) (1 + ...) [rad]
-      real(wp), intent(out) :: beta
-      !> alpha^4 (1/48 + ...) [-]
-      real(wp), intent(out) :: eta
-      !> 1 - alpha^2/6 + ... [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(in) :: alpha  !! Half angle of embrace; 0.1 gives eight digits or more [rad]
+      integer, intent(in) :: which   !! One of `theory`
+      real(wp), intent(out) :: beta  !! alpha/sqrt(2) (1 + ...) [rad]
+      real(wp), intent(out) :: eta   !! alpha^4 (1/48 + ...) [-]
+      real(wp), intent(out) :: h     !! 1 - alpha^2/6 + ... [w r]
       real(wp) :: t
 
       t = alpha*alpha
@@ -83,15 +78,11 @@ contains
    !> sqrt 3) beta^2/12, (2 sqrt 3 - 3) beta^2/3, sqrt(3) beta^4/36. Heyman is linear in pi/2 -
    !> beta.
    elemental subroutine near_limit_solution(distance, which, beta, eta, h)
-      !> alpha_limit - alpha [rad]
-      real(wp), intent(in) :: distance
+      real(wp), intent(in) :: distance  !! alpha_limit - alpha [rad]
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta     !! Inner hinge [rad]
+      real(wp), intent(out) :: eta      !! Thickness ratio [-]
+      real(wp), intent(out) :: h        !! Thrust [w r]
       type(limits_t) :: limits
       real(wp) :: excess, c, eta_rate
 
@@ -117,10 +108,8 @@ contains
 
    !> Sum of a power series
    pure real(wp) function power_sum(coefficient, t)
-      !> Coefficients, constant first: (:)
-      real(wp), intent(in) :: coefficient(:)
-      !> Variable
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: coefficient(:)  !! Coefficients, constant first: (:)
+      real(wp), intent(in) :: t               !! Variable
       integer :: i
 
       power_sum = 0.0_wp
@@ -132,8 +121,7 @@ contains
    !> Whether a theory has a critical solution at a half angle: 0 < alpha <= alpha_limit; false for
    !> a NaN
    elemental logical function is_embraced(alpha, which)
-      !> Half angle of embrace [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace [rad]
       integer, intent(in) :: which
       type(limits_t) :: limits
 
@@ -143,15 +131,11 @@ contains
 
    !> Critical hinge, thickness and thrust; NaN outside the range of validity
    elemental subroutine critical_solution(alpha, which, beta, eta, h)
-      !> Half angle of embrace, (0, alpha_limit] [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
       integer, intent(in) :: which
-      !> Inner hinge from the crown [rad]
-      real(wp), intent(out) :: beta
-      !> Critical thickness ratio t/r [-]
-      real(wp), intent(out) :: eta
-      !> Horizontal thrust H/(w r) [-]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta  !! Inner hinge from the crown [rad]
+      real(wp), intent(out) :: eta   !! Critical thickness ratio t/r [-]
+      real(wp), intent(out) :: h     !! Horizontal thrust H/(w r) [-]
 
       if (.not. is_embraced(alpha, which)) then
          beta = ieee_value(beta, ieee_quiet_nan)
@@ -198,12 +182,10 @@ contains
 
    !> CCR and Milankovitch at moderate half angles
    elemental subroutine tangent_shallow(alpha, which, beta, eta, h)
-      !> Half angle of embrace, (0, near_the_limit) [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, near_the_limit) [rad]
       integer, intent(in) :: which
       real(wp), intent(out) :: beta, eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: h     !! Thrust [w r]
       type(limits_t) :: limits
       real(wp) :: deficit, flag, sine, cosine, q, excess, d, p, ratio, change
       integer :: step
@@ -236,8 +218,7 @@ contains
    !> e/2)), and the condition of tangency is f(e) - f(e - y) - x = k/S with f = 4 eta m/(4 -
    !> eta^2). The thrust is h1 of eq. (7).
    elemental subroutine tangent_steep(alpha, which, beta, eta, h)
-      !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, [near_the_limit, alpha_limit] [rad]
       integer, intent(in) :: which
       real(wp), intent(out) :: beta, eta, h
       type(limits_t) :: limits
@@ -275,12 +256,9 @@ contains
    !> f(e) - f(e - y) with f(eta) = 4 eta m/(4 - eta^2), without a difference of nearly equal
    !> numbers
    elemental real(wp) function tangency_drop(y, e, flag) result(drop)
-      !> e - eta
-      real(wp), intent(in) :: y
-      !> Thickness ratio at the limit [-]
-      real(wp), intent(in) :: e
-      !> delta_M
-      real(wp), intent(in) :: flag
+      real(wp), intent(in) :: y     !! e - eta
+      real(wp), intent(in) :: e     !! Thickness ratio at the limit [-]
+      real(wp), intent(in) :: flag  !! delta_M
       real(wp) :: numerator, denominator
 
       numerator = e*(4.0_wp + flag*e*e/3.0_wp)
@@ -354,8 +332,7 @@ contains
    !> -dA/d beta along Heyman's solution: (k/S)' + 2 eta'/(2 + eta)^2
    elemental real(wp) function heyman_rate(beta, eta) result(rate)
       real(wp), intent(in) :: beta
-      !> Thickness ratio there, eq. (2) [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta  !! Thickness ratio there, eq. (2) [-]
       real(wp) :: eta_rate
 
       eta_rate = eta*(versine(beta)/arc_excess(beta) - 1.0_wp/beta + 2.0_wp/sin(beta))

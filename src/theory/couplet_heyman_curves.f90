@@ -43,14 +43,10 @@ contains
    !> Heyman and CCR: the positive root of the quadratic, rationalised. Milankovitch: Newton's
    !> method on the cubic from there. At beta = 0 it is eq. (26).
    elemental function equilibrium_thickness(beta, alpha, which) result(eta)
-      !> Inner hinge, [0, alpha] [rad]
-      real(wp), intent(in) :: beta
-      !> Half angle of embrace, (0, alpha_limit] [rad]
-      real(wp), intent(in) :: alpha
-      !> One of `theory`
-      integer, intent(in) :: which
-      !> Thickness ratio [-]
-      real(wp) :: eta
+      real(wp), intent(in) :: beta   !! Inner hinge, [0, alpha] [rad]
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
+      integer, intent(in) :: which   !! One of `theory`
+      real(wp) :: eta                !! Thickness ratio [-]
       real(wp) :: q, excess, d, p, root, cubic
 
       if (beta <= 0.0_wp) then
@@ -99,8 +95,7 @@ contains
 
    !> 1 - A(alpha), exact to the last digits also where A is close to 1
    elemental real(wp) function unit_shortfall(alpha)
-      !> Half angle of embrace, (0, pi) [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, pi) [rad]
 
       if (abs(alpha - unit_angle) < 0.5_wp) then
          unit_shortfall = -embrace_difference(alpha, unit_angle, unit_angle_tail)
@@ -131,12 +126,10 @@ contains
    !> -S ((a - k/S)(1 - eta^2/4) - eta m)/(D - eta P/2 + delta_M C eta^2/4) with eta on the curve; 0
    !> at beta = 0, except for A = 1, where it tends to 1.
    elemental function curve_slope(beta, alpha, which) result(slope)
-      !> Inner hinge, (0, alpha] [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Inner hinge, (0, alpha] [rad]
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-      !> d eta/d beta [1/rad]
-      real(wp) :: slope
+      real(wp) :: slope             !! d eta/d beta [1/rad]
       real(wp) :: eta, deficit, q, d, p, stationary, growth
 
       eta = equilibrium_thickness(beta, alpha, which)
@@ -155,11 +148,9 @@ contains
    !> 1 + e = (2 + eta) Q/(eta (beta S + h2 C)) with h2 of eq. (8): 2e/t, -1 at the extrados, 1 at
    !> the intrados
    elemental real(wp) function thrust_line(beta, alpha, eta, which)
-      !> Angle of the joint, [0, alpha] [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Angle of the joint, [0, alpha] [rad]
       real(wp), intent(in) :: alpha
-      !> Thickness ratio, large enough for a thrust h2 > 0 [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta   !! Thickness ratio, large enough for a thrust h2 > 0 [-]
       integer, intent(in) :: which
       real(wp) :: excess, normal
 

@@ -113,14 +113,10 @@ module couplet_heyman_discrete
       !> in eta and deficit
       pure module subroutine solve_pinch(ring, start, pinch, eta, solved)
          type(ring_t), intent(in) :: ring
-         !> Thickness ratio at which the pinch was found [-]
-         real(wp), intent(in) :: start
-         !> The joints; its deficit is carried along
-         type(pinch_t), intent(inout) :: pinch
-         !> Thickness ratio at which their gaps vanish [-]
-         real(wp), intent(out) :: eta
-         !> Whether the iteration has come to rest
-         logical, intent(out) :: solved
+         real(wp), intent(in) :: start          !! Thickness ratio at which the pinch was found [-]
+         type(pinch_t), intent(inout) :: pinch  !! The joints; its deficit is carried along
+         real(wp), intent(out) :: eta           !! Thickness ratio at which their gaps vanish [-]
+         logical, intent(out) :: solved         !! Whether the iteration has come to rest
       end subroutine solve_pinch
 
       !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
@@ -240,13 +236,10 @@ contains
 
    !> Whether the arguments describe an arch: finite, in range, increasing, and of matching sizes
    pure logical function makes_sense(joint_angle, facets, friction)
-      !> Joints of one half: (:) [rad]
-      real(wp), intent(in) :: joint_angle(:)
-      !> Chords of each voussoir: (:)
-      integer, intent(in) :: facets(:)
+      real(wp), intent(in) :: joint_angle(:)     !! Joints of one half: (:) [rad]
+      integer, intent(in) :: facets(:)           !! Chords of each voussoir: (:)
       real(wp), intent(in) :: friction
-      !> Half a turn [rad]
-      real(wp), parameter :: pi = acos(-1.0_wp)
+      real(wp), parameter :: pi = acos(-1.0_wp)  !! Half a turn [rad]
       integer :: n
 
       n = size(joint_angle)
@@ -261,8 +254,7 @@ contains
    !> Whether two joints alone let a thrust pass along the centre line: then no thickness is needed;
    !> the straight thrust between the joints' centres presses on both and slides on neither
    pure logical function stands_as_a_line(ring)
-      !> A ring of two joints
-      type(ring_t), intent(in) :: ring
+      type(ring_t), intent(in) :: ring  !! A ring of two joints
       real(wp) :: deficit
 
       deficit = (ring%form(1) - ring%form(2))/(ring%versine(2) - ring%versine(1))
@@ -273,11 +265,9 @@ contains
    !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals
    !> honest
    pure subroutine search_eta(ring, solution)
-      !> Ring of two joints or more
-      type(ring_t), intent(in) :: ring
+      type(ring_t), intent(in) :: ring         !! Ring of two joints or more
       type(discrete_solution_t), intent(out) :: solution
-      !> More than ever needed: bisection alone takes 60
-      integer, parameter :: most_rounds = 200
+      integer, parameter :: most_rounds = 200  !! More than ever needed: bisection alone takes 60
       real(wp) :: eta, low, high, root
       logical :: high_stands, solved, stands, unchanged
       type(pinch_t) :: pinch, proposer
@@ -320,8 +310,7 @@ contains
 
    !> Critical state of a ring that has one: status found, with the thrust and the joints that bind
    pure type(discrete_solution_t) function critical_state(eta, pinch) result(solution)
-      !> Critical thickness ratio [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta  !! Critical thickness ratio [-]
       type(pinch_t), intent(in) :: pinch
       integer :: joint(5), role(5)
       logical :: binds(5)

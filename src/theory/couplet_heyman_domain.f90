@@ -30,16 +30,14 @@ contains
    !> Whether an angle can be the half angle of embrace of an arch at all: 0 < alpha < pi; false for
    !> a NaN
    elemental logical function is_half_angle(alpha)
-      !> Angle [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Angle [rad]
 
       is_half_angle = alpha > 0.0_wp .and. alpha < pi
    end function is_half_angle
 
    !> Whether a number can be a thickness ratio: 0 < eta < 2; false for a NaN
    elemental logical function is_thickness(eta)
-      !> Number
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta  !! Number
 
       is_thickness = eta > 0.0_wp .and. eta < 2.0_wp
    end function is_thickness
@@ -47,18 +45,15 @@ contains
    !> Whether an angle is that of a joint of one half of an arch: 0 <= beta <= alpha; false for a
    !> NaN
    elemental logical function is_joint(beta, alpha)
-      !> Angle [rad]
-      real(wp), intent(in) :: beta
-      !> Half angle of embrace [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: beta   !! Angle [rad]
+      real(wp), intent(in) :: alpha  !! Half angle of embrace [rad]
 
       is_joint = beta >= 0.0_wp .and. beta <= alpha
    end function is_joint
 
    !> Whether a number is neither infinite nor a NaN: |x| <= huge
    elemental logical function is_finite(x)
-      !> Number
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! Number
 
       is_finite = abs(x) <= huge(x)
    end function is_finite
@@ -66,8 +61,7 @@ contains
    !> Whether a number can limit the span of a chord: 0, or finite and not too short; false for a
    !> NaN
    elemental logical function is_facet(facet)
-      !> Number; 0 stands for no limit [rad]
-      real(wp), intent(in) :: facet
+      real(wp), intent(in) :: facet  !! Number; 0 stands for no limit [rad]
 
       is_facet = abs(facet) <= 0.0_wp .or. (facet >= shortest_chord .and. is_finite(facet))
    end function is_facet

@@ -33,18 +33,15 @@ contains
    !> Eq. (2), Heyman: eta = 2 (beta - S)(1 - C)/(beta (1 + C))
    elemental function heyman_thickness(beta) result(eta)
       real(wp), intent(in) :: beta
-      !> Thickness ratio [-]
-      real(wp) :: eta
+      real(wp) :: eta  !! Thickness ratio [-]
 
       eta = 2.0_wp*arc_excess(beta)/beta*tan(0.5_wp*beta)**2
    end function heyman_thickness
 
    !> Eq. (3), Heyman: h = beta cot beta, the resultant tangent to the intrados
    elemental function heyman_thrust(beta) result(h)
-      !> Inner hinge, [0, pi/2] [rad]
-      real(wp), intent(in) :: beta
-      !> Horizontal thrust [w r]
-      real(wp) :: h
+      real(wp), intent(in) :: beta  !! Inner hinge, [0, pi/2] [rad]
+      real(wp) :: h                 !! Horizontal thrust [w r]
 
       h = 1.0_wp
       if (beta > 0.0_wp) h = beta*cos(beta)/sin(beta)
@@ -52,24 +49,18 @@ contains
 
    !> Eq. (5): weight of the chunk between the crown and beta
    elemental function chunk_weight(beta) result(weight)
-      !> Angle from the crown [rad]
-      real(wp), intent(in) :: beta
-      !> W1 [w r]
-      real(wp) :: weight
+      real(wp), intent(in) :: beta  !! Angle from the crown [rad]
+      real(wp) :: weight            !! W1 [w r]
 
       weight = beta
    end function chunk_weight
 
    !> Eq. (5): centre of gravity of the chunk between the crown and beta
    pure function chunk_centre(beta, eta, which) result(centre)
-      !> Angle from the crown, (0, pi) [rad]
-      real(wp), intent(in) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> One of `theory`
-      integer, intent(in) :: which
-      !> x1 from the crown and y1 from the arch's centre: (2) [r]
-      real(wp) :: centre(2)
+      real(wp), intent(in) :: beta  !! Angle from the crown, (0, pi) [rad]
+      real(wp), intent(in) :: eta   !! Thickness ratio [-]
+      integer, intent(in) :: which  !! One of `theory`
+      real(wp) :: centre(2)         !! x1 from the crown and y1 from the arch's centre: (2) [r]
 
       centre = weight_arm(eta, which)*[versine(beta), sin(beta)]/beta
    end function chunk_centre
@@ -94,24 +85,20 @@ contains
 
    !> Eq. (7): h1, the lower thrust, through the crown's extrados and the intrados at beta
    elemental function lower_thrust(beta, eta, which) result(h)
-      !> Inner hinge, (0, pi) [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Inner hinge, (0, pi) [rad]
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-      !> h1 [w r]
-      real(wp) :: h
+      real(wp) :: h                 !! h1 [w r]
 
       h = thrust_through(beta, 1.0_wp, eta, which)
    end function lower_thrust
 
    !> Eq. (8): h2 = A - 2 m/(2 + eta), through the extrados of crown and springing
    elemental function springing_thrust(alpha, eta, which) result(h)
-      !> Half angle of embrace, (0, pi) [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, pi) [rad]
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-      !> h2 = 1 - a + (eta - delta_M eta^2/6)/(2 + eta) [w r]
-      real(wp) :: h
+      real(wp) :: h                  !! h2 = 1 - a + (eta - delta_M eta^2/6)/(2 + eta) [w r]
 
       h = eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
       h = 1.0_wp - embrace_deficit(alpha) + h
@@ -120,13 +107,10 @@ contains
    !> Eq. (12): h_e, the thrust at which the line of thrust touches the intrados at beta; for Heyman
    !> eq. (3)
    elemental function tangent_thrust(beta, eta, which) result(h)
-      !> Inner hinge, [0, pi) [rad]
-      real(wp), intent(in) :: beta
-      !> Thickness ratio, below 2 [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: beta  !! Inner hinge, [0, pi) [rad]
+      real(wp), intent(in) :: eta   !! Thickness ratio, below 2 [-]
       integer, intent(in) :: which
-      !> h_e [w r]
-      real(wp) :: h
+      real(wp) :: h                 !! h_e [w r]
 
       h = heyman_thrust(beta)
       if (which == theory%heyman) return
@@ -138,11 +122,9 @@ contains
    !> 1 + e = q ((2 + eta)(A(beta) - h) - 2 m)/(eta (beta S + h C)): the crown keeps all its digits;
    !> 2e/t, -1 at the extrados, 1 at the intrados
    elemental real(wp) function eccentricity(beta, eta, h, which)
-      !> Angle of the joint, [0, pi) [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Angle of the joint, [0, pi) [rad]
       real(wp), intent(in) :: eta
-      !> Horizontal thrust, positive where beta is 0 [w r]
-      real(wp), intent(in) :: h
+      real(wp), intent(in) :: h     !! Horizontal thrust, positive where beta is 0 [w r]
       integer, intent(in) :: which
       real(wp) :: drop
 

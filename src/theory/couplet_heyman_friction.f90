@@ -44,10 +44,8 @@ contains
 
    !> Friction coefficients at which the mode of collapse changes: NaN outside the range of validity
    pure type(friction_limits_t) function friction_limits(alpha, which) result(limits)
-      !> Half angle of embrace, (0, alpha_limit] [rad]
-      real(wp), intent(in) :: alpha
-      !> One of `theory`
-      integer, intent(in) :: which
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
+      integer, intent(in) :: which   !! One of `theory`
       real(wp) :: x, springing, haunch
 
       limits%mu_mixed = ieee_value(x, ieee_quiet_nan)
@@ -69,16 +67,12 @@ contains
 
    !> Least thickness, with its hinge and thrust, at a friction coefficient; NaN below mu_mixed
    elemental subroutine friction_solution(mu, alpha, which, beta, eta, h)
-      !> Friction coefficient of the joints
-      real(wp), intent(in) :: mu
+      real(wp), intent(in) :: mu     !! Friction coefficient of the joints
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta  !! Inner hinge [rad]
+      real(wp), intent(out) :: eta   !! Thickness ratio [-]
+      real(wp), intent(out) :: h     !! Thrust [w r]
       type(friction_limits_t) :: limits
       real(wp) :: deficit
 
@@ -121,10 +115,8 @@ contains
    !> Lean of the thrust at the springing: alpha - atan2(alpha, h)
    elemental function springing_lean(alpha, x) result(lean)
       real(wp), intent(in) :: alpha
-      !> asin(sqrt(1 - h)) [rad]
-      real(wp), intent(in) :: x
-      !> Towards the outside of the arch positive [rad]
-      real(wp) :: lean
+      real(wp), intent(in) :: x  !! asin(sqrt(1 - h)) [rad]
+      real(wp) :: lean           !! Towards the outside of the arch positive [rad]
 
       lean = atan2(arm_excess(alpha) - sin(x)**2*sin(alpha), &
                    cos(x)**2*cos(alpha) + alpha*sin(alpha))
@@ -133,8 +125,7 @@ contains
    !> The thrust at which springing and haunch lean alike
    elemental function double_slip(alpha, guess) result(x)
       real(wp), intent(in) :: alpha
-      !> Any thrust to start from, as asin(sqrt(1 - h)) [rad]
-      real(wp), intent(in) :: guess
+      real(wp), intent(in) :: guess  !! Any thrust to start from, as asin(sqrt(1 - h)) [rad]
       real(wp) :: x
       real(wp) :: change
       integer :: step
@@ -151,8 +142,7 @@ contains
    !> 1 - h at which the haunch is about to slide
    elemental function haunch_deficit(mu) result(deficit)
       real(wp), intent(in) :: mu
-      !> sin^2 x with x - sin(2x)/2 = atan(mu)
-      real(wp) :: deficit
+      real(wp) :: deficit  !! sin^2 x with x - sin(2x)/2 = atan(mu)
       real(wp) :: x, change
       integer :: step
 

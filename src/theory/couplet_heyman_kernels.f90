@@ -57,10 +57,8 @@ contains
    !> A(x) = x cot(x/2), eq. (9), the group through which the half angle of embrace enters every
    !> theory
    elemental function embrace(x) result(a)
-      !> Angle in (-pi, pi); 0 is allowed [rad]
-      real(wp), intent(in) :: x
-      !> x cot(x/2), from 2 at 0 down to 0 at pi
-      real(wp) :: a
+      real(wp), intent(in) :: x  !! Angle in (-pi, pi); 0 is allowed [rad]
+      real(wp) :: a              !! x cot(x/2), from 2 at 0 down to 0 at pi
 
       if (abs(x) < 1.0_wp) then
          a = 2.0_wp - embrace_deficit(x)
@@ -72,8 +70,7 @@ contains
    !> a(x) = 2 - A(x) = 2 - x cot(x/2) = 2 k(x/2)/sin(x/2)
    elemental function embrace_deficit(x) result(a)
       real(wp), intent(in) :: x
-      !> 2 - x cot(x/2), from 0 at 0 up to 2 at pi
-      real(wp) :: a
+      real(wp) :: a  !! 2 - x cot(x/2), from 0 at 0 up to 2 at pi
 
       a = 0.0_wp
       if (abs(x) > 0.0_wp) a = 2.0_wp*arm_excess(0.5_wp*x)/sin(0.5_wp*x)
@@ -81,10 +78,8 @@ contains
 
    !> 1 - y r(1) (1 - y r(2) (1 - ...)): an alternating series from its last term
    pure real(wp) function nested_series(y, ratio)
-      !> Square of the argument
-      real(wp), intent(in) :: y
-      !> Each term over the one before it and over -y: (terms)
-      real(wp), intent(in) :: ratio(terms)
+      real(wp), intent(in) :: y             !! Square of the argument
+      real(wp), intent(in) :: ratio(terms)  !! Each term over the one before it and over -y: (terms)
       integer :: i
 
       nested_series = 1.0_wp

@@ -51,12 +51,9 @@ contains
    pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
-      !> 1 - H
-      real(wp), intent(in) :: deficit
-      !> Lowest extrados and highest intrados joint: (2)
-      integer, intent(out) :: pair(2)
-      !> Room between them
-      real(wp), intent(out) :: gap
+      real(wp), intent(in) :: deficit  !! 1 - H
+      integer, intent(out) :: pair(2)  !! Lowest extrados and highest intrados joint: (2)
+      real(wp), intent(out) :: gap     !! Room between them
       real(wp) :: roof, floor, centre, reach
       integer :: j
 
@@ -119,14 +116,10 @@ contains
    pure subroutine meet(ring, eta, left, right, deficit, gap)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
-      !> Pair whose gap grows with the deficit: (2)
-      integer, intent(in) :: left(2)
-      !> Pair whose gap shrinks with it: (2)
-      integer, intent(in) :: right(2)
-      !> 1 - H at the meeting
-      real(wp), intent(out) :: deficit
-      !> Both gaps there
-      real(wp), intent(out) :: gap
+      integer, intent(in) :: left(2)    !! Pair whose gap grows with the deficit: (2)
+      integer, intent(in) :: right(2)   !! Pair whose gap shrinks with it: (2)
+      real(wp), intent(out) :: deficit  !! 1 - H at the meeting
+      real(wp), intent(out) :: gap      !! Both gaps there
 
       deficit = (pair_gap(ring, eta, 0.0_wp, right) - pair_gap(ring, eta, 0.0_wp, left)) &
               /(gap_slope(ring, eta, left) - gap_slope(ring, eta, right))
@@ -160,10 +153,8 @@ contains
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
       type(pinch_t), intent(in) :: pinch
-      !> Change of eta; huge where there is none
-      real(wp), intent(out) :: eta_step
-      !> Change of the deficit
-      real(wp), intent(out) :: deficit_step
+      real(wp), intent(out) :: eta_step      !! Change of eta; huge where there is none
+      real(wp), intent(out) :: deficit_step  !! Change of the deficit
       real(wp) :: gap(2), growth(2), slope(2), determinant, size_of_terms
 
       gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), &

@@ -20,8 +20,7 @@ contains
 
    !> Eq. (1), left side: beta cot beta times a quotient; equals A for Heyman's hinge
    elemental real(wp) function heyman_quotient(beta)
-      !> Inner hinge, (0, pi/2) [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Inner hinge, (0, pi/2) [rad]
       real(wp) :: s, c, common
 
       s = sin(beta)
@@ -32,13 +31,10 @@ contains
 
    !> Eq. (14): vanishes on the equilibrium curve
    elemental real(wp) function equilibrium_polynomial(eta, beta, a, which) result(value)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta   !! Thickness ratio [-]
       real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
-      !> One of `theory`
-      integer, intent(in) :: which
+      real(wp), intent(in) :: a     !! A, eq. (9)
+      integer, intent(in) :: which  !! One of `theory`
       real(wp) :: s, c
 
       s = sin(beta)
@@ -102,11 +98,9 @@ contains
    !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those
    !> of eq. (24)
    elemental real(wp) function embrace_polynomial(beta, a, which) result(value)
-      !> Critical hinge [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Critical hinge [rad]
       real(wp), intent(in) :: a
-      !> CCR or Milankovitch of `theory`
-      integer, intent(in) :: which
+      integer, intent(in) :: which  !! CCR or Milankovitch of `theory`
       real(wp) :: s, c, g, rest, head
 
       s = sin(beta)
@@ -143,8 +137,7 @@ contains
 
    !> Eq. (25): A eliminated; for one hinge it has two thicknesses, one on either side of beta_max
    elemental real(wp) function thickness_polynomial(eta, beta, which)
-      !> Critical thickness ratio [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta  !! Critical thickness ratio [-]
       real(wp), intent(in) :: beta
       integer, intent(in) :: which
       real(wp) :: s, c
@@ -170,12 +163,10 @@ contains
    !> Critical solution by the printed forms: bisection on eq. (1), (24) or (23), then (2), (16) or
    !> (14), then (3) or (8)
    elemental subroutine printed_critical(alpha, which, beta, eta, h)
-      !> Half angle of embrace, (0, alpha_limit] [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
       integer, intent(in) :: which
       real(wp), intent(out) :: beta, eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: h     !! Thrust [w r]
       real(wp) :: a, s, c
 
       beta = ieee_value(beta, ieee_quiet_nan)
@@ -226,12 +217,10 @@ contains
 
    !> Root of the cubic (14) next to that of its quadratic part, by Newton's method
    elemental function printed_cubic_root(start, beta, a) result(eta)
-      !> Root of eq. (16) [-]
-      real(wp), intent(in) :: start
+      real(wp), intent(in) :: start     !! Root of eq. (16) [-]
       real(wp), intent(in) :: beta, a
       real(wp) :: eta
-      !> Twice what full convergence takes
-      integer, parameter :: steps = 12
+      integer, parameter :: steps = 12  !! Twice what full convergence takes
       integer :: i
 
       eta = start

@@ -48,14 +48,10 @@ contains
 
    !> One step of a compensated sum: ten thousand voussoirs lose no digit
    pure subroutine add_exactly(term, before, carry, after)
-      !> What is added
-      real(wp), intent(in) :: term
-      !> Sum before
-      real(wp), intent(in) :: before
-      !> What rounding has left out so far
-      real(wp), intent(inout) :: carry
-      !> Sum after
-      real(wp), intent(out) :: after
+      real(wp), intent(in) :: term      !! What is added
+      real(wp), intent(in) :: before    !! Sum before
+      real(wp), intent(inout) :: carry  !! What rounding has left out so far
+      real(wp), intent(out) :: after    !! Sum after
       real(wp) :: corrected
 
       corrected = term + carry

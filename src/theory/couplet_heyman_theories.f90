@@ -85,8 +85,7 @@ contains
 
    !> Whether a number names a theory
    elemental logical function is_theory(which)
-      !> One of `theory`, or not
-      integer, intent(in) :: which
+      integer, intent(in) :: which  !! One of `theory`, or not
 
       is_theory = which >= theory%heyman .and. which <= theory%milankovitch
    end function is_theory
@@ -107,8 +106,7 @@ contains
 
    !> Radius at which the weight acts, over r: 1 + delta_M eta^2/12
    elemental real(wp) function weight_arm(eta, which)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: eta  !! Thickness ratio [-]
       integer, intent(in) :: which
 
       weight_arm = 1.0_wp + weight_flag(which)*eta*eta/12.0_wp

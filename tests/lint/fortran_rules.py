@@ -27,7 +27,7 @@ class Statement:
     #: Its first and last line in the file, from 1
     first: int
     last: int
-    #: Whether a comment for FORD stands right before it
+    #: Whether a comment for FORD stands right before it, or behind it
     documented: bool
 
 
@@ -39,12 +39,13 @@ def statements(lines: list[str]) -> Iterator[Statement]:
             # directives of OpenMP are no documentation, and no end of it
             comment = comment or line.lstrip().startswith("!>")
             continue
-        code = _STRING.sub("''", line).split("!")[0].strip().lower()
+        code, _, behind = _STRING.sub("''", line).partition("!")
+        code = code.strip().lower()
         if not code:
             comment = False
             continue
         if not text:
-            first, documented = number, comment
+            first, documented = number, comment or behind.startswith("!")
         comment = False
         text = f"{text} {code.lstrip('&').strip()}".strip()
         if text.endswith("&"):

@@ -111,6 +111,7 @@ def test_what_keeps_the_rules_is_left_in_peace(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("argument", "right"), [
     ("real, intent(in) :: x", True), ("real, intent(in) :: y, x", True), ("real, intent(in) :: z", False),
+    ("real, intent(in) :: z  !! Explained behind it", True), ("real, intent(in) :: z  ! Not for FORD", False),
     ("real, intent(in) :: x(:)", False), ("integer, intent(in) :: x", False)])
 def test_a_module_explains_an_argument_once(tmp_path: Path, argument: str, right: bool) -> None:
     more = f"   !> Another\n   subroutine more(x)\n      {argument}\n   end subroutine more\nend module good\n"

@@ -17,12 +17,9 @@ module dda_memory
       !> C: set a parameter of the allocator
       function c_mallopt(parameter, value) bind(c, name="mallopt") result(done)
          import :: c_int
-         !> One of the above
-         integer(c_int), intent(in), value :: parameter
-         !> Its value
-         integer(c_int), intent(in), value :: value
-         !> 1 if it was set
-         integer(c_int) :: done
+         integer(c_int), intent(in), value :: parameter  !! One of the above
+         integer(c_int), intent(in), value :: value      !! Its value
+         integer(c_int) :: done                          !! 1 if it was set
       end function c_mallopt
    end interface
 

@@ -59,15 +59,11 @@ module dda_xml_parser
          & bind(c, name="xmlReadMemory") result(document)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: text
-         !> Its length
-         integer(c_int), intent(in), value :: size
+         integer(c_int), intent(in), value :: size     !! Its length
          type(c_ptr), intent(in), value :: url
-         !> Encoding; null to find it
-         type(c_ptr), intent(in), value :: encoding
-         !> Sum of options
-         integer(c_int), intent(in), value :: options
-         !> The document; null after a failure
-         type(c_ptr) :: document
+         type(c_ptr), intent(in), value :: encoding    !! Encoding; null to find it
+         integer(c_int), intent(in), value :: options  !! Sum of options
+         type(c_ptr) :: document                       !! The document; null after a failure
       end function read_memory
 
       !> libxml2: free a document
@@ -80,8 +76,7 @@ module dda_xml_parser
       function reader_of(document) bind(c, name="xmlReaderWalker") result(reader)
          import :: c_ptr
          type(c_ptr), intent(in), value :: document
-         !> The reader; null after a failure
-         type(c_ptr) :: reader
+         type(c_ptr) :: reader  !! The reader; null after a failure
       end function reader_of
 
       !> libxml2: free a reader
@@ -94,32 +89,28 @@ module dda_xml_parser
       function read_node(reader) bind(c, name="xmlTextReaderRead") result(status)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> 1 if there is one, 0 at the end, -1 after a failure
-         integer(c_int) :: status
+         integer(c_int) :: status  !! 1 if there is one, 0 at the end, -1 after a failure
       end function read_node
 
       !> libxml2: kind of this node
       function node_type(reader) bind(c, name="xmlTextReaderNodeType") result(kind)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> One of node_enum
-         integer(c_int) :: kind
+         integer(c_int) :: kind  !! One of node_enum
       end function node_type
 
       !> libxml2: whether this element holds nothing, so that no node tells its end
       function is_empty(reader) bind(c, name="xmlTextReaderIsEmptyElement") result(yes)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> 1 if it does
-         integer(c_int) :: yes
+         integer(c_int) :: yes  !! 1 if it does
       end function is_empty
 
       !> libxml2: number of attributes and namespaces of this element
       function count_attributes(reader) bind(c, name="xmlTextReaderAttributeCount") result(n)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> How many
-         integer(c_int) :: n
+         integer(c_int) :: n  !! How many
       end function count_attributes
 
       !> libxml2: whether this attribute declares a namespace
@@ -134,24 +125,21 @@ module dda_xml_parser
          & result(status)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> 1 if there is one
-         integer(c_int) :: status
+         integer(c_int) :: status  !! 1 if there is one
       end function next_attribute
 
       !> libxml2: name without prefix
       function local_name(reader) bind(c, name="xmlTextReaderConstLocalName") result(name)
          import :: c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> C's text
-         type(c_ptr) :: name
+         type(c_ptr) :: name  !! C's text
       end function local_name
 
       !> libxml2: text or value
       function node_value(reader) bind(c, name="xmlTextReaderConstValue") result(value)
          import :: c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> C's text
-         type(c_ptr) :: value
+         type(c_ptr) :: value  !! C's text
       end function node_value
 
       !> libxml2: say who is told of errors, warnings and encodings that fail
@@ -164,8 +152,7 @@ module dda_xml_parser
       !> libxml2: what went wrong last
       function last_error() bind(c, name="xmlGetLastError") result(error)
          import :: c_ptr
-         !> An xmlError, or null
-         type(c_ptr) :: error
+         type(c_ptr) :: error  !! An xmlError, or null
       end function last_error
 
       !> libxml2: forget what went wrong
@@ -176,16 +163,14 @@ module dda_xml_parser
       function c_strlen(text) bind(c, name="strlen") result(length)
          import :: c_ptr, c_size_t
          type(c_ptr), intent(in), value :: text
-         !> Characters before the null character
-         integer(c_size_t) :: length
+         integer(c_size_t) :: length  !! Characters before the null character
       end function c_strlen
 
       !> C: copy bytes
       subroutine c_memcpy(to, from, n) bind(c, name="memcpy")
          import :: c_ptr, c_size_t
          type(c_ptr), intent(in), value :: to, from
-         !> How many
-         integer(c_size_t), intent(in), value :: n
+         integer(c_size_t), intent(in), value :: n  !! How many
       end subroutine c_memcpy
    end interface
 
@@ -193,13 +178,10 @@ contains
 
    !> Read an XML text
    subroutine parse_xml(text, file, tree, error)
-      !> The file's text
-      character(len=*), intent(in) :: text
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: file              !! Name of the file
       type(xml_tree_t), intent(out) :: tree
-      !> What is not XML, with its line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What is not XML, with its line
       character(len=:), allocatable, target :: kept
       type(xml_builder_t) :: builder
       type(c_ptr) :: document, reader
@@ -249,8 +231,7 @@ contains
 
    !> Hear of an error and print nothing: the last one is asked for
    subroutine print_nothing(context, address) bind(c)
-      !> What was passed with the listener
-      type(c_ptr), intent(in), value :: context
+      type(c_ptr), intent(in), value :: context  !! What was passed with the listener
       type(c_ptr), intent(in), value :: address
 
       if (c_associated(context) .or. c_associated(address)) return
@@ -308,8 +289,7 @@ contains
    !> Make an error of what libxml2 says
    subroutine report_error(file, skipped, error)
       character(len=*), intent(in) :: file
-      !> Lines of the file before what libxml2 was given
-      integer, intent(in) :: skipped
+      integer, intent(in) :: skipped  !! Lines of the file before what libxml2 was given
       type(error_t), allocatable, intent(out) :: error
       type(xml_error_t), target :: said
       character(len=:), allocatable :: message
@@ -331,8 +311,7 @@ contains
 
    !> A C text as Fortran's
    function fortran_text(address) result(text)
-      !> Where it is; may be null
-      type(c_ptr), intent(in) :: address
+      type(c_ptr), intent(in) :: address  !! Where it is; may be null
       character(len=:), allocatable, target :: text
       integer(c_size_t) :: n
 

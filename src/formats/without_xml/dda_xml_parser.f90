@@ -14,14 +14,10 @@ contains
 
    !> Refuse an XML file
    subroutine parse_xml(text, file, tree, error)
-      !> The file's text
-      character(len=*), intent(in) :: text
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> Left without elements
-      type(xml_tree_t), intent(out) :: tree
-      !> Always allocated
-      type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: file              !! Name of the file
+      type(xml_tree_t), intent(out) :: tree             !! Left without elements
+      type(error_t), allocatable, intent(out) :: error  !! Always allocated
 
       tree%file = file
       allocate (tree%element(0))
