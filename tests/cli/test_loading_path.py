@@ -226,7 +226,8 @@ def test_a_decision_tells_the_jumps_on_its_way_as_the_search_does(tmp_path: Path
     """The wall of 4 by 8 bricks with friction 0.65 jumps to another state before 0.54 of its weight pushes it."""
     (row,) = run_wall(tmp_path, 4, 8, 0.65, "&load horizontal_coefficient = 0.54 /\n")
     assert row["verdict"] == "stable"
-    told = re.search(r"jumps on the loading path: \d+, the largest (\S+) m", (tmp_path / "deck" / "log.txt").read_text())
+    log = (tmp_path / "deck" / "log.txt").read_text()
+    told = re.search(r"jumps on the loading path: \d+, the largest (\S+) m", log)
     assert told and 1e-9 < float(told[1]) < 1e-2
     run_wall(tmp_path, 4, 8, 0.65, "&load horizontal_coefficient = 0.1 /\n")
     assert "jumps" not in (tmp_path / "deck" / "log.txt").read_text()
