@@ -96,14 +96,13 @@ contains
       call take_forces(equations, springs, view, x, p, force)
    end procedure solve_interior
 
-   !> Iterate from slack and flow, as near to the law of contact as that comes
+   !> Iterate from slack and flow to the iterate that comes nearest to the law of contact
    pure subroutine iterate(equations, springs, view, force, motion, p, x, passes)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       real(wp), intent(in) :: force(:, :), motion(:, :)
       type(problem_t), intent(inout) :: p
-      !> The iterate to begin with, and the best one
       type(interior_t), intent(inout) :: x
       integer, intent(inout) :: passes
       type(interior_t) :: best
@@ -119,10 +118,8 @@ contains
       do i = 1, max_iterations
          call find_rest(equations, springs, view, p, x, mean, merit)
          waited = merge(0, waited + 1, merit < 0.9_wp*least)
-         if (merit < least) then
-            least = merit
-            best = x
-         end if
+         if (merit < least) best = x
+         least = min(least, merit)
          if (min(merit, sqrt(mean)/p%size) < tolerance .or. waited == patience &
             & .or. .not. merit <= huge(merit)) exit
          if (length < stuck .and. near) then
@@ -233,12 +230,12 @@ contains
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       type(interior_t), intent(inout) :: step
-      real(wp) :: drive(3, size(p%joint)), rest(4), slack(4), source(4), bound
+      real(wp) :: drive(3, size(p%joint)), rest(4, size(p%joint)), slack(4), source(4), bound
       integer :: i
 
+      rest = lacking_slack(springs, p, x)
       do i = 1, size(p%joint)
-         call see_rest(i, rest)
-         source = (p%product(:, i) - x%flow(:, i)*rest)/x%slack(:, i)
+         source = (p%product(:, i) - x%flow(:, i)*rest(:, i))/x%slack(:, i)
          drive(1:2, i) = p%opening(1:2, i) + source(1:2)
          drive(3, i) = p%opening(3, i) + source(3) - source(4)
       end do
@@ -246,33 +243,33 @@ contains
       do i = 1, size(p%joint)
          associate (f => step%force(:, i))
             bound = springs%cone(p%joint(i))%friction*(f(1) + f(2))
-            slack = [f(1), f(2), bound + f(3), bound - f(3)]
+            slack = [f(1), f(2), bound + f(3), bound - f(3)] + rest(:, i)
          end associate
-         call see_rest(i, rest)
-         slack = slack + rest
          step%slack(:, i) = merge(slack, 0.0_wp, p%bounded(:, i))
          step%flow(:, i) = merge((p%product(:, i) - x%flow(:, i)*slack)/x%slack(:, i), 0.0_wp, &
             & p%bounded(:, i))
       end do
+   end subroutine find_step
 
-   contains
+   !> What the slacks of an iterate lack
+   pure function lacking_slack(springs, p, x) result(rest)
+      type(joint_springs_t), intent(in) :: springs
+      type(problem_t), intent(in) :: p
+      type(interior_t), intent(in) :: x
+      !> What they lack: (4, n_joint) [N/m]
+      real(wp) :: rest(4, size(p%joint))
+      integer :: i
 
-      !> What the slacks of a joint lack
-      pure subroutine see_rest(i, rest)
-         !> Place of the joint
-         integer, intent(in) :: i
-         !> What they lack: (4) [N/m]
-         real(wp), intent(out) :: rest(4)
-
+      do i = 1, size(p%joint)
          associate (cone => springs%cone(p%joint(i)), f => x%force(:, i), &
             & shift => springs%shift(:, p%joint(i)))
-            rest(1:2) = f(1:2) + shift(1:2)
-            rest(3) = cone%limit + cone%friction*(rest(1) + rest(2)) + f(3)
-            rest(4) = rest(3) - 2.0_wp*f(3)
+            rest(1:2, i) = f(1:2) + shift(1:2)
+            rest(3, i) = cone%limit + cone%friction*(rest(1, i) + rest(2, i)) + f(3)
+            rest(4, i) = rest(3, i) - 2.0_wp*f(3)
          end associate
-         rest = merge(rest - x%slack(:, i), 0.0_wp, p%bounded(:, i))
-      end subroutine see_rest
-   end subroutine find_step
+      end do
+      rest = merge(rest - x%slack, 0.0_wp, p%bounded)
+   end function lacking_slack
 
    !> Mean of slack times flow, over what the blocks give: in squares of a force
    pure real(wp) function mean_product(p, slack, flow)

@@ -56,6 +56,22 @@ submodule (dda_settle_in_time) dda_contact_sweeps
    !> the next step begins with, a finer one
    real(wp), parameter :: look = 1.0e-3_wp, look_at_speeds = 3.0e-5_wp
 
+   !> What sweeps work on
+   type :: sweeps_t
+      !> How the blocks answer
+      type(contact_view_t) :: view
+      !> Gap that rounding can make [m]
+      real(wp) :: noise = 0.0_wp
+      !> Changes that count as none, of a force [N/m] and of a gap [m]
+      real(wp) :: enough(2) = 0.0_wp
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> That by the forces before: (n_dof, n_equation) [m]
+      real(wp), allocatable :: moved(:, :)
+   end type sweeps_t
+
    interface
 
       !> Forces of some joints if these keep nearly to the faces that they had: of all forces that
@@ -103,22 +119,15 @@ submodule (dda_settle_in_time) dda_contact_sweeps
       end subroutine solve_interior
 
       !> Sweep one group until nothing changes, or until that is seen to take too long
-      pure module subroutine sweep_group(joint, purpose, springs, view, noise, enough, force, &
-         & motion, settled)
+      pure module subroutine sweep_group(springs, joint, purpose, enough, sweeps, settled)
+         type(joint_springs_t), intent(in) :: springs
          !> Joints of the group: (n)
          integer, intent(in) :: joint(:)
          !> One of sweeps_for
          integer, intent(in) :: purpose
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         !> Gap that rounding can make [m]
-         real(wp), intent(in) :: noise
          !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
          real(wp), intent(in) :: enough(2)
-         !> Forces of all joints: (3, n_joint) [N/m]
-         real(wp), intent(inout) :: force(:, :)
-         !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-         real(wp), intent(inout) :: motion(:, 0:)
+         type(sweeps_t), intent(inout) :: sweeps
          !> Whether it is settled
          logical, intent(out) :: settled
       end subroutine sweep_group
@@ -129,102 +138,98 @@ contains
 
    !> Settle contact forces and motion of one step, or begin to
    module procedure sweep_contacts
-      type(contact_view_t) :: view
-      real(wp) :: force(3, size(springs%stiffness)), enough(2), noise
-      real(wp) :: motion(size(state%motion, 1), 0:size(state%motion, 2))
-      integer :: g, n, joint(size(springs%stiffness)), first(size(springs%stiffness) + 1)
-      integer :: begun, most
-      real(wp) :: moved(size(state%motion, 1), size(state%motion, 2))
-      logical :: settled(size(springs%stiffness))
+      type(sweeps_t) :: sweeps
+      integer :: begun, g, most, n, joint(size(springs%stiffness)), first(size(joint) + 1)
+      logical :: settled(size(joint))
 
-      call see_joints(equations, springs, state, view)
+      call see_joints(equations, springs, state, sweeps%view)
       call group_joints(springs, size(state%motion, 2), n, first, joint)
-      force = state%multiplier
-      motion(:, 0) = 0.0_wp
-      call move_blocks(equations, springs, view, force, motion(:, 1:))
-      moved = motion(:, 1:)
-      noise = min(1.0_wp, state%fineness)*equations%gap_noise
-      enough = [tolerance*equations%force_scale, no_matter*state%fineness*smallest(equations)]
+      sweeps%force = state%multiplier
+      allocate (sweeps%moved, mold=state%motion)
+      allocate (sweeps%motion(size(state%motion, 1), 0:size(state%motion, 2)))
+      call move_blocks(equations, springs, sweeps%view, sweeps%force, sweeps%moved)
+      sweeps%motion(:, 0) = 0.0_wp
+      sweeps%motion(:, 1:) = sweeps%moved
+      sweeps%noise = min(1.0_wp, state%fineness)*equations%gap_noise
+      sweeps%enough = [tolerance*equations%force_scale, &
+         & no_matter*state%fineness*smallest(equations)]
       settled = .false.
       begun = state%passes
       most = 0
       state%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%patient
       do g = 1, n
-         associate (of_group => joint(first(g):first(g + 1) - 1))
-            call settle_group(equations, springs, view, of_group, noise, enough, moved, state, &
-               & force, motion, settled(g))
-         end associate
+         call settle_group(equations, springs, joint(first(g):first(g + 1) - 1), state, sweeps, &
+            & settled(g))
          ! groups know nothing of one another: their passes go on side by side
          most = max(most, state%passes - begun)
          state%passes = begun
       end do
       state%passes = begun + most + 1
       state%settled = all(settled(:n))
-      call keep_forces(equations, springs, view, force, state)
+      call keep_forces(equations, springs, sweeps, state)
    end procedure sweep_contacts
 
    !> Settle one group: forces that stay need no more than a look; those nearest to the ones before
    !> are found by the faces that these had, or else by interior springs; many joints that move are
    !> rather swept until no step notices what is left
-   pure subroutine settle_group(equations, springs, view, joint, noise, enough, moved, state, &
-      & force, motion, settled)
+   pure subroutine settle_group(equations, springs, joint, state, sweeps, settled)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      !> Joints of the group: (n)
       integer, intent(in) :: joint(:)
-      !> Gap that rounding can make [m]
-      real(wp), intent(in) :: noise
-      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
-      real(wp), intent(in) :: enough(2)
-      !> Motion of the blocks by the forces before: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: moved(:, :)
       !> The step, for the forces before; passes are counted
       type(step_state_t), intent(inout) :: state
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-      real(wp), intent(inout) :: motion(:, 0:)
-      !> Whether it is settled
+      type(sweeps_t), intent(inout) :: sweeps
       logical, intent(out) :: settled
-      real(wp) :: coarse_enough(2), seen(2)
-      integer :: purpose
+      real(wp) :: enough(2)
       logical :: hasty
 
-      hasty = size(joint) > vast .and. .not. state%patient
+      enough = sweeps%enough
       if (size(joint) <= few) then
-         call sweep_group(joint, sweeps_for%rounding, springs, view, noise, enough, force, motion, &
-            & settled)
+         call sweep_group(springs, joint, sweeps_for%rounding, enough, sweeps, settled)
          return
       end if
-      seen = enough
-      if (size(joint) > many) seen(2) = max(enough(2), merge(look_at_speeds, look, state%rates) &
+      if (size(joint) > many) enough(2) = max(enough(2), merge(look_at_speeds, look, state%rates) &
          & *state%unseen)
-      call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, settled)
+      call sweep_group(springs, joint, sweeps_for%a_look, enough, sweeps, settled)
       if (settled) return
-      if (asks_faces(view, springs, joint, state)) then
-         call keep_to_faces(equations, springs, view, joint, size(joint) > many, hasty, &
-            & state%fineness, state%multiplier, moved, force, state%passes, settled)
-         if (settled .or. hasty) call move_group(equations, springs, view, joint, force, motion)
-         if (settled) return
-         state%swept = hasty
+      hasty = size(joint) > vast .and. .not. state%patient
+      if (asks_faces(sweeps%view, springs, joint, state)) then
+         call keep_to_faces(equations, springs, sweeps%view, joint, size(joint) > many, hasty, &
+            & state%fineness, state%multiplier, sweeps%moved, sweeps%force, state%passes, settled)
+         if (settled .or. hasty) call move_group(equations, springs, joint, sweeps)
+         if (.not. settled) state%swept = hasty
       else if (size(joint) <= many .or. state%patient) then
-         call sweep_group(joint, sweeps_for%haste, springs, view, noise, enough, force, motion, &
-            & settled)
-         if (settled) return
+         enough = sweeps%enough
+         call sweep_group(springs, joint, sweeps_for%haste, enough, sweeps, settled)
       end if
-      coarse_enough = [enough(1), max(enough(2), state%unseen/coarsest)]
-      if (size(joint) > many) call sweep_group(joint, sweeps_for%patience, springs, view, &
-         & noise, coarse_enough, force, motion, settled)
+      if (.not. settled) call settle_by_springs(equations, springs, joint, state, sweeps, settled)
+   end subroutine settle_group
+
+   !> Settle one group that faces and a few sweeps have not: by interior springs, and sweeps that
+   !> make good what these leave
+   pure subroutine settle_by_springs(equations, springs, joint, state, sweeps, settled)
+      type(equations_t), intent(in) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: joint(:)
+      type(step_state_t), intent(inout) :: state
+      type(sweeps_t), intent(inout) :: sweeps
+      logical, intent(out) :: settled
+      real(wp) :: enough(2)
+      integer :: purpose
+
+      settled = .false.
+      enough = [sweeps%enough(1), max(sweeps%enough(2), state%unseen/coarsest)]
+      if (size(joint) > many) &
+         & call sweep_group(springs, joint, sweeps_for%patience, enough, sweeps, settled)
       if (settled) return
-      call solve_interior(equations, springs, view, joint, state%multiplier, force, &
-         & motion(:, 1:), state%passes, settled)
-      call move_group(equations, springs, view, joint, force, motion)
+      call solve_interior(equations, springs, sweeps%view, joint, state%multiplier, sweeps%force, &
+         & sweeps%motion(:, 1:), state%passes, settled)
+      call move_group(equations, springs, joint, sweeps)
       if (settled) return
       purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)
       if (state%patient) purpose = sweeps_for%the_end
-      call sweep_group(joint, purpose, springs, view, noise, coarse_enough, force, motion, settled)
-   end subroutine settle_group
+      call sweep_group(springs, joint, purpose, enough, sweeps, settled)
+   end subroutine settle_by_springs
 
    !> Whether faces may tell the forces of a motion: those of a try of this step, or of a group that
    !> has more forces than its blocks can tell apart
@@ -248,52 +253,51 @@ contains
    end function asks_faces
 
    !> Motion of the blocks of a group under its forces
-   pure subroutine move_group(equations, springs, view, joint, force, motion)
+   pure subroutine move_group(equations, springs, joint, sweeps)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
       integer, intent(in) :: joint(:)
-      real(wp), intent(in) :: force(:, :)
-      real(wp), intent(inout) :: motion(:, 0:)
+      type(sweeps_t), intent(inout) :: sweeps
       integer :: e, i, side
-      logical :: is_there(0:size(view%lower, 3))
+      logical :: is_there(0:size(sweeps%view%lower, 3))
 
       is_there = .false.
       do i = 1, size(joint)
          is_there(springs%equation(:, joint(i))) = .true.
       end do
-      do e = 1, size(view%lower, 3)
-         if (is_there(e)) motion(:, e) = equations%load(:, e)
-      end do
-      do i = 1, size(joint)
-         do side = 1, 2
-            e = springs%equation(side, joint(i))
-            if (e > 0) motion(:, e) = motion(:, e) &
-               & + matmul(springs%row(:, :, side, joint(i)), force(:, joint(i)))
+      associate (lower => sweeps%view%lower)
+         do e = 1, size(lower, 3)
+            if (is_there(e)) sweeps%motion(:, e) = equations%load(:, e)
          end do
-      end do
-      do e = 1, size(view%lower, 3)
-         if (is_there(e)) motion(:, e) = solved(view%lower(:, :, e), motion(:, e))
-      end do
+         do i = 1, size(joint)
+            do side = 1, 2
+               e = springs%equation(side, joint(i))
+               if (e > 0) sweeps%motion(:, e) = sweeps%motion(:, e) &
+                  & + matmul(springs%row(:, :, side, joint(i)), sweeps%force(:, joint(i)))
+            end do
+         end do
+         do e = 1, size(lower, 3)
+            if (is_there(e)) sweeps%motion(:, e) = solved(lower(:, :, e), sweeps%motion(:, e))
+         end do
+      end associate
    end subroutine move_group
 
    !> Forces and motion where the sweeps have ended, as the open-close loop knows them
-   pure subroutine keep_forces(equations, springs, view, force, state)
+   pure subroutine keep_forces(equations, springs, sweeps, state)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      real(wp), intent(in) :: force(:, :)
+      type(sweeps_t), intent(in) :: sweeps
       type(step_state_t), intent(inout) :: state
       integer :: j, k
 
-      call move_blocks(equations, springs, view, force, state%motion)
+      call move_blocks(equations, springs, sweeps%view, sweeps%force, state%motion)
       state%increment = relative_displacement(springs, state%motion)
-      state%multiplier = force
-      state%force = force
-      do j = 1, size(force, 2)
-         state%face(j) = face_of(springs%cone(j), force(:, j), springs%shift(:, j))
+      state%multiplier = sweeps%force
+      state%force = sweeps%force
+      do j = 1, size(state%force, 2)
+         state%face(j) = face_of(springs%cone(j), state%force(:, j), springs%shift(:, j))
          do k = 1, 3
-            state%start(k, j) = force(k, j) - springs%stiffness(j)*view%gap(k, j)
+            state%start(k, j) = state%force(k, j) - springs%stiffness(j)*sweeps%view%gap(k, j)
          end do
          state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
       end do

@@ -47,11 +47,11 @@ contains
       do sweep = 0, max_sweeps
          change = 0.0_wp
          if (modulo(sweep, round) == 0) active = .true.
-         before = force(:, joint)
-         call sweep_twice(joint, springs, view, noise, active, force, motion, change)
+         before = sweeps%force(:, joint)
+         call sweep_twice(springs, joint, active, sweeps, change)
          if (modulo(sweep, round) == 0) then
-            call judge(purpose, size(joint), sweep, maxval(abs(force(:, joint))), enough, change, &
-               & lately, settled, ended)
+            call judge(purpose, size(joint), sweep, maxval(abs(sweeps%force(:, joint))), enough, &
+               & change, lately, settled, ended)
             if (ended) exit
          end if
          if (modulo(sweep, patience) == 0 .and. sweep > 0) then
@@ -59,8 +59,8 @@ contains
             if (ended) exit
          end if
          ! not before an end: the forces that it goes on to need not be admissible
-         if (hasty) call go_on(joint, springs, view, force(:, joint) - before, square, way, force, &
-            & motion)
+         if (hasty) &
+            & call go_on(springs, joint, sweeps%force(:, joint) - before, square, way, sweeps)
       end do
    end procedure sweep_group
 
@@ -135,14 +135,12 @@ contains
    end function takes_long
 
    !> One sweep over the joints forwards and one backwards
-   pure subroutine sweep_twice(joint, springs, view, noise, active, force, motion, change)
-      integer, intent(in) :: joint(:)
+   pure subroutine sweep_twice(springs, joint, active, sweeps, change)
       type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      real(wp), intent(in) :: noise
+      integer, intent(in) :: joint(:)
       !> Joints that are looked at; after it, those that carry a force: (n)
       logical, intent(inout) :: active(:)
-      real(wp), intent(inout) :: force(:, :), motion(:, 0:)
+      type(sweeps_t), intent(inout) :: sweeps
       !> Largest change of a force [N/m] and of a gap [m]: (2)
       real(wp), intent(inout) :: change(2)
       integer :: i, j, k
@@ -151,24 +149,24 @@ contains
          k = merge(i, 2*size(joint) + 1 - i, i <= size(joint))
          if (.not. active(k)) cycle
          j = joint(k)
-         call relax(size(motion, 1), springs, view, j, noise, force(:, j), motion, change)
-         active(k) = any(abs(force(:, j)) > 0.0_wp)
+         call relax(size(sweeps%motion, 1), springs, sweeps%view, j, sweeps%noise, &
+            & sweeps%force(:, j), sweeps%motion, change)
+         active(k) = any(abs(sweeps%force(:, j)) > 0.0_wp)
       end do
    end subroutine sweep_twice
 
    !> Go on in the direction of the sweeps so far, as conjugate gradients do, unless the last sweep
    !> has changed more than the one before
-   pure subroutine go_on(joint, springs, view, change, square, way, force, motion)
-      integer, intent(in) :: joint(:)
+   pure subroutine go_on(springs, joint, change, square, way, sweeps)
       type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+      integer, intent(in) :: joint(:)
       !> What the sweep has changed: (3, n) [N/m]
       real(wp), intent(in) :: change(:, :)
       !> Its square; that of the sweep before in
       real(wp), intent(inout) :: square
       !> The direction: (3, n) [N/m]
       real(wp), intent(inout) :: way(:, :)
-      real(wp), intent(inout) :: force(:, :), motion(:, 0:)
+      type(sweeps_t), intent(inout) :: sweeps
       real(wp) :: ratio, last
       integer :: j
 
@@ -183,8 +181,9 @@ contains
       where (.not. abs(change) > 0.0_wp) way = 0.0_wp
       do j = 1, size(change, 2)
          if (.not. any(abs(way(:, j)) > 0.0_wp)) cycle
-         force(:, joint(j)) = force(:, joint(j)) + ratio*way(:, j)
-         call push(size(motion, 1), springs, view, joint(j), ratio*way(:, j), motion)
+         sweeps%force(:, joint(j)) = sweeps%force(:, joint(j)) + ratio*way(:, j)
+         call push(size(sweeps%motion, 1), springs, sweeps%view, joint(j), ratio*way(:, j), &
+            & sweeps%motion)
       end do
       way = ratio*way + change
    end subroutine go_on
