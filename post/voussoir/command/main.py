@@ -86,9 +86,14 @@ def fail(problem: Exception, chosen: argparse.Namespace) -> int:
     """Say why a subcommand has failed: FILE:LINE, that of what it reads where nothing better is known; its status."""
     inputs = (getattr(chosen, name, None) for name in ("folder", "table", "deck", "file"))
     place, status = next(filter(None, inputs), None), getattr(problem, "status", 2)
+    if place is None and isinstance(problem, (KeyError, ValueError)):
+        raise problem  # of nothing that was read: a fault of ours
     words = str(problem.args[0] if isinstance(problem, KeyError) else problem)
     if isinstance(problem, ImportError) and not isinstance(problem, MissingPackage):
-        place, words = None, f"expected matplotlib, got none ({problem}); {advice('matplotlib')}"
+        package = (problem.name or "matplotlib").partition(".")[0]
+        if package == "voussoir":
+            raise problem
+        place, words = None, f"expected {package}, got none ({problem}); {advice(package)}"
     elif isinstance(problem, OSError) and not isinstance(problem, FileNotFoundError) and problem.filename != str(place):
         place, status = problem.filename or getattr(chosen, "out", None) or place, 4
         words = f"the file cannot be written: {problem.strerror}; choose another with --out"
