@@ -52,24 +52,20 @@ contains
 
    !> Read a geometry file
    subroutine read_geometry(file, model, warnings, error)
-      character(len=*), intent(in) :: file              !! Name of the file
+      character(len=*), intent(in) :: file  !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error  !! What is wrong, with file and line
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
 
-      call read_text_file(file, text, error)
+      call read_form(file, text, tree, error)
       if (allocated(error)) return
-      select case (form_of(text))
-      case (form%ddaml)
-         call parse_xml(text, file, tree, error)
-         if (.not. allocated(error)) call read_ddaml_geometry(tree, model, warnings, error)
-      case (form%plain)
+      if (form_of(text) == form%ddaml) then
+         call read_ddaml_geometry(tree, model, warnings, error)
+      else
          call read_plain_geometry(text, file, model, warnings, error)
-      case default
-         call refuse_form(text, file, error)
-      end select
+      end if
    end subroutine read_geometry
 
    !> Read an analysis file
@@ -81,18 +77,34 @@ contains
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
 
+      call read_form(file, text, tree, error)
+      if (allocated(error)) return
+      if (form_of(text) == form%ddaml) then
+         call read_ddaml_analysis(tree, analysis, warnings, error)
+      else
+         call read_plain_analysis(text, file, analysis, warnings, error)
+      end if
+   end subroutine read_analysis
+
+   !> Read the text of a file, in DDAML as a tree too
+   subroutine read_form(file, text, tree, error)
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable, intent(out) :: text  !! The file's text
+      type(xml_tree_t), intent(out) :: tree
+      type(error_t), allocatable, intent(out) :: error
+
       call read_text_file(file, text, error)
       if (allocated(error)) return
       select case (form_of(text))
       case (form%ddaml)
          call parse_xml(text, file, tree, error)
-         if (.not. allocated(error)) call read_ddaml_analysis(tree, analysis, warnings, error)
-      case (form%plain)
-         call read_plain_analysis(text, file, analysis, warnings, error)
-      case default
-         call refuse_form(text, file, error)
+      case (form%blank)
+         call fatal_error(error, "the file is blank; write numbers or XML into it", file, 1)
+      case (form%extended)
+         call fatal_error(error, "expected the plain form or DDAML, got the extended form " &
+            & //"#!0xDDA-v1, which is not read; save it as one of the two", file, 1)
       end select
-   end subroutine read_analysis
+   end subroutine read_form
 
    !> Whether an analysis has a material for each block and joint, and a force for each load point
    pure subroutine check_materials(model, analysis, warnings, error)
@@ -135,38 +147,16 @@ contains
       end do
    end subroutine check_numbers
 
-   !> Place of the first character that is no blank; 0 if there is none
-   pure integer function first_letter(text)
-      character(len=*), intent(in) :: text  !! The text
-
-      first_letter = verify(text, " "//achar(9)//achar(10))
-   end function first_letter
-
    !> Form of a file
    pure integer function form_of(text)
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Its text
       integer :: first
 
-      first = first_letter(text)
+      first = verify(text, " "//achar(9)//achar(10))
       form_of = form%blank
       if (first == 0) return
       form_of = form%plain
       if (text(first:first) == "<") form_of = form%ddaml
       if (index(text(first:), "#!0xDDA-v1") == 1) form_of = form%extended
    end function form_of
-
-   !> Say why a form is not read
-   pure subroutine refuse_form(text, file, error)
-      character(len=*), intent(in) :: text  !! The file's text
-      character(len=*), intent(in) :: file
-      type(error_t), allocatable, intent(out) :: error
-
-      if (form_of(text) == form%blank) then
-         call fatal_error(error, "the file is blank; write numbers or XML into it", file, 1)
-      else
-         call fatal_error(error, "expected the plain form or DDAML, got the extended form " &
-            & //"#!0xDDA-v1, which is not read; save it as one of the two", &
-            & file, 1)
-      end if
-   end subroutine refuse_form
 end module dda_read_limerick
