@@ -4,8 +4,7 @@ module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_error, deck_t, place_of, scene_kind
-   use dda_deck_keys, only : key_index
+   use dda_deck, only : deck_t, key_error, scene_kind
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t
    use dda_limerick_analysis, only : limerick_analysis_t
@@ -49,9 +48,8 @@ contains
          call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error)) call cut_lines(deck, error)
          if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") &
-            & call deck_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
-            & //"'blocks'; copy the file that it names", deck, &
-            & place_of(deck, key_index("scene", "kind")))
+            & call key_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
+            & //"'blocks'; copy the file that it names", deck, "scene", "kind")
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             deck_status = exit_status%bad_input

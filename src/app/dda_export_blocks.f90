@@ -18,9 +18,9 @@ contains
          if (.not. allocated(error)) text = shape_text(deck)
          losses = shape_losses(deck)
       else
-         if (.not. has_one_law(deck)) call deck_error(error, "expected joints of one law, got " &
+         if (.not. has_one_law(deck)) call key_error(error, "expected joints of one law, got " &
             & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
-            & //"the keys of &joint", deck, place_of(deck, key_index("scene", "geometry")))
+            & //"the keys of &joint", deck, "scene", "geometry")
          if (.not. allocated(error)) text = line_text(deck)
          losses = line_losses(deck)
       end if

@@ -1,7 +1,7 @@
 !> Where a run of a deck starts: restart files that fit its blocks, and points that live loads lie
 !> on
 submodule (dda_scene_check) dda_start_check
-   use dda_deck, only : deck_error, deck_place_t, file_beside, place_of
+   use dda_deck, only : deck_error, deck_place_t, file_beside, key_error, place_of
    use dda_deck_keys, only : deck_key
    use dda_live_loads, only : bears_live, check_live_points
    use dda_restart, only : check_restart, load_restart
@@ -82,8 +82,8 @@ contains
       name = deck%analysis%restart%text
       inquire (file=file_beside(deck, name), exist=exists)
       if (.not. exists) then
-         call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
-            & place_of(deck, key_index("analysis", "restart")))
+         call key_error(error, "there is no restart file '"//name//"'; check the name", deck, &
+            & "analysis", "restart")
       else if (n_cases(deck) == 1) then
          call deck_scene(deck, plan_scene(deck), scene)
          call load_restart(file_beside(deck, name), scene%settings, scene%system, &

@@ -12,13 +12,13 @@ module dda_deck
    use dda_text, only : lower_case
    use dda_warnings, only : warnings_t
    use dda_deck_key, only : word_length
-   use dda_deck_keys, only : deck_key, first_shape_key, group_index, last_shape_key
+   use dda_deck_keys, only : deck_key, first_shape_key, group_index, key_index, last_shape_key
    implicit none
    private
 
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t
    public :: ground_record_t
-   public :: geometry_of, keeps_velocities, place_of, deck_error
+   public :: geometry_of, keeps_velocities, place_of, deck_error, key_error
    public :: scene_kind
    public :: add_file_mark, file_beside
 
@@ -175,6 +175,16 @@ contains
          call fatal_error(error, message, file=deck%file, line=max(place%line, 1))
       end if
    end subroutine deck_error
+
+   !> Make an error that names where a key was given, or else its group
+   pure subroutine key_error(error, message, deck, group, name)
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in) :: message
+      type(deck_t), intent(in) :: deck
+      character(len=*), intent(in) :: group, name  !! Names of the group and of the key
+
+      call deck_error(error, message, deck, place_of(deck, key_index(group, name)))
+   end subroutine key_error
 
    !> Remember what a file that a deck names holds
    pure subroutine add_file_mark(mark, deck)

@@ -2,7 +2,7 @@
 !> sweep), and check what it searches and sweeps, then every case, before anything is computed
 submodule (dda_read_deck) dda_deck_check
    use dda_case_choice, only : choose_cases
-   use dda_deck, only : deck_error, ground_record_t, place_of
+   use dda_deck, only : deck_error, ground_record_t, key_error, place_of
    use dda_deck_check_case, only : check_case
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : deck_key
@@ -149,8 +149,8 @@ contains
 
       kind = trim(deck%scene%kind%word)
       if (kind /= "arch" .and. .not. deck%scene%geometry%given) then
-         call deck_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
-            kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
+         call key_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
+            kind//"; name one", deck, "scene", "kind")
       else if (kind /= "arch" .and. deck%arch%given) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("arch")))
@@ -168,9 +168,8 @@ contains
          if (kind == "arch") problem = "'lines' or 'blocks'"
          if (kind /= "lines" .and. file_key(i) == "analysis") problem = "'lines'"
          if (len(problem) == 0) cycle
-         call deck_error(error, "scene%"//trim(file_key(i))//" needs scene%kind = "//problem// &
-            ", got '"//kind//"'; change the one or remove the other", deck, &
-            place_of(deck, key_index("scene", file_key(i))))
+         call key_error(error, "scene%"//trim(file_key(i))//" needs scene%kind = "//problem// &
+            ", got '"//kind//"'; change the one or remove the other", deck, "scene", file_key(i))
       end do
    end subroutine check_kind
 

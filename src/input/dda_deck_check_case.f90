@@ -3,9 +3,9 @@ module dda_deck_check_case
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
-   use dda_deck_keys, only : deck_key, key_index, group_index
-   use dda_deck, only : deck_t, deck_place_t, deck_error, geometry_of, keeps_velocities, &
-      scene_kind, place_of
+   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_deck, only : deck_error, deck_place_t, deck_t, geometry_of, keeps_velocities, &
+      & key_error, place_of, scene_kind
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
@@ -41,9 +41,9 @@ contains
             "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)
       else if (deck%analysis%unknowns%given .and. all(deck%analysis%unknowns%whole /= [3, 6])) then
-         call deck_error(error, "analysis%unknowns must be 3 or 6, got "// &
-            to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, &
-            place_of(deck, key_index("analysis", "unknowns")))
+         call key_error(error, "analysis%unknowns must be 3 or 6, got "// &
+            to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, "analysis", &
+            & "unknowns")
       else
          if (scene_kind(deck) == "arch") call check_shape(deck, error)
          if (allocated(error) .or. deck%searched%key == 0) return
@@ -61,21 +61,19 @@ contains
       kind = trim(scene_kind(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
       if (len(problem) > 0) then
-         call deck_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
+         call key_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
             kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem// &
-            "; 'dda help models' lists them", deck, &
-            place_of(deck, key_index("analysis", "geometry")))
+            "; 'dda help models' lists them", deck, "analysis", "geometry")
          return
       end if
       if (deck%searched%key == 0) return
       problem = search_problem(deck_key(deck%searched%key), kind, mode)
       if (mode == "limerick" .and. keeps_velocities(deck)) &
          problem = "with velocities it ends 'completed', neither stable nor collapsed"
-      if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that "// &
+      if (len(problem) > 0) call key_error(error, "search%parameter: expected a key that "// &
          "mode = '"//trim(deck%analysis%mode%word)//"' of scene%kind = '"//kind// &
          "' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem// &
-         "; 'dda help models' lists them", deck, &
-         place_of(deck, key_index("search", "parameter")))
+         "; 'dda help models' lists them", deck, "search", "parameter")
    end subroutine check_model
 
    !> Check that the mode and the geometry have a use for the keys that are given
@@ -140,9 +138,9 @@ contains
          if (.not. deck%value(key_index("joint", trim(name(i))))%given) cycle
          if (any(deck%scene%kind%word == ["lines ", "blocks"]) .and. deck%analysis%mode%word &
             /= "limerick" .and. deck%analysis%flow%word /= "associated") cycle
-         call deck_error(error, "joint%"//trim(name(i))//" needs scene%kind = 'lines' or "// &
+         call key_error(error, "joint%"//trim(name(i))//" needs scene%kind = 'lines' or "// &
             "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, &
-            place_of(deck, key_index("joint", trim(name(i)))))
+            & "joint", trim(name(i)))
          return
       end do
    end subroutine check_slip
@@ -241,9 +239,9 @@ contains
 
       call search_bracket(deck, low, high)
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
-         call deck_error(error, "a search for "//parameter_name(deck%searched)// &
+         call key_error(error, "a search for "//parameter_name(deck%searched)// &
             " needs search%low and search%high, which have no default; give both", deck, &
-            place_of(deck, key_index("search", "parameter")))
+            & "search", "parameter")
       else if (.not. low < high) then
          call deck_error(error, "search%low must be below search%high, got "//to_text(low)// &
             " and "//to_text(high)//"; make low the smaller one", deck, &

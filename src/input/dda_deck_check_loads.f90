@@ -1,7 +1,7 @@
 !> What a deck says of the ground and of what means collapse in time, of live loads, and of the
 !> strength of its blocks
 module dda_deck_check_loads
-   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, key_error, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -121,9 +121,9 @@ contains
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
       point = deck%analysis%collapse_point%whole
       if (point > measured) then
-         call deck_error(error, "analysis%collapse_point needs a measured point, "// &
+         call key_error(error, "analysis%collapse_point needs a measured point, "// &
             & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
-            & deck, place_of(deck, key_index("analysis", "collapse_point")))
+            & deck, "analysis", "collapse_point")
          return
       end if
       call check_wear(deck, error)
@@ -155,10 +155,9 @@ contains
       if (key == "") return
       do i = 1, size(deck%plan%laws)
          if (.not. any(deck%plan%laws(i)%given(4:5))) cycle
-         call deck_error(error, "analysis%"//key//" needs joints without residual_deg and " &
+         call key_error(error, "analysis%"//key//" needs joints without residual_deg and " &
             & //"slip_length, got line "//to_text(deck%plan%laws(i)%line)//" of " &
-            & //"the file of blocks; change one of the two", deck, &
-            & place_of(deck, key_index("analysis", key)))
+            & //"the file of blocks; change one of the two", deck, "analysis", key)
          return
       end do
    end subroutine check_wear
@@ -182,8 +181,7 @@ contains
       else if (.not. (deck%search%low%given .and. deck%search%high%given)) then
          problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
       end if
-      if (len(problem) > 0) call deck_error(error, problem, deck, &
-         & place_of(deck, key_index("search", "parameter")))
+      if (len(problem) > 0) call key_error(error, problem, deck, "search", "parameter")
    end subroutine check_search_in_time
 
    !> Check what means collapse in a dynamic run
@@ -198,20 +196,19 @@ contains
          if (.not. deck%value(key_index("analysis", trim(name(i))))%given) cycle
          if (deck%analysis%mode%word == "dynamic" &
             & .and. deck%analysis%geometry%word == "current") cycle
-         call deck_error(error, "analysis%"//trim(name(i))//" needs mode = 'dynamic' and "// &
-            & "geometry = 'current'; remove it", deck, &
-            & place_of(deck, key_index("analysis", trim(name(i)))))
+         call key_error(error, "analysis%"//trim(name(i))//" needs mode = 'dynamic' and "// &
+            & "geometry = 'current'; remove it", deck, "analysis", trim(name(i)))
          return
       end do
       if (.not. deck%analysis%collapse_point%given) return
       if (deck%scene%kind%word /= "blocks") then
-         call deck_error(error, "analysis%collapse_point needs a file of blocks with "// &
+         call key_error(error, "analysis%collapse_point needs a file of blocks with "// &
             & "measured points, got kind = '"//trim(deck%scene%kind%word)//"'", &
-            & deck, place_of(deck, key_index("analysis", "collapse_point")))
+            & deck, "analysis", "collapse_point")
       else if (.not. deck%analysis%collapse_displacement%given) then
-         call deck_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
+         call key_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
             & "displacement of that point that means collapse, got none; give it", deck, &
-            & place_of(deck, key_index("analysis", "collapse_point")))
+            & "analysis", "collapse_point")
       end if
    end subroutine check_collapse
 
@@ -229,9 +226,8 @@ contains
       push = key_index("load", "horizontal_coefficient")
       pushed = deck%searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
       if (deck%load%live_horizontal%flag .and. .not. pushed) &
-         & call deck_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
-         & "than 0, got 0; give one, or remove live_horizontal", deck, &
-         & place_of(deck, key_index("load", "live_horizontal")))
+         & call key_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
+         & "than 0, got 0; give one, or remove live_horizontal", deck, "load", "live_horizontal")
    end subroutine check_live
 
    !> Check the lists of &live

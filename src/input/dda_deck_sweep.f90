@@ -1,6 +1,6 @@
 !> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
 module dda_deck_sweep
-   use dda_deck, only : deck_error, deck_place_t, deck_sweep_t, deck_t, deck_value_t, place_of
+   use dda_deck, only : deck_error, deck_place_t, deck_sweep_t, deck_t, deck_value_t, key_error
    use dda_deck_key, only : key_kind, word_length
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_parameter, only : find_parameter, parameter_name
@@ -51,8 +51,7 @@ contains
       end if
       call find_parameter(deck%sweep%parameter%text, sweep%parameter, problem)
       if (len(problem) > 0) then
-         call deck_error(error, "sweep%parameter: "//problem, deck, &
-            place_of(deck, key_index("sweep", "parameter")))
+         call key_error(error, "sweep%parameter: "//problem, deck, "sweep", "parameter")
          return
       end if
       sweep%name = parameter_name(sweep%parameter)
@@ -141,9 +140,9 @@ contains
       last = deck%sweep%last%number
       n = deck%sweep%count%whole
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
-         call deck_error(error, "sweep%count = 1 needs the same first and last, got "// &
+         call key_error(error, "sweep%count = 1 needs the same first and last, got "// &
             to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
-            place_of(deck, key_index("sweep", "count")))
+            & "sweep", "count")
       else
          sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), i=1, n)]
          sweep%numbers(n) = last

@@ -2,8 +2,7 @@
 module dda_live_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
-   use dda_deck, only : deck_error, deck_t, place_of
-   use dda_deck_keys, only : key_index
+   use dda_deck, only : deck_t, key_error
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_t
    use dda_kinds, only : wp
@@ -138,9 +137,9 @@ contains
          ! a function's result in an expression is not freed in all its parts
          axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
          if (size(axle) == 0) then
-            call deck_error(error, "&vehicle needs an axle above a block that moves, got "// &
+            call key_error(error, "&vehicle needs an axle above a block that moves, got "// &
                & "none at position "//to_text(deck%vehicle%position%number)//"; move it", &
-               & deck, place_of(deck, key_index("vehicle", "position")))
+               & deck, "vehicle", "position")
             return
          end if
       end if
@@ -151,12 +150,11 @@ contains
          text = "&live needs points of blocks that move, got ("//to_text(point(1, i) &
             & + scene%origin(1))//", "//to_text(point(2, i) + scene%origin(2))//"), which lies in "
          if (b == 0) then
-            call deck_error(error, text//"none; move point "//to_text(i), deck, &
-               & place_of(deck, key_index("live", "x")))
+            call key_error(error, text//"none; move point "//to_text(i), deck, "live", "x")
             return
          else if (scene%system%equation(b) == 0) then
-            call deck_error(error, text//"block "//to_text(b)//", which is fixed; move point " &
-               & //to_text(i), deck, place_of(deck, key_index("live", "x")))
+            call key_error(error, text//"block "//to_text(b)//", which is fixed; move point " &
+               & //to_text(i), deck, "live", "x")
             return
          end if
       end do

@@ -5,7 +5,7 @@ module dda_tie_bars
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_block_sites, only : block_at, site_t, survey
-   use dda_deck, only : deck_error, deck_t, place_of
+   use dda_deck, only : deck_error, deck_t, key_error, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -85,9 +85,9 @@ contains
          return
       end do
       if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) then
-         call deck_error(error, "&tie needs an arch that keeps its shape, but the search "// &
+         call key_error(error, "&tie needs an arch that keeps its shape, but the search "// &
             & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
-            & place_of(deck, key_index("search", "parameter")))
+            & "search", "parameter")
          return
       end if
       call check_ends(deck, error)
@@ -109,8 +109,8 @@ contains
       if (len_trim(no_form%text) > 0) return
       do i = 1, size(ends, 2)
          if (norm2(ends(3:4, i) - ends(1:2, i)) > 0.0_wp) cycle
-         call deck_error(error, "&tie needs ends that are apart, got tie "//to_text(i)// &
-            & " between equal points; move one", deck, place_of(deck, key_index("tie", "x1")))
+         call key_error(error, "&tie needs ends that are apart, got tie "//to_text(i)// &
+            & " between equal points; move one", deck, "tie", "x1")
          return
       end do
       call add_ties(deck, assembly%plan)
@@ -131,9 +131,9 @@ contains
                problem = "&tie needs a block that moves, got tie "//to_text(i) &
                   & //" between two that are fixed; move one end, or remove the tie"
             else if (bar%prestress > bar%strength) then
-               call deck_error(error, "tie%prestress must be at most tie%strength, got " &
-                  & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, &
-                  & place_of(deck, key_index("tie", "prestress")))
+               call key_error(error, "tie%prestress must be at most tie%strength, got " &
+                  & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, "tie", &
+                  & "prestress")
                return
             end if
          end associate
