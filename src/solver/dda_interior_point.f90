@@ -58,13 +58,15 @@ contains
          point%v = point%v/power
          point%s = point%s/power
       end if
-      point%x = point%x + max(0.0_wp, -1.5_wp*minval(point%x, rays%bounded > 0.0_wp)) + inside
-      point%s = point%s + max(0.0_wp, -1.5_wp*minval(point%s, rays%bounded > 0.0_wp)) &
-         & + inside*maxval(abs(point%v))
-      product = sum(point%x*point%s*rays%bounded)
-      power = sum(point%s*rays%bounded)
-      point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded)
-      point%x = point%x + 0.5_wp*product/power
+      if (any(rays%bounded > 0.0_wp)) then
+         point%x = point%x + 1.5_wp*max(0.0_wp, -minval(point%x, rays%bounded > 0.0_wp)) + inside
+         point%s = point%s + 1.5_wp*max(0.0_wp, -minval(point%s, rays%bounded > 0.0_wp)) &
+            & + inside*maxval(abs(point%v))
+         product = sum(point%x*point%s*rays%bounded)
+         power = sum(point%s*rays%bounded)
+         point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded)
+         point%x = point%x + 0.5_wp*product/power
+      end if
       point%x = point%x*rays%bounded
       point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
    end subroutine start_by_springs

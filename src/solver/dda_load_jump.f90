@@ -223,7 +223,8 @@ contains
       call imbalance(joints, 0.0_wp*rest, -rates%force, change)
       share = sum(change*rest)/sum(rest**2)
       largest = maxval(abs(change - share*rest))
-      stride = bend*maxval(abs(rest))/max(largest, tiny(largest))
+      ! rates that change nothing lead farther than any far, but not to infinity
+      stride = bend*maxval(abs(rest))/max(largest, sqrt(tiny(largest)))
       if (share > 0.0_wp) stride = min(stride, 1.0_wp/share)
       stride = max(1.0_wp, stride)
    end function stride
