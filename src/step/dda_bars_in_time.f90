@@ -20,6 +20,7 @@ contains
       state%unseen = step%unseen
       state%rates = step%rates
       state%swept = step%swept
+      state%strayed = step%strayed
       state%again = step%again
       state%patient = step%patient
       state%passes = step%passes
@@ -117,6 +118,7 @@ contains
       step%settled = state%settled
       step%many = state%many
       step%swept = state%swept
+      step%strayed = state%strayed
    end procedure drop_bars
 
 end submodule dda_bars_in_time

@@ -198,6 +198,7 @@ contains
             & state%fineness, state%multiplier, sweeps%moved, sweeps%force, state%passes, settled)
          if (settled .or. hasty) call move_group(equations, springs, joint, sweeps)
          if (.not. settled) state%swept = hasty
+         state%strayed = state%strayed .or. .not. settled .and. size(joint) > many
       else if (size(joint) <= many .or. state%patient) then
          enough = sweeps%enough
          call sweep_group(springs, joint, sweeps_for%haste, enough, sweeps, settled)
@@ -241,7 +242,7 @@ contains
       logical :: is_there(0:size(view%lower, 3))
       integer :: forces, i, k
 
-      asks_faces = .not. state%rates .and. .not. (state%swept .and. size(joint) > vast)
+      asks_faces = .not. state%rates .and. .not. (state%strayed .and. size(joint) > many)
       if (.not. asks_faces .or. state%again) return
       is_there = .false.
       forces = 0

@@ -184,12 +184,13 @@ contains
          if (is_too_short(run)) exit
          if (run%step%renews) call place_contacts(run)
          run%step%state%patient = attempt > hasty_tries
-         call assemble(run)
-         outcome = check_start(run)
-         if (outcome%accepted) then
-            call solve_contacts(run)
-            outcome = check_motion(run)
+         outcome = step_outcome_t(accepted=run%step%is_solved)
+         if (.not. outcome%accepted) then
+            call assemble(run)
+            outcome = check_start(run)
+            if (outcome%accepted) call solve_contacts(run)
          end if
+         if (outcome%accepted) outcome = check_motion(run)
          if (outcome%accepted .and. in_time(run)) then
             call solve_impacts(run)
             outcome = check_velocities(run)
@@ -262,6 +263,7 @@ contains
          state%settled = .false.
          state%many = .false.
          state%swept = .false.
+         state%strayed = .false.
          state%again = .false.
          state%passes = 0
       end associate

@@ -4,6 +4,8 @@ submodule (dda_step) dda_step_motion
    use dda_block_inertia, only : assemble_blocks, turn_masses
    use dda_contact_detection, only : follow_contacts
    use dda_contact_transfer, only : renew_contacts
+   use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
    implicit none
@@ -19,6 +21,7 @@ contains
       associate (step => run%step)
          step%was_cut = .false.
          step%choices = 0
+         step%is_solved = .false.
          step%renews = run%settings%current
          step%longest = run%march%longest
          step%slowest_impact = 2.0_wp*run%march%free_acceleration*run%march%longest
@@ -37,15 +40,24 @@ contains
    !> Contacts where the blocks are now
    module procedure place_contacts
       integer, allocatable :: before(:, :)
+      type(contacts_t) :: solved
 
       associate (system => run%system, settings => run%settings)
          if (run%contacts%searched) then
+            solved = run%contacts
             allocate (before, source=run%contacts%springs%equation)
             if (run%contacts%remember) run%contacts = run%step%kept
             if (.not. allocated(run%march%reach)) &
                & run%march%reach = first_reach(system, settings, run%march)
             call renew_contacts(system, run%step%travel, run%march%reach, settings%penalty_ratio, &
                & settings%n_dof, run%contacts)
+            if (run%step%is_solved) &
+               & run%step%is_solved = are_same(run%contacts%joint, solved%joint)
+            if (run%step%is_solved) then
+               solved%search = run%contacts%search
+               run%contacts = solved
+               return
+            end if
             call renew_springs(before, run%contacts%springs, run%equations)
          else
             call follow_contacts(system, settings%penalty_ratio, settings%n_dof, run%contacts)
@@ -53,6 +65,26 @@ contains
          end if
       end associate
    end procedure place_contacts
+
+   !> Whether joints are of the same corners and edges
+   pure logical function are_same(joint, other)
+      !> The joints: (n_joint)
+      type(joint_t), intent(in) :: joint(:), other(:)
+      integer :: j, k
+
+      are_same = size(joint) == size(other)
+      if (.not. are_same) return
+      do j = 1, size(joint)
+         are_same = joint(j)%n_contact == other(j)%n_contact
+         do k = 1, joint(j)%n_contact
+            associate (a => joint(j)%contact(k), b => other(j)%contact(k))
+               are_same = are_same .and. a%vertex_block == b%vertex_block .and. &
+                  & a%vertex == b%vertex .and. a%edge_block == b%edge_block .and. a%edge == b%edge
+            end associate
+         end do
+         if (.not. are_same) return
+      end do
+   end function are_same
 
    !> Equations of the blocks, and the forces that their joints begin with
    module procedure assemble

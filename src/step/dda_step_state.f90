@@ -45,6 +45,9 @@ module dda_step_state
       !> Whether very many joints were swept in this step since their faces did not agree: once more
       !> these would not either
       logical :: swept = .false.
+      !> Whether the faces of many joints did not agree in this step: rather than once more they are
+      !> swept
+      logical :: strayed = .false.
       !> Whether the forces to begin with are those of a try of this step
       logical :: again = .false.
       !> Work of what the bounds of the shear forces would still change by [J/m]
