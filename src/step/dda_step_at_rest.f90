@@ -57,11 +57,32 @@ contains
       run%step%state%fineness = 1.0_wp
       before%march%passes = run%march%passes
       run%march = before%march
+      if (still) call count_work(before%system%motion, run)
       if (still) return
       call renew_springs(run%contacts%springs%equation, before%contacts%springs, run%equations)
       run%run_state_t = before
       run%equations%fixed%force = held
    end subroutine come_to_rest
+
+   !> Count the work of loads on the way to where blocks stand still
+   pure subroutine count_work(start, run)
+      !> Motion of the blocks before it: (6, n_block)
+      real(wp), intent(in) :: start(:, :)
+      type(run_t), intent(inout) :: run
+      real(wp) :: work
+      integer :: b, e, n
+
+      n = size(run%equations%outer, 1)
+      work = 0.0_wp
+      do b = 1, size(start, 2)
+         e = run%system%equation(b)
+         if (e > 0) work = work + dot_product(run%equations%outer(:, e) &
+            & - run%equations%weight(:, e), run%system%motion(:n, b) - start(:n, b))
+      end do
+      ! what energies do not keep of it is found when they are counted
+      run%march%energy%work = run%march%energy%work + work
+      run%march%energy%numerical = run%march%energy%numerical + work
+   end subroutine count_work
 
    !> Take the speed that coarser contact forces have left
    pure subroutine take_speed(run, taken)

@@ -13,9 +13,13 @@ from properties import PROPERTIES, Bench
 SEEDS = (0, 8, 11)
 #: What falls with forces that hold one another in any size, and with corners that hardly open
 WEDGED = (23, 122)
+#: What is pushed, in time, and comes to rest in its 17th step
+PUSHED = (3042, 3058)
 
 
-@pytest.mark.parametrize(("name", "seed"), [*itertools.product(PROPERTIES, SEEDS), *(("proof", s) for s in WEDGED)])
+@pytest.mark.parametrize(
+    ("name", "seed"),
+    [*itertools.product(PROPERTIES, SEEDS), *(("proof", s) for s in WEDGED), *(("energy", s) for s in PUSHED)])
 def test_property_holds_of_random_assemblies(tmp_path: Path, name: str, seed: int) -> None:
     if name == "proof":
         pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
