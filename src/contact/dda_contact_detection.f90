@@ -71,8 +71,7 @@ contains
    !> Keep some of the joints with what they carry, without springs: blocks may have other numbers
    !> in the equations
    pure subroutine keep_contacts(kept, contacts)
-      !> Which: (n_joint)
-      logical, intent(in) :: kept(:)
+      logical, intent(in) :: kept(:)  !! Which: (n_joint)
       type(contacts_t), intent(inout) :: contacts
       type(contacts_t) :: old
       type(joint_t), allocatable :: joint(:)

@@ -48,10 +48,8 @@ contains
    !> The contact of the step before of the same corner and edge that none has taken over, or 0
    pure integer function same_contact(past, past_key, key)
       type(past_contact_t), intent(in) :: past(:)
-      !> Their keys, rising
-      integer(int64), intent(in) :: past_key(:)
-      !> Key of the contact that looks for one
-      integer(int64), intent(in) :: key
+      integer(int64), intent(in) :: past_key(:)  !! Their keys, rising
+      integer(int64), intent(in) :: key          !! Key of the contact that looks for one
       integer :: i
 
       same_contact = 0
@@ -67,15 +65,11 @@ contains
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
-      !> Their order by blocks
-      integer, intent(in) :: order(:)
-      !> Keys of their blocks in that order, rising
-      integer(int64), intent(in) :: past_pair(:)
+      integer, intent(in) :: order(:)             !! Their order by blocks
+      integer(int64), intent(in) :: past_pair(:)  !! Keys of their blocks in that order, rising
       type(contact_t), intent(in) :: contact
-      !> Key of its blocks
-      integer(int64), intent(in) :: pair
-      !> How far away it may lie [m]
-      real(wp), intent(in) :: reach
+      integer(int64), intent(in) :: pair          !! Key of its blocks
+      real(wp), intent(in) :: reach               !! How far away it may lie [m]
       real(wp) :: least, distance, here(2), there(2)
       integer :: m
 
@@ -98,10 +92,8 @@ contains
 
    !> Numbers that tell pairs of blocks apart
    elemental integer(int64) function pair_keys(contact, n_block) result(key)
-      !> A contact of the pair
-      type(contact_t), intent(in) :: contact
-      !> Number of all blocks
-      integer, intent(in) :: n_block
+      type(contact_t), intent(in) :: contact  !! A contact of the pair
+      integer, intent(in) :: n_block          !! Number of all blocks
 
       key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
          & + int(max(contact%vertex_block, contact%edge_block), int64)

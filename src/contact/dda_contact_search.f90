@@ -79,8 +79,7 @@ contains
    pure subroutine remember_edge_pairs(outline, equation, area, vertex, reach, known)
       type(outline_t), intent(in) :: outline
       integer, intent(in) :: equation(:)
-      !> Areas of the blocks: (n_block) [m2]
-      real(wp), intent(in) :: area(:)
+      real(wp), intent(in) :: area(:)  !! Areas of the blocks: (n_block) [m2]
       real(wp), intent(in) :: vertex(:, :), reach(:)
       type(edge_pairs_t), intent(inout) :: known
       real(wp) :: low(2, size(vertex, 2)), high(2, size(vertex, 2))
@@ -117,10 +116,8 @@ contains
    pure subroutine edge_boxes(outline, vertex, reach, low, high)
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :), reach(:)
-      !> Lower left corners of the boxes: (2, n_vertex) [m]
-      real(wp), intent(out) :: low(:, :)
-      !> Upper right corners: (2, n_vertex) [m]
-      real(wp), intent(out) :: high(:, :)
+      real(wp), intent(out) :: low(:, :)   !! Lower left corners of the boxes: (2, n_vertex) [m]
+      real(wp), intent(out) :: high(:, :)  !! Upper right corners: (2, n_vertex) [m]
       integer :: e
 
       do e = 1, size(vertex, 2)
@@ -190,10 +187,8 @@ contains
    !> blocks is thicker than its own reach, not than theirs
    pure function least_beside(system, reach) result(least)
       type(block_system_t), intent(in) :: system
-      !> How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
-      !> The least reach: (n_block) [m]
-      real(wp) :: least(size(reach))
+      real(wp), intent(in) :: reach(:)  !! How far each block can reach: (n_block) [m]
+      real(wp) :: least(size(reach))    !! The least reach: (n_block) [m]
       real(wp) :: high(2, size(reach)), low(2, size(reach))
       real(wp), allocatable :: least_below(:)
       type(box_tree_t) :: tree
@@ -249,10 +244,8 @@ contains
    !> Drop the pairs of edges of blocks that are not there
    pure subroutine drop_absent(search, block, pair)
       type(joint_search_t), intent(in) :: search
-      !> Block of each edge: (n_vertex)
-      integer, intent(in) :: block(:)
-      !> The pairs: (2, n_pair)
-      integer, allocatable, intent(inout) :: pair(:, :)
+      integer, intent(in) :: block(:)                    !! Block of each edge: (n_vertex)
+      integer, allocatable, intent(inout) :: pair(:, :)  !! The pairs: (2, n_pair)
       integer :: i
 
       pair = pair(:, pack([(i, i=1, size(pair, 2))], &

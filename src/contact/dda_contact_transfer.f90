@@ -41,10 +41,8 @@ module dda_contact_transfer
       !> Keys of contacts
       pure module function contact_keys(system, contact) result(key)
          type(block_system_t), intent(in) :: system
-         !> The contacts: (n)
-         type(contact_t), intent(in) :: contact(:)
-         !> Their keys: (n)
-         integer(int64) :: key(size(contact))
+         type(contact_t), intent(in) :: contact(:)  !! The contacts: (n)
+         integer(int64) :: key(size(contact))       !! Their keys: (n)
       end function contact_keys
 
       !> Find for each contact the one of the step before that it goes on: the same corner and edge,
@@ -69,8 +67,7 @@ contains
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
    pure subroutine search_contacts(system, contacts)
       type(block_system_t), intent(in) :: system
-      !> The contacts; their search is set
-      type(contacts_t), intent(inout) :: contacts
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is set
       type(joint_t), allocatable :: joint(:)
       real(wp) :: gap(3)
       integer :: j
@@ -224,8 +221,7 @@ contains
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
       integer, intent(in) :: source(2)
-      !> Stiffness now [N/m per metre depth]
-      real(wp), intent(in) :: stiffness
+      real(wp), intent(in) :: stiffness  !! Stiffness now [N/m per metre depth]
       type(joint_t), intent(inout) :: joint
       integer :: k
 
@@ -242,8 +238,7 @@ contains
    !> bring in energy, for in the shortest steps the least way is a speed
    pure subroutine stay_inside(joint, gap)
       type(joint_t), intent(inout) :: joint
-      !> Opening at the two contacts, and slip: (3) [m]
-      real(wp), intent(inout) :: gap(3)
+      real(wp), intent(inout) :: gap(3)  !! Opening at the two contacts, and slip: (3) [m]
       integer :: k
 
       do k = 1, joint%n_contact
@@ -256,8 +251,7 @@ contains
    !> Let a joint have no slip where it is
    pure subroutine lock_joint(system, vertex, joint)
       type(block_system_t), intent(in) :: system
-      !> Corners: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(joint_t), intent(inout) :: joint
       real(wp) :: edge(2)
       integer :: k

@@ -119,8 +119,7 @@ contains
 
    !> Whether two joints are of the same corners and edges, in the same order
    elemental logical function same_joint(a, b)
-      !> One joint
-      type(joint_t), intent(in) :: a
+      type(joint_t), intent(in) :: a  !! One joint
       type(joint_t), intent(in) :: b
 
       same_joint = all(a%block == b%block) .and. a%n_contact == b%n_contact &
@@ -268,15 +267,11 @@ contains
    !> What the joint sees of one block's unknowns
    pure function rows_of_joint(joint, side, centroid, motion, n_dof) result(row)
       type(joint_t), intent(in) :: joint
-      !> 1 or 2, which of the joint's blocks
-      integer, intent(in) :: side
-      !> Centre of gravity of the block: (2) [m]
-      real(wp), intent(in) :: centroid(2)
-      !> How the block has moved: (6)
-      real(wp), intent(in) :: motion(6)
+      integer, intent(in) :: side          !! 1 or 2, which of the joint's blocks
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
+      real(wp), intent(in) :: motion(6)    !! How the block has moved: (6)
       integer, intent(in) :: n_dof
-      !> Opening at both contacts, slip: (n_dof, 3)
-      real(wp) :: row(n_dof, 3)
+      real(wp) :: row(n_dof, 3)            !! Opening at both contacts, slip: (n_dof, 3)
       real(wp) :: t(2, 6)
       integer :: k
 
@@ -298,11 +293,9 @@ contains
    !> the way from the centre
    pure function block_stiffness(system, centroid, joint) result(stiffness)
       type(block_system_t), intent(in) :: system
-      !> Their centres of gravity: (2, n_block) [m]
-      real(wp), intent(in) :: centroid(:, :)
+      real(wp), intent(in) :: centroid(:, :)  !! Their centres of gravity: (2, n_block) [m]
       type(joint_t), intent(in) :: joint
-      !> The stiffness [N/m per metre depth]
-      real(wp) :: stiffness
+      real(wp) :: stiffness                   !! The stiffness [N/m per metre depth]
       real(wp) :: young, size_across
       integer :: side
 

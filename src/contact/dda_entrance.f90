@@ -35,10 +35,8 @@ module dda_entrance
 
    !> Joints found so far
    type :: joint_list_t
-      !> Number of joints
-      integer :: n = 0
-      !> The joints, the first n of them
-      type(joint_t), allocatable :: joint(:)
+      integer :: n = 0                        !! Number of joints
+      type(joint_t), allocatable :: joint(:)  !! The joints, the first n of them
    end type joint_list_t
 
    !> Two edges lie together if their directions differ by no more than this sine
@@ -52,12 +50,9 @@ contains
 
    !> A number that tells contacts apart
    elemental integer(int64) function contact_key(corner, edge, n_vertex)
-      !> Number of the corner among all
-      integer, intent(in) :: corner
-      !> Number of the edge among all
-      integer, intent(in) :: edge
-      !> Number of all corners
-      integer, intent(in) :: n_vertex
+      integer, intent(in) :: corner    !! Number of the corner among all
+      integer, intent(in) :: edge      !! Number of the edge among all
+      integer, intent(in) :: n_vertex  !! Number of all corners
 
       contact_key = int(corner, int64)*int(n_vertex + 1, int64) + int(edge, int64)
    end function contact_key
@@ -91,11 +86,9 @@ contains
    !> Join two edges that lie together: the overlap ends at a corner of the one or of the other
    pure subroutine join_edges(near, pair, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
-      !> Edge of the first block, edge of the second: (2)
-      integer, intent(in) :: pair(2)
+      integer, intent(in) :: pair(2)           !! Edge of the first block, edge of the second: (2)
       real(wp), intent(in) :: reach
-      !> Keys of the contacts that belong to a joint
-      type(key_set_t), intent(inout) :: taken
+      type(key_set_t), intent(inout) :: taken  !! Keys of the contacts that belong to a joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       type(corner_view_t) :: view
@@ -192,8 +185,7 @@ contains
    !> the entrance. Corners that touch and nothing else have none
    pure subroutine join_corners(near, pair, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
-      !> Corner of the first block, corner of the second: (2)
-      integer, intent(in) :: pair(2)
+      integer, intent(in) :: pair(2)  !! Corner of the first block, corner of the second: (2)
       real(wp), intent(in) :: reach
       type(key_set_t), intent(inout) :: taken
       type(joint_list_t), intent(inout) :: list
@@ -259,8 +251,7 @@ contains
    pure function meeting_zone(near, corner, edge) result(zone)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge
-      !> At the start and at the end of the edge: (2) [m]
-      real(wp) :: zone(2)
+      real(wp) :: zone(2)  !! At the start and at the end of the edge: (2) [m]
 
       associate (outline => near%outline, v => near%vertex)
          zone = met*min(edge_length(outline, v, edge), edge_length(outline, v, corner), &
@@ -304,8 +295,7 @@ contains
    pure type(contact_t) function new_contact(near, corner, edge, edge_side, length) result(contact)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge, edge_side
-      !> Part of the joint's length that the contact stands for [m]
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length  !! Part of the joint's length that the contact stands for [m]
 
       associate (block => near%outline%block, first => near%first_vertex)
          contact%vertex_block = block(corner)

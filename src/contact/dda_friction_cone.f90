@@ -38,12 +38,9 @@ module dda_friction_cone
 
    !> Shi's states of a contact
    type :: contact_state_enum
-      !> Apart: no spring
-      integer :: open = 0
-      !> Closed, at the Coulomb limit: normal spring and friction force
-      integer :: sliding = 1
-      !> Closed and stuck: normal and shear spring
-      integer :: locked = 2
+      integer :: open = 0     !! Apart: no spring
+      integer :: sliding = 1  !! Closed, at the Coulomb limit: normal spring and friction force
+      integer :: locked = 2   !! Closed and stuck: normal and shear spring
    end type contact_state_enum
 
    !> Names of the contact states
@@ -53,12 +50,9 @@ contains
 
    !> The admissible force nearest to a trial force, and the face that it lies on
    pure subroutine project(cone, trial, force, face)
-      !> Bounds of the force
-      type(cone_t), intent(in) :: cone
-      !> Trial force N1, N2, T: (3) [N/m]
-      real(wp), intent(in) :: trial(3)
-      !> Admissible force: (3) [N/m]
-      real(wp), intent(out) :: force(3)
+      type(cone_t), intent(in) :: cone   !! Bounds of the force
+      real(wp), intent(in) :: trial(3)   !! Trial force N1, N2, T: (3) [N/m]
+      real(wp), intent(out) :: force(3)  !! Admissible force: (3) [N/m]
       type(joint_face_t), intent(out) :: face
       real(wp) :: excess
 
@@ -84,8 +78,7 @@ contains
    !> which falls piecewise linearly, so that trying none, one and both corners open finds it
    pure subroutine return_to_limit(cone, trial, force, face)
       type(cone_t), intent(in) :: cone
-      !> Trial force beyond the limit: (3) [N/m]
-      real(wp), intent(in) :: trial(3)
+      real(wp), intent(in) :: trial(3)  !! Trial force beyond the limit: (3) [N/m]
       real(wp), intent(out) :: force(3)
       type(joint_face_t), intent(out) :: face
       real(wp) :: mu, multiplier, excess, high, low

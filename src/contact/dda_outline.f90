@@ -71,8 +71,7 @@ contains
 
    !> Measure all edges, which are asked for again and again
    pure subroutine measure_edges(vertex, outline)
-      !> Corners: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(outline_t), intent(inout) :: outline
       integer :: e
 
@@ -90,12 +89,9 @@ contains
    pure type(corner_view_t) function view_corner(outline, vertex, corner, edge, reach) result(view)
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :)
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> A corner farther from the line does not face the edge [m]
-      real(wp), intent(in) :: reach
+      integer, intent(in) :: corner  !! Number of the corner
+      integer, intent(in) :: edge    !! Number of the edge
+      real(wp), intent(in) :: reach  !! A corner farther from the line does not face the edge [m]
       real(wp) :: tangent(2), sides(2)
 
       tangent = edge_direction(outline, vertex, edge)
@@ -128,8 +124,7 @@ contains
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :)
       integer, intent(in) :: edge
-      !> The vector: (2)
-      real(wp) :: direction(2)
+      real(wp) :: direction(2)  !! The vector: (2)
 
       if (allocated(outline%direction)) then
          direction = outline%direction(:, edge)

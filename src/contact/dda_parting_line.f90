@@ -13,14 +13,10 @@ module dda_parting_line
 
    !> An edge and the block beyond it
    type :: line_t
-      !> Number of the edge; 0 for none
-      integer :: edge = 0
-      !> The corner of the other block that is nearest to its line
-      integer :: corner = 0
-      !> Height of that corner above the line [m]
-      real(wp) :: gap = -huge(1.0_wp)
-      !> When it crosses the line, in lengths of the travel
-      real(wp) :: time = -huge(1.0_wp)
+      integer :: edge = 0               !! Number of the edge; 0 for none
+      integer :: corner = 0             !! The corner of the other block that is nearest to its line
+      real(wp) :: gap = -huge(1.0_wp)   !! Height of that corner above the line [m]
+      real(wp) :: time = -huge(1.0_wp)  !! When it crosses the line, in lengths of the travel
    end type line_t
 
    !> A line that has parted two blocks in touch goes on while no other does better by more than
@@ -57,16 +53,11 @@ contains
    !> Heights of a block's corners above the line of an edge
    pure function heights(vertex, edge, next, from, to) result(height)
       real(wp), intent(in) :: vertex(:, :)
-      !> Where the edge starts
-      integer, intent(in) :: edge
-      !> Where it ends
-      integer, intent(in) :: next
-      !> First corner of the block
-      integer, intent(in) :: from
-      !> Its last corner
-      integer, intent(in) :: to
-      !> The heights: (to - from + 1) [m]
-      real(wp) :: height(from:to)
+      integer, intent(in) :: edge  !! Where the edge starts
+      integer, intent(in) :: next  !! Where it ends
+      integer, intent(in) :: from  !! First corner of the block
+      integer, intent(in) :: to    !! Its last corner
+      real(wp) :: height(from:to)  !! The heights: (to - from + 1) [m]
       real(wp) :: normal(2)
 
       normal = right_normal(along(vertex(:, edge), vertex(:, next)))
@@ -104,8 +95,7 @@ contains
    pure function parting_line(near, edge_pair, reach) result(best)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: edge_pair(:, :)
-      !> Blocks farther from one another than this are no matter [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: reach  !! Blocks farther from one another than this are no matter [m]
       type(line_t) :: best
       type(line_t) :: line, held, widest
       integer :: i, side
@@ -128,10 +118,8 @@ contains
    !> One edge and the other block
    pure type(line_t) function line_of(near, edge, block) result(line)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> The other block
-      integer, intent(in) :: block
+      integer, intent(in) :: edge   !! Number of the edge
+      integer, intent(in) :: block  !! The other block
       real(wp), allocatable :: height(:)
       real(wp) :: after, margin
       integer :: next

@@ -141,8 +141,7 @@ contains
    pure subroutine note_changes(equations, joints, few)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> Whether there was room for them
-      logical, intent(out) :: few
+      logical, intent(out) :: few  !! Whether there was room for them
       integer :: before, c, j, k
 
       few = .false.
@@ -178,10 +177,8 @@ contains
    pure subroutine find_answer(equations, joints, place, part)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> Place of the joint among those that have changed
-      integer, intent(in) :: place
-      !> The force: N1, N2 or T
-      integer, intent(in) :: part
+      integer, intent(in) :: place  !! Place of the joint among those that have changed
+      integer, intent(in) :: part   !! The force: N1, N2 or T
       integer :: a, b, c, side
 
       ! a load at once that stands asks for none
@@ -207,12 +204,9 @@ contains
    !> How one joint opens and slips with a motion
    pure function opening_of(joints, j, motion) result(opening)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> Motion of the blocks: (n_dof, n_block)
-      real(wp), intent(in) :: motion(:, :)
-      !> Opening 1, opening 2, slip
-      real(wp) :: opening(3)
+      integer, intent(in) :: j              !! Number of the joint
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_block)
+      real(wp) :: opening(3)                !! Opening 1, opening 2, slip
       integer :: b, k, side
 
       opening = 0.0_wp
@@ -228,8 +222,7 @@ contains
    !> The small full matrix of the answers in use: unity and differences times openings
    pure subroutine factor_capacity(equations, regular)
       type(coulomb_equations_t), intent(inout) :: equations
-      !> Whether it has factors
-      logical, intent(out) :: regular
+      logical, intent(out) :: regular  !! Whether it has factors
       integer :: a, i, n
       logical :: is_active(equations%n_answer)
 
@@ -314,8 +307,7 @@ contains
    pure subroutine add_changes(equations, joints, x)
       type(coulomb_equations_t), intent(in) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> The motion: (n_dof, n_block)
-      real(wp), intent(inout), contiguous :: x(:, :)
+      real(wp), intent(inout), contiguous :: x(:, :)  !! The motion: (n_dof, n_block)
       real(wp) :: y(size(equations%active))
       integer :: i
 
@@ -333,16 +325,11 @@ contains
 
    !> Take answers from a motion; flat, so that the compiler makes one loop of it
    pure subroutine subtract_answers(n, response, active, y, x)
-      !> Unknowns of all blocks
-      integer, intent(in) :: n
-      !> Answers
-      real(wp), intent(in) :: response(n, max_answer)
-      !> Those in use: (n_active)
-      integer, intent(in) :: active(:)
-      !> How much of each: (n_active)
-      real(wp), intent(in) :: y(:)
-      !> The motion
-      real(wp), intent(inout) :: x(n)
+      integer, intent(in) :: n                         !! Unknowns of all blocks
+      real(wp), intent(in) :: response(n, max_answer)  !! Answers
+      integer, intent(in) :: active(:)                 !! Those in use: (n_active)
+      real(wp), intent(in) :: y(:)                     !! How much of each: (n_active)
+      real(wp), intent(inout) :: x(n)                  !! The motion
       integer :: i
 
       do i = 1, size(y)

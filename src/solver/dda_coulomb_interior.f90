@@ -29,26 +29,18 @@ module dda_coulomb_interior
 
    !> An iterate, or a step from it
    type :: coulomb_interior_t
-      !> Motion: (n_dof, n_block)
-      real(wp), allocatable :: motion(:, :)
-      !> N1, N2, T: (3, n_joint)
-      real(wp), allocatable :: force(:, :)
-      !> Distance of the forces from each face: (4, n_joint)
-      real(wp), allocatable :: slack(:, :)
-      !> Opening or slip at each face: (4, n_joint)
-      real(wp), allocatable :: flow(:, :)
+      real(wp), allocatable :: motion(:, :)  !! Motion: (n_dof, n_block)
+      real(wp), allocatable :: force(:, :)   !! N1, N2, T: (3, n_joint)
+      real(wp), allocatable :: slack(:, :)   !! Distance of the forces from each face: (4, n_joint)
+      real(wp), allocatable :: flow(:, :)    !! Opening or slip at each face: (4, n_joint)
    end type coulomb_interior_t
 
    !> What an iterate leaves of the equations, and what a step is to change of the products
    type :: rest_t
-      !> Of the balance of the blocks: (n_dof, n_block)
-      real(wp), allocatable :: balance(:, :)
-      !> Of the opening of the joints: (3, n_joint)
-      real(wp), allocatable :: opening(:, :)
-      !> Of the slacks: (4, n_joint)
-      real(wp), allocatable :: slack(:, :)
-      !> Change of slack times flow: (4, n_joint)
-      real(wp), allocatable :: product(:, :)
+      real(wp), allocatable :: balance(:, :)  !! Of the balance of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: opening(:, :)  !! Of the opening of the joints: (3, n_joint)
+      real(wp), allocatable :: slack(:, :)    !! Of the slacks: (4, n_joint)
+      real(wp), allocatable :: product(:, :)  !! Change of slack times flow: (4, n_joint)
    end type rest_t
 
 contains
@@ -113,8 +105,7 @@ contains
    !> Which faces the forces of each joint have
    pure subroutine list_faces(joints, face)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Whether there is a face: (4, n_joint)
-      logical, intent(out) :: face(:, :)
+      logical, intent(out) :: face(:, :)  !! Whether there is a face: (4, n_joint)
 
       face(:2, :) = joints%end_role == end_role%contact
       face(3, :) = joints%shear_role == shear_role%frictional
@@ -148,10 +139,8 @@ contains
    !> Distance of forces from the faces
    pure subroutine add_faces(joints, force, slack)
       type(coulomb_joints_t), intent(in) :: joints
-      !> N1, N2, T: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
-      !> Distances: (4, n_joint)
-      real(wp), intent(out) :: slack(:, :)
+      real(wp), intent(in) :: force(:, :)   !! N1, N2, T: (3, n_joint)
+      real(wp), intent(out) :: slack(:, :)  !! Distances: (4, n_joint)
 
       slack(:2, :) = force(:2, :)
       slack(3, :) = joints%graph%friction*(force(1, :) + force(2, :))
@@ -262,10 +251,8 @@ contains
    pure subroutine answer_joints(joints, face, ratio, drive, part)
       type(coulomb_joints_t), intent(in) :: joints
       logical, intent(in) :: face(:, :)
-      !> Flow over slack: (4, n_joint)
-      real(wp), intent(in) :: ratio(:, :)
-      !> What the springs are pressed together by: (3, n_joint)
-      real(wp), intent(in) :: drive(:, :)
+      real(wp), intent(in) :: ratio(:, :)  !! Flow over slack: (4, n_joint)
+      real(wp), intent(in) :: drive(:, :)  !! What the springs are pressed together by: (3, n_joint)
       type(coulomb_interior_t), intent(inout) :: part
       real(wp) :: bound, spring
       integer :: i, j
@@ -294,8 +281,7 @@ contains
    pure real(wp) function longest(face, x, step, share)
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x, step
-      !> How much of the way to the first zero is gone
-      real(wp), intent(in) :: share
+      real(wp), intent(in) :: share  !! How much of the way to the first zero is gone
       integer :: i, j
 
       longest = 1.0_wp

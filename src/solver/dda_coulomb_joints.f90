@@ -15,22 +15,16 @@ module dda_coulomb_joints
 
    !> What a corner of a joint can do
    type :: end_role_enum
-      !> It pushes or is open
-      integer :: contact = 1
-      !> It pushes and pulls
-      integer :: tied = 2
-      !> There is none
-      integer :: absent = 3
+      integer :: contact = 1  !! It pushes or is open
+      integer :: tied = 2     !! It pushes and pulls
+      integer :: absent = 3   !! There is none
    end type end_role_enum
 
    !> What a joint can do along itself
    type :: shear_role_enum
-      !> It sticks, or slides at Coulomb's limit
-      integer :: frictional = 1
-      !> It never slides
-      integer :: tied = 2
-      !> It carries no shear force
-      integer :: absent = 3
+      integer :: frictional = 1  !! It sticks, or slides at Coulomb's limit
+      integer :: tied = 2        !! It never slides
+      integer :: absent = 3      !! It carries no shear force
    end type shear_role_enum
 
    !> Names of what corners can do
@@ -40,20 +34,13 @@ module dda_coulomb_joints
 
    !> Joints in units of their own
    type :: coulomb_joints_t
-      !> The joints, every quantity in these units
-      type(joint_graph_t) :: graph
-      !> What each corner can do: (2, n_joint)
-      integer, allocatable :: end_role(:, :)
-      !> What each joint can do along itself: (n_joint)
-      integer, allocatable :: shear_role(:)
-      !> Unit of forces [N/m]
-      real(wp) :: force_unit = 1.0_wp
-      !> Unit of arms [m]
-      real(wp) :: arm_unit = 1.0_wp
-      !> Unit of displacements and gaps [m]
-      real(wp) :: motion_unit = 1.0_wp
-      !> Whether a load has chosen the unit of force
-      logical :: has_weight = .false.
+      type(joint_graph_t) :: graph            !! The joints, every quantity in these units
+      integer, allocatable :: end_role(:, :)  !! What each corner can do: (2, n_joint)
+      integer, allocatable :: shear_role(:)   !! What each joint can do along itself: (n_joint)
+      real(wp) :: force_unit = 1.0_wp         !! Unit of forces [N/m]
+      real(wp) :: arm_unit = 1.0_wp           !! Unit of arms [m]
+      real(wp) :: motion_unit = 1.0_wp        !! Unit of displacements and gaps [m]
+      logical :: has_weight = .false.         !! Whether a load has chosen the unit of force
    end type coulomb_joints_t
 
 contains
@@ -87,8 +74,7 @@ contains
    !> Choose the unit of force, and with it that of motion; not by a load that is zero
    pure subroutine set_force_unit(joints, load)
       type(coulomb_joints_t), intent(inout) :: joints
-      !> What they carry: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)  !! What they carry: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp) :: unit
 
       unit = mean(norm2(load(:2, :), 1))
@@ -131,8 +117,7 @@ contains
 
    !> What a joint with friction can do along itself
    pure integer function friction_role(friction)
-      !> Its coefficient
-      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: friction  !! Its coefficient
 
       friction_role = merge(shear_role%frictional, shear_role%absent, friction > 0.0_wp)
    end function friction_role
@@ -140,10 +125,8 @@ contains
    !> Loads in the units of the joints
    pure function in_units(joints, load) result(scaled)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> The same in units: (n_dof, n_block)
-      real(wp) :: scaled(size(load, 1), size(load, 2))
+      real(wp), intent(in) :: load(:, :)                !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp) :: scaled(size(load, 1), size(load, 2))  !! The same in units: (n_dof, n_block)
 
       scaled(:2, :) = load(:2, :)/joints%force_unit
       scaled(3:, :) = load(3:, :)/(joints%force_unit*joints%arm_unit)
@@ -187,8 +170,7 @@ contains
 
    !> Mean of numbers, 0 if there are none
    pure real(wp) function mean(x)
-      !> The numbers: (:)
-      real(wp), intent(in) :: x(:)
+      real(wp), intent(in) :: x(:)  !! The numbers: (:)
 
       mean = sum(x)/real(max(1, size(x)), wp)
    end function mean
@@ -203,8 +185,7 @@ contains
 
    !> The number itself if it is positive, else 1
    pure real(wp) function positive_or_one(x)
-      !> The number
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! The number
 
       positive_or_one = merge(x, 1.0_wp, x > 0.0_wp)
    end function positive_or_one

@@ -22,18 +22,12 @@ module dda_coulomb_law
 
    !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
-      !> The corner is open: no force
-      integer :: open = 0
-      !> The corner is closed
-      integer :: closed = 1
-      !> The joint slides against a negative shear force
-      integer :: slides_back = -1
-      !> The joint sticks
-      integer :: stuck = 0
-      !> The joint slides against a positive shear force
-      integer :: slides = 1
-      !> The joint carries no shear force
-      integer :: free = 2
+      integer :: open = 0          !! The corner is open: no force
+      integer :: closed = 1        !! The corner is closed
+      integer :: slides_back = -1  !! The joint slides against a negative shear force
+      integer :: stuck = 0         !! The joint sticks
+      integer :: slides = 1        !! The joint slides against a positive shear force
+      integer :: free = 2          !! The joint carries no shear force
    end type face_enum
 
    !> Names of what corners and joints do
@@ -88,12 +82,9 @@ contains
    !> What a joint does along itself, where it can do nothing else
    pure integer function shear_face(joints, j, ends, otherwise)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> What its corners do: (2)
-      integer, intent(in) :: ends(2)
-      !> What it does if it has the choice
-      integer, intent(in) :: otherwise
+      integer, intent(in) :: j          !! Number of the joint
+      integer, intent(in) :: ends(2)    !! What its corners do: (2)
+      integer, intent(in) :: otherwise  !! What it does if it has the choice
 
       shear_face = otherwise
       if (joints%shear_role(j) == shear_role%absent) then
@@ -156,10 +147,8 @@ contains
    pure function joint_stiffness(joints, j, faces) result(stiffness)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j
-      !> What it does: (3)
-      integer, intent(in) :: faces(3)
-      !> Rows N1, N2, T; columns opening 1, opening 2, slip
-      real(wp) :: stiffness(3, 3)
+      integer, intent(in) :: faces(3)  !! What it does: (3)
+      real(wp) :: stiffness(3, 3)      !! Rows N1, N2, T; columns opening 1, opening 2, slip
       integer :: i
 
       stiffness = 0.0_wp
@@ -179,11 +168,9 @@ contains
    !> Forces by which the springs of all joints answer openings while the faces stay
    pure subroutine spring_forces(joints, faces, opening, force)
       type(coulomb_joints_t), intent(in) :: joints
-      !> What corners and joints do: (3, n_joint)
-      integer, intent(in), contiguous :: faces(:, :)
+      integer, intent(in), contiguous :: faces(:, :)    !! What corners and joints do: (3, n_joint)
       real(wp), intent(in), contiguous :: opening(:, :)
-      !> N1, N2, T: (3, n_joint)
-      real(wp), intent(out), contiguous :: force(:, :)
+      real(wp), intent(out), contiguous :: force(:, :)  !! N1, N2, T: (3, n_joint)
       integer :: i, j
 
       do j = 1, size(faces, 2)
@@ -206,12 +193,9 @@ contains
    !> What is not balanced of a load
    pure subroutine imbalance(joints, load, force, rest)
       type(coulomb_joints_t), intent(in) :: joints
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in), contiguous :: load(:, :)
-      !> Joint forces: (3, n_joint)
-      real(wp), intent(in), contiguous :: force(:, :)
-      !> Load and joint forces: (n_dof, n_block)
-      real(wp), intent(out), contiguous :: rest(:, :)
+      real(wp), intent(in), contiguous :: load(:, :)   !! The load: (n_dof, n_block)
+      real(wp), intent(in), contiguous :: force(:, :)  !! Joint forces: (3, n_joint)
+      real(wp), intent(out), contiguous :: rest(:, :)  !! Load and joint forces: (n_dof, n_block)
 
       rest = load
       call add_joint_forces(joints%graph, force, rest)
@@ -222,8 +206,7 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
       integer, intent(in), contiguous :: faces(:, :)
-      !> Change of N1, N2 and T: (3, n_joint)
-      real(wp), intent(out), contiguous :: change(:, :)
+      real(wp), intent(out), contiguous :: change(:, :)  !! Change of N1, N2 and T: (3, n_joint)
       integer :: i, j
 
       do j = 1, size(faces, 2)

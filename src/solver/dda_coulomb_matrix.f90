@@ -70,13 +70,10 @@ contains
    !> Add the stiffness of a joint to the matrix
    pure subroutine add_stiffness(matrix, entry, joints, j, stiffness)
       type(block_matrix_t), intent(inout) :: matrix
-      !> Coupling of the joint, or 0
-      integer, intent(in) :: entry
+      integer, intent(in) :: entry             !! Coupling of the joint, or 0
       type(coulomb_joints_t), intent(in) :: joints
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> Rows N1, N2, T; columns opening 1, opening 2, slip
-      real(wp), intent(in) :: stiffness(3, 3)
+      integer, intent(in) :: j                 !! Number of the joint
+      real(wp), intent(in) :: stiffness(3, 3)  !! Rows N1, N2, T; columns opening 1, opening 2, slip
       integer :: b, one, other
 
       associate (block => joints%graph%block(:, j), row => joints%graph%row(:, :, :, j))
@@ -102,14 +99,10 @@ contains
 
    !> sum = sum + left*middle*right'
    pure subroutine add_product(left, middle, right, sum)
-      !> Rows of the block that is pushed: (n_dof, 3)
-      real(wp), intent(in) :: left(:, :)
-      !> Stiffness of the joint
-      real(wp), intent(in) :: middle(3, 3)
-      !> Rows of the block that moves: (n_dof, 3)
-      real(wp), intent(in) :: right(:, :)
-      !> What is added to: (n_dof, n_dof)
-      real(wp), intent(inout) :: sum(:, :)
+      real(wp), intent(in) :: left(:, :)    !! Rows of the block that is pushed: (n_dof, 3)
+      real(wp), intent(in) :: middle(3, 3)  !! Stiffness of the joint
+      real(wp), intent(in) :: right(:, :)   !! Rows of the block that moves: (n_dof, 3)
+      real(wp), intent(inout) :: sum(:, :)  !! What is added to: (n_dof, n_dof)
       real(wp) :: force(3)
       integer :: c
 

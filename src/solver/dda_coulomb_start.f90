@@ -45,8 +45,7 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :)
       type(coulomb_state_t), intent(in) :: state
-      !> The displacement
-      real(wp), intent(out) :: largest
+      real(wp), intent(out) :: largest  !! The displacement
       real(wp) :: motion(size(load, 1), size(load, 2)), opening(3, size(state%slip))
 
       call use_faces(equations, joints, state%face, path_damping)
@@ -59,11 +58,9 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :)
-      !> Damping to begin with
-      real(wp), intent(in) :: first
+      real(wp), intent(in) :: first   !! Damping to begin with
       type(coulomb_state_t), intent(out) :: state
-      !> Whether its forces balance the load
-      logical, intent(out) :: stands
+      logical, intent(out) :: stands  !! Whether its forces balance the load
       integer, parameter :: most_passes = 12
       real(wp), parameter :: least = 1.0e-13_wp
       type(coulomb_state_t) :: unloaded
@@ -153,14 +150,11 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :), damping
-      !> Tolerance of the interior springs
-      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: tolerance                 !! Tolerance of the interior springs
       type(coulomb_state_t), intent(in) :: unloaded
-      !> The iterate, from which it goes on
-      type(coulomb_interior_t), intent(inout) :: inner
+      type(coulomb_interior_t), intent(inout) :: inner  !! The iterate, from which it goes on
       type(coulomb_state_t), intent(inout) :: state
-      !> Whether the interior springs have settled
-      logical, intent(out) :: settled
+      logical, intent(out) :: settled                   !! Whether the interior springs have settled
       real(wp) :: opening(3, size(unloaded%slip))
 
       equations%usable = .false.

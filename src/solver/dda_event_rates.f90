@@ -75,22 +75,17 @@ module dda_event_rates
       pure module subroutine follow_law(joints, law, opening, faces)
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
-         !> Rates of opening 1, opening 2, slip: (3, n_joint)
-         real(wp), intent(in) :: opening(:, :)
-         !> What they do: (3, n_joint)
-         integer, intent(out) :: faces(:, :)
+         real(wp), intent(in) :: opening(:, :)  !! Rates of opening 1, opening 2, slip: (3, n_joint)
+         integer, intent(out) :: faces(:, :)    !! What they do: (3, n_joint)
       end subroutine follow_law
 
       !> The first bend of the law on a line of rates of opening: without a joint if there is none
       pure type(break_t) module function next_break(joints, law, faces, opening, change)
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
-         !> What the joints do: (3, n_joint)
-         integer, intent(in) :: faces(:, :)
-         !> Where the line begins: (3, n_joint)
-         real(wp), intent(in) :: opening(:, :)
-         !> Where it leads: (3, n_joint)
-         real(wp), intent(in) :: change(:, :)
+         integer, intent(in) :: faces(:, :)     !! What the joints do: (3, n_joint)
+         real(wp), intent(in) :: opening(:, :)  !! Where the line begins: (3, n_joint)
+         real(wp), intent(in) :: change(:, :)   !! Where it leads: (3, n_joint)
       end function next_break
 
       !> How fast what decides a bend rises along a line
@@ -98,8 +93,7 @@ module dda_event_rates
          type(coulomb_joints_t), intent(in) :: joints
          type(break_t), intent(in) :: break
          integer, intent(in) :: faces(:, :)
-         !> Where the line leads: (3, n_joint)
-         real(wp), intent(in) :: change(:, :)
+         real(wp), intent(in) :: change(:, :)  !! Where the line leads: (3, n_joint)
       end function break_rate
 
       !> Faces of a joint beyond a bend
@@ -172,8 +166,7 @@ contains
    !> load it is, and stays unbalanced
    pure subroutine undamp_rates(joints, equations, load_rate, rates)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations, those of the rates
-      type(coulomb_equations_t), intent(inout) :: equations
+      type(coulomb_equations_t), intent(inout) :: equations  !! Their equations, those of the rates
       real(wp), intent(in), contiguous :: load_rate(:, :)
       type(rates_t), intent(inout) :: rates
       integer, parameter :: max_turn = 40
@@ -217,14 +210,10 @@ contains
    !> A load with the forces that prescribed openings make
    pure subroutine add_drive(joints, faces, opening, load, driven)
       type(coulomb_joints_t), intent(in) :: joints
-      !> What corners and joints do: (3, n_joint)
-      integer, intent(in), contiguous :: faces(:, :)
-      !> The openings: (3, n_joint)
-      real(wp), intent(in), contiguous :: opening(:, :)
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Both: (n_dof, n_block)
-      real(wp), intent(out), contiguous :: driven(:, :)
+      integer, intent(in), contiguous :: faces(:, :)     !! What corners and joints do: (3, n_joint)
+      real(wp), intent(in), contiguous :: opening(:, :)  !! The openings: (3, n_joint)
+      real(wp), intent(in) :: load(:, :)                 !! The load: (n_dof, n_block)
+      real(wp), intent(out), contiguous :: driven(:, :)  !! Both: (n_dof, n_block)
       real(wp) :: force(3, size(opening, 2))
 
       driven = load

@@ -17,8 +17,7 @@ module dda_extended_factor
 
    !> The factor; its plan is that of the factor in working precision
    type :: extended_factor_t
-      !> The numbers
-      type(panels_t) :: panels
+      type(panels_t) :: panels  !! The numbers
    end type extended_factor_t
 
    !> Assemble springs along all rays and masses, and factor

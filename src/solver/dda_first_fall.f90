@@ -81,8 +81,7 @@ contains
    !> The state of joints with given forces; what is next to nothing is nothing
    pure subroutine begin_at(joints, force, state)
       type(coulomb_joints_t), intent(in) :: joints
-      !> N1, N2, T of each: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: force(:, :)  !! N1, N2, T of each: (3, n_joint)
       type(coulomb_state_t), intent(out) :: state
       real(wp) :: bound, least
       integer :: j
@@ -103,16 +102,11 @@ contains
    !> Accelerations, the largest one
    pure subroutine find_first_motion(graph, load, motion, force, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> Accelerations: (n_dof, n_block)
-      real(wp), intent(out) :: motion(:, :)
-      !> N1, N2, T of each joint: (3, n_joint) [N/m]
-      real(wp), intent(out) :: force(:, :)
-      !> Whether they were found
-      logical, intent(out) :: found
-      !> Factorisations
-      integer, intent(out) :: n_factorisation
+      real(wp), intent(in) :: load(:, :)       !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(out) :: motion(:, :)    !! Accelerations: (n_dof, n_block)
+      real(wp), intent(out) :: force(:, :)     !! N1, N2, T of each joint: (3, n_joint) [N/m]
+      logical, intent(out) :: found            !! Whether they were found
+      integer, intent(out) :: n_factorisation  !! Factorisations
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(load_path_t) :: path

@@ -63,8 +63,7 @@ contains
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
-      !> Aim in, direction out
-      type(turn_t), intent(inout) :: turn
+      type(turn_t), intent(inout) :: turn  !! Aim in, direction out
 
       turn%left = huge(turn%left)
       if (springs%usable) call find_direction(rays, path, point, turn%accepted, springs, turn)
@@ -94,8 +93,7 @@ contains
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
-      !> Imbalance that needs no correction
-      real(wp), intent(in) :: enough
+      real(wp), intent(in) :: enough  !! Imbalance that needs no correction
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
@@ -135,8 +133,7 @@ contains
    pure subroutine see_rest(rays, path, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> The direction; receives the rest
-      type(turn_t), intent(inout) :: turn
+      type(turn_t), intent(inout) :: turn  !! The direction; receives the rest
 
       turn%rest = -turn%lack + turn%dfactor*path%live - path%mass*turn%dv
       call add_ray_forces(rays, turn%dx, turn%rest)

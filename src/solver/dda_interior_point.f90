@@ -43,8 +43,7 @@ contains
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
-      !> Where the iteration begins
-      type(interior_point_t), intent(out) :: point
+      type(interior_point_t), intent(out) :: point  !! Where the iteration begins
       real(wp) :: product, power
 
       allocate (point%x, point%s, mold=rays%bounded)
@@ -74,10 +73,8 @@ contains
    !> Forces that carry the dead load inside their bounds, and rates that share a power equally
    pure subroutine start_by_forces(rays, power, point)
       type(joint_rays_t), intent(in) :: rays
-      !> Power of all forces: the gap to begin with
-      real(wp), intent(in) :: power
-      !> Has the forces; receives the rest
-      type(interior_point_t), intent(inout) :: point
+      real(wp), intent(in) :: power                   !! Power of all forces: the gap to begin with
+      type(interior_point_t), intent(inout) :: point  !! Has the forces; receives the rest
 
       point = interior_point_t(x=point%x)
       point%s = power*rays%bounded/(real(max(1, rays%n_bounded), wp) &
@@ -91,8 +88,7 @@ contains
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
-      !> Where it begins and ends
-      type(interior_point_t), intent(inout) :: point
+      type(interior_point_t), intent(inout) :: point  !! Where it begins and ends
       type(interior_point_t) :: best
       type(turn_t) :: turn
       integer :: idle
@@ -147,8 +143,7 @@ contains
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(turn_t), intent(in) :: turn
-      !> Turns without progress
-      integer, intent(in) :: idle
+      integer, intent(in) :: idle  !! Turns without progress
       type(interior_point_t), intent(inout) :: point
       real(wp) :: live
 

@@ -15,18 +15,12 @@ module dda_interior_state
 
    !> How the iteration has ended
    type :: interior_state_enum
-      !> Not yet
-      integer :: running = 0
-      !> Forces and velocities agree to the tolerance
-      integer :: optimal = 1
-      !> Forces that balance at the target
-      integer :: reached = 2
-      !> Velocities that no forces balance at the target
-      integer :: blocked = 3
-      !> No more progress
-      integer :: stalled = 4
-      !> The factor grows without bound
-      integer :: unbounded = 5
+      integer :: running = 0    !! Not yet
+      integer :: optimal = 1    !! Forces and velocities agree to the tolerance
+      integer :: reached = 2    !! Forces that balance at the target
+      integer :: blocked = 3    !! Velocities that no forces balance at the target
+      integer :: stalled = 4    !! No more progress
+      integer :: unbounded = 5  !! The factor grows without bound
    end type interior_state_enum
 
    !> Names of these ends
@@ -113,8 +107,7 @@ contains
 
    !> Sum of all forces and moments, the same whichever way the axes point
    pure real(wp) function size_of_load(load) result(size)
-      !> The load: (3, 0:n_block)
-      real(wp), intent(in) :: load(:, 0:)
+      real(wp), intent(in) :: load(:, 0:)  !! The load: (3, 0:n_block)
 
       size = sum(hypot(load(1, :), load(2, :))) + sum(abs(load(3, :)))
    end function size_of_load

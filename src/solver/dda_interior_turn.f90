@@ -57,8 +57,7 @@ contains
    pure subroutine see_residuals(rays, path, point, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> The point; receives the figures
-      type(interior_point_t), intent(inout) :: point
+      type(interior_point_t), intent(inout) :: point  !! The point; receives the figures
       type(turn_t), intent(inout) :: turn
       real(wp) :: against, power
 
@@ -94,8 +93,7 @@ contains
    pure real(wp) function power_against(rays, point, rate) result(power)
       type(joint_rays_t), intent(in) :: rays
       type(interior_point_t), intent(in) :: point
-      !> Rates along the rays: (n_side, n_joint)
-      real(wp), intent(in) :: rate(:, :)
+      real(wp), intent(in) :: rate(:, :)  !! Rates along the rays: (n_side, n_joint)
       real(wp) :: rounding
       integer :: j
 
@@ -151,8 +149,7 @@ contains
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
-      !> Predictor in, direction out
-      type(turn_t), intent(inout) :: turn
+      type(turn_t), intent(inout) :: turn  !! Predictor in, direction out
       real(wp) :: reach(2), before(2), further(2), product
       real(wp) :: change(size(point%x, 1), size(point%x, 2))
       integer :: i
@@ -183,8 +180,7 @@ contains
       type(interior_goal_t), intent(in) :: goal
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
-      !> Steps along it
-      real(wp), intent(in) :: reach(2)
+      real(wp), intent(in) :: reach(2)  !! Steps along it
       real(wp) :: after, centring
 
       ! where every force may have any sign there is nothing to aim at
@@ -203,8 +199,7 @@ contains
    pure subroutine add_correction(rays, path, change, springs, point, turn, reach)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> Change of x that is aimed at: (n_side, n_joint)
-      real(wp), intent(in) :: change(:, :)
+      real(wp), intent(in) :: change(:, :)  !! Change of x that is aimed at: (n_side, n_joint)
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
@@ -239,10 +234,8 @@ contains
    !> turn changed is taken
    pure function steps_of_shares(turn, dx, ds) result(steps)
       type(turn_t), intent(in) :: turn
-      !> The direction before: (n_side, n_joint)
-      real(wp), intent(in) :: dx(:, :), ds(:, :)
-      !> Steps of forces and of rates: (2, n_share)
-      real(wp) :: steps(2, n_share)
+      real(wp), intent(in) :: dx(:, :), ds(:, :)  !! The direction before: (n_side, n_joint)
+      real(wp) :: steps(2, n_share)               !! Steps of forces and of rates: (2, n_share)
       real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
       integer :: i, j
 
@@ -263,8 +256,7 @@ contains
    !> their bounds
    pure function longest_steps(turn) result(reach)
       type(turn_t), intent(in) :: turn
-      !> Steps
-      real(wp) :: reach(2)
+      real(wp) :: reach(2)  !! Steps
       real(wp) :: hurry(n_side, 2)
       integer :: j
 

@@ -58,13 +58,10 @@ contains
    !> Add tangents where forces lie beyond the parabolas
    pure subroutine touch_parabola(graph, force, most, layers, touched)
       type(joint_graph_t), intent(in) :: graph
-      !> N1, N2, T of each: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> How far beyond they may lie [N/m]
-      real(wp), intent(in) :: most
+      real(wp), intent(in) :: force(:, :)  !! N1, N2, T of each: (3, n_joint) [N/m]
+      real(wp), intent(in) :: most         !! How far beyond they may lie [N/m]
       type(joint_layers_t), intent(inout) :: layers
-      !> Whether there are new ones
-      logical, intent(out) :: touched
+      logical, intent(out) :: touched      !! Whether there are new ones
       real(wp) :: share
       integer :: j, side
 
@@ -95,12 +92,9 @@ contains
 
    !> Add a tangent
    pure subroutine add_tangent(joint, side, share, layers)
-      !> The joint
-      integer, intent(in) :: joint
-      !> Its corner that presses more, 1 or 2
-      integer, intent(in) :: side
-      !> Normal force where it touches, over the strength
-      real(wp), intent(in) :: share
+      integer, intent(in) :: joint   !! The joint
+      integer, intent(in) :: side    !! Its corner that presses more, 1 or 2
+      real(wp), intent(in) :: share  !! Normal force where it touches, over the strength
       type(joint_layers_t), intent(inout) :: layers
 
       layers%joint = [layers%joint, joint]

@@ -71,16 +71,11 @@ contains
 
    !> The rays of one joint
    pure subroutine span_joint(kind, friction, force, bounded, free)
-      !> What it can carry, one of joint_kind
-      integer, intent(in) :: kind
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
-      !> N1, N2, T of each ray: (3, n_side)
-      real(wp), intent(out) :: force(:, :)
-      !> One where the factor may not be negative: (n_side)
-      real(wp), intent(out) :: bounded(:)
-      !> One where it may have any sign: (n_side)
-      real(wp), intent(out) :: free(:)
+      integer, intent(in) :: kind           !! What it can carry, one of joint_kind
+      real(wp), intent(in) :: friction      !! Coefficient of friction
+      real(wp), intent(out) :: force(:, :)  !! N1, N2, T of each ray: (3, n_side)
+      real(wp), intent(out) :: bounded(:)   !! One where the factor may not be negative: (n_side)
+      real(wp), intent(out) :: free(:)      !! One where it may have any sign: (n_side)
       real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
       real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -141,10 +136,8 @@ contains
    !> Rate at which motion opens the joints along each ray
    pure subroutine ray_rates(rays, v, rate)
       type(joint_rays_t), intent(in) :: rays
-      !> Motion: (3, 0:n_block)
-      real(wp), intent(in) :: v(:, 0:)
-      !> Rates: (n_side, n_joint)
-      real(wp), intent(out), contiguous :: rate(:, :)
+      real(wp), intent(in) :: v(:, 0:)                 !! Motion: (3, 0:n_block)
+      real(wp), intent(out), contiguous :: rate(:, :)  !! Rates: (n_side, n_joint)
       real(wp) :: p(3), q(3)
       integer :: i, j
 
@@ -185,11 +178,9 @@ contains
    !> Forces of the joints from the factors of their rays
    pure subroutine forces_of_rays(graph, x, unit, force)
       type(joint_graph_t), intent(in) :: graph
-      !> Their factors: (n_side, n_joint)
-      real(wp), intent(in) :: x(:, :)
+      real(wp), intent(in) :: x(:, :)       !! Their factors: (n_side, n_joint)
       real(wp), intent(in) :: unit
-      !> N1, N2, T: (3, n_joint) [N/m]
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(out) :: force(:, :)  !! N1, N2, T: (3, n_joint) [N/m]
       real(wp) :: ray(3, n_side), bounded(n_side), free(n_side)
       integer :: j
 

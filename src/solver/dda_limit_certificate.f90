@@ -56,8 +56,7 @@ contains
    !> Factor at which the loads have no power on a mechanism: above it they drive it
    pure real(wp) function stopping_factor(dead, live, velocity) result(factor)
       real(wp), intent(in) :: dead(:, :), live(:, :)
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp) :: power
 
       power = sum(live(1:3, :)*velocity(1:3, :))
@@ -148,8 +147,7 @@ contains
    !> Whether a joint has a strength
    pure logical function is_crushed(graph, joint)
       type(joint_graph_t), intent(in) :: graph
-      !> Number of the joint
-      integer, intent(in) :: joint
+      integer, intent(in) :: joint  !! Number of the joint
 
       is_crushed = allocated(graph%crush)
       if (is_crushed) is_crushed = graph%crush(joint) < huge(1.0_wp)
@@ -194,12 +192,9 @@ contains
 
    !> How far the forces of one joint lie beyond its law [N/m]
    pure real(wp) function beyond_law(kind, friction, force) result(beyond)
-      !> What it can carry, one of joint_kind
-      integer, intent(in) :: kind
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
-      !> N1, N2, T: (3)
-      real(wp), intent(in) :: force(3)
+      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      real(wp), intent(in) :: friction  !! Coefficient of friction
+      real(wp), intent(in) :: force(3)  !! N1, N2, T: (3)
 
       beyond = 0.0_wp
       associate (n1 => force(1), n2 => force(2), t => abs(force(3)))
@@ -251,8 +246,7 @@ contains
    pure real(wp) function beyond_flow(kind, friction, rate) result(beyond)
       integer, intent(in) :: kind
       real(wp), intent(in) :: friction
-      !> Opening 1, opening 2, slip: (3)
-      real(wp), intent(in) :: rate(3)
+      real(wp), intent(in) :: rate(3)  !! Opening 1, opening 2, slip: (3)
 
       beyond = 0.0_wp
       associate (o1 => rate(1), o2 => rate(2), slip => abs(rate(3)))

@@ -26,12 +26,9 @@ module dda_limit_decision
 
    !> Whether a load can be carried
    type :: load_state_enum
-      !> Neither is proven
-      integer :: undecided = 0
-      !> There are forces that balance it and keep the law of each joint
-      integer :: stands = 1
-      !> There is a mechanism on which it has power
-      integer :: falls = 2
+      integer :: undecided = 0  !! Neither is proven
+      integer :: stands = 1     !! There are forces that balance it and keep the law of each joint
+      integer :: falls = 2      !! There is a mechanism on which it has power
    end type load_state_enum
 
    !> Names of these states
@@ -76,8 +73,7 @@ contains
    !> Whether a load can be carried
    pure subroutine decide_load(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)  !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
       type(load_decision_t), intent(out) :: decision
 
       if (crushes(graph)) then
@@ -91,8 +87,7 @@ contains
    !> keep them, or none reach the load
    pure subroutine decide_crushing(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       type(load_decision_t), intent(out) :: decision
       type(joint_graph_t) :: layered
       type(joint_layers_t) :: layers
@@ -222,10 +217,8 @@ contains
 
    !> Whether a load has more power on a motion than rounded coordinates make
    pure logical function drives(load, velocity)
-      !> Loads: (:, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Velocities: (:, n_block)
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: load(:, :)      !! Loads: (:, n_block)
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (:, n_block)
 
       drives = sum(load*velocity) > rounding*sum(norm2(load(1:2, :), dim=1) &
          & *norm2(velocity(1:2, :), dim=1))
@@ -235,8 +228,7 @@ contains
    !> rounding
    pure logical function is_free(rays, velocity)
       type(joint_rays_t), intent(in) :: rays
-      !> Velocities of the blocks: (3, 0:n_block)
-      real(wp), intent(in) :: velocity(:, 0:)
+      real(wp), intent(in) :: velocity(:, 0:)  !! Velocities of the blocks: (3, 0:n_block)
       real(wp) :: rate(n_side, size(rays%block, 2))
 
       call ray_rates(rays, velocity, rate)
@@ -247,8 +239,7 @@ contains
    pure subroutine begin_inside(rays, load, point)
       type(joint_rays_t), intent(in) :: rays
       real(wp), intent(in) :: load(:, 0:)
-      !> Has these forces
-      type(interior_point_t), intent(out) :: point
+      type(interior_point_t), intent(out) :: point  !! Has these forces
 
       point%x = max(1.0_wp, sqrt(size_of_load(load)))*rays%bounded
    end subroutine begin_inside
@@ -303,10 +294,8 @@ contains
    !> Velocities in the user's units, the largest one
    pure subroutine keep_velocities(rays, v, velocity)
       type(joint_rays_t), intent(in) :: rays
-      !> In the units of the rays: (3, 0:n_block)
-      real(wp), intent(in) :: v(:, 0:)
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
-      real(wp), intent(out) :: velocity(:, :)
+      real(wp), intent(in) :: v(:, 0:)         !! In the units of the rays: (3, 0:n_block)
+      real(wp), intent(out) :: velocity(:, :)  !! Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp) :: largest
 
       largest = max(maxval(abs(v)), tiny(largest))
@@ -318,8 +307,7 @@ contains
    !> What the end of a path to a load at factor one proves; forces that reach it but for rounding
    !> carry it
    pure integer function state_at_end(point) result(state)
-      !> Where the path has ended
-      type(interior_point_t), intent(in) :: point
+      type(interior_point_t), intent(in) :: point  !! Where the path has ended
 
       state = load_state%undecided
       if (point%state == interior_state%reached) then

@@ -43,14 +43,10 @@ module dda_limit_load
 
    !> How a search for a limit load has ended
    type :: limit_state_enum
-      !> The two factors do not agree to the tolerance
-      integer :: not_converged = 0
-      !> They do
-      integer :: found = 1
-      !> The dead load alone falls
-      integer :: no_dead_equilibrium = 2
-      !> The live load alone is carried at any factor
-      integer :: unbounded = 3
+      integer :: not_converged = 0        !! The two factors do not agree to the tolerance
+      integer :: found = 1                !! They do
+      integer :: no_dead_equilibrium = 2  !! The dead load alone falls
+      integer :: unbounded = 3            !! The live load alone is carried at any factor
    end type limit_state_enum
 
    !> Names of these ends
@@ -153,13 +149,10 @@ contains
    !> keep them
    pure subroutine limit_crushing(graph, dead, live, tolerance, decided, limit)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: live(:, :)
+      real(wp), intent(in) :: dead(:, :)  !! Loads at factor zero: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: live(:, :)  !! What a factor of one adds: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: tolerance
-      !> Whether the dead load is taken to stand
-      logical, intent(in) :: decided
+      logical, intent(in) :: decided      !! Whether the dead load is taken to stand
       type(limit_load_t), intent(out) :: limit
       type(load_decision_t) :: decision
       type(joint_layers_t) :: layers
@@ -327,8 +320,7 @@ contains
    pure subroutine certify(graph, dead, live, limit)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :), live(:, :)
-      !> State, forces and velocities in, the rest out
-      type(limit_load_t), intent(inout) :: limit
+      type(limit_load_t), intent(inout) :: limit  !! State, forces and velocities in, the rest out
       real(wp) :: rounding
 
       select case (limit%state)

@@ -135,8 +135,7 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load_rate(:, :), opening_rate(:, :)
-      !> By how much
-      real(wp), intent(in) :: more
+      real(wp), intent(in) :: more  !! By how much
       type(coulomb_state_t), intent(in) :: state
       type(jump_t), intent(inout) :: jump
       type(coulomb_state_t), intent(out) :: moved
@@ -214,8 +213,7 @@ contains
    !> that they leave of the load are the same but for a factor
    pure real(wp) function stride(joints, rest, rates)
       type(coulomb_joints_t), intent(in) :: joints
-      !> What the forces leave of the load: (n_dof, n_block)
-      real(wp), intent(in) :: rest(:, :)
+      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (n_dof, n_block)
       type(rates_t), intent(in) :: rates
       real(wp), parameter :: bend = 0.3_wp
       real(wp) :: change(size(rest, 1), size(rest, 2)), share, largest
@@ -235,11 +233,9 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: rest(:, :)
-      !> Motion where it began: (n_dof, n_block)
-      real(wp), intent(in) :: start(:, :)
+      real(wp), intent(in) :: start(:, :)  !! Motion where it began: (n_dof, n_block)
       type(coulomb_state_t), intent(in) :: state
-      !> A motion beyond this is far
-      real(wp), intent(in) :: far
+      real(wp), intent(in) :: far          !! A motion beyond this is far
       type(jump_t), intent(inout) :: jump
       integer, intent(out) :: end
       type(rates_t) :: rates

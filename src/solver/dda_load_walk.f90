@@ -73,12 +73,9 @@ contains
 
    !> Whether a correction carries the forces to a load
    pure subroutine try_correction(scaled, walk, carried)
-      !> The load in the units of the rays: (3, 0:n_block)
-      real(wp), intent(in) :: scaled(:, 0:)
-      !> The walk, whose springs are those of its forces
-      type(load_walk_t), intent(inout) :: walk
-      !> Whether forces inside all bounds balance the load
-      logical, intent(out) :: carried
+      real(wp), intent(in) :: scaled(:, 0:)     !! The load in the units of the rays: (3, 0:n_block)
+      type(load_walk_t), intent(inout) :: walk  !! The walk, whose springs are those of its forces
+      logical, intent(out) :: carried           !! Whether forces inside all bounds balance the load
       real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
       real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
       integer :: turn
@@ -101,10 +98,8 @@ contains
    !> Draw the forces away from their bounds, and factor the springs that tell how far they are from
    !> them. Forces that hold one another could grow without end: none is drawn beyond a size
    pure subroutine centre(n_step, largest, walk)
-      !> Steps
-      integer, intent(in) :: n_step
-      !> The size
-      real(wp), intent(in) :: largest
+      integer, intent(in) :: n_step    !! Steps
+      real(wp), intent(in) :: largest  !! The size
       type(load_walk_t), intent(inout) :: walk
       real(wp) :: motion(3, 0:walk%graph%n_block), push(3, 0:walk%graph%n_block)
       real(wp) :: rate(n_side, size(walk%x, 2)), change(n_side, size(walk%x, 2))

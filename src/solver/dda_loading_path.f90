@@ -30,16 +30,11 @@ module dda_loading_path
 
    !> What proves a collapse, or prevents a decision
    type :: path_reason_enum
-      !> The end was reached
-      integer :: none = 0
-      !> A motion that nothing stops and that the load drives
-      integer :: mechanism = 1
-      !> A motion ten thousand times as large as the dead load's
-      integer :: far_motion = 2
-      !> A motion at a fixed load did not settle
-      integer :: unsettled_motion = 3
-      !> Too many events
-      integer :: too_many = 4
+      integer :: none = 0              !! The end was reached
+      integer :: mechanism = 1         !! A motion that nothing stops and that the load drives
+      integer :: far_motion = 2        !! A motion ten thousand times as large as the dead load's
+      integer :: unsettled_motion = 3  !! A motion at a fixed load did not settle
+      integer :: too_many = 4          !! Too many events
    end type path_reason_enum
 
    !> Names of the reasons
@@ -112,13 +107,10 @@ module dda_loading_path
       pure module subroutine load_at_once(joints, equations, load, state, jump, end)
          type(coulomb_joints_t), intent(in) :: joints
          type(coulomb_equations_t), intent(inout) :: equations
-         !> The load: (n_dof, n_block)
-         real(wp), intent(in) :: load(:, :)
+         real(wp), intent(in) :: load(:, :)   !! The load: (n_dof, n_block)
          type(coulomb_state_t), intent(out) :: state
-         !> What a motion tells, where one was needed
-         type(jump_t), intent(inout) :: jump
-         !> How it ends, one of motion_end
-         integer, intent(out) :: end
+         type(jump_t), intent(inout) :: jump  !! What a motion tells, where one was needed
+         integer, intent(out) :: end          !! How it ends, one of motion_end
       end subroutine load_at_once
 
    end interface
@@ -217,8 +209,7 @@ contains
 
    !> Numbers without their last digits, which rounding sets: ways to different ends are one way
    elemental real(wp) function plain(x)
-      !> A number of at most one
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! A number of at most one
 
       plain = anint(x*2.0_wp**40)*2.0_wp**(-40)
    end function plain
@@ -301,8 +292,7 @@ contains
 
    !> What a fall, or a motion that did not settle, means for a path
    pure subroutine note_fall(end, jump, result)
-      !> How the motion ended
-      integer, intent(in) :: end
+      integer, intent(in) :: end  !! How the motion ended
       type(jump_t), intent(in) :: jump
       type(path_result_t), intent(inout) :: result
 

@@ -12,16 +12,11 @@ module dda_path_event
 
    !> What can happen to a joint
    type :: event_kind_enum
-      !> Nothing
-      integer :: none = 0
-      !> A corner no longer pushes
-      integer :: opens = 1
-      !> A gap closes
-      integer :: closes = 2
-      !> The joint begins to slide against a positive shear force
-      integer :: slides = 3
-      !> The joint begins to slide against a negative shear force
-      integer :: slides_back = 4
+      integer :: none = 0         !! Nothing
+      integer :: opens = 1        !! A corner no longer pushes
+      integer :: closes = 2       !! A gap closes
+      integer :: slides = 3       !! The joint begins to slide against a positive shear force
+      integer :: slides_back = 4  !! The joint begins to slide against a negative shear force
    end type event_kind_enum
 
    !> Names of what can happen
@@ -29,24 +24,17 @@ module dda_path_event
 
    !> The next change of a joint
    type :: event_t
-      !> How far off it is
-      real(wp) :: distance = 0.0_wp
-      !> What happens
-      integer :: kind = 0
-      !> To which joint
-      integer :: joint = 0
-      !> At which corner, where one opens or closes
-      integer :: corner = 0
+      real(wp) :: distance = 0.0_wp  !! How far off it is
+      integer :: kind = 0            !! What happens
+      integer :: joint = 0           !! To which joint
+      integer :: corner = 0          !! At which corner, where one opens or closes
    end type event_t
 
    !> How a path ends
    type :: path_end_enum
-      !> It is not known whether the assembly stands
-      integer :: undecided = 0
-      !> The end was reached, forces balance
-      integer :: reached = 1
-      !> The assembly falls
-      integer :: collapsed = 2
+      integer :: undecided = 0  !! It is not known whether the assembly stands
+      integer :: reached = 1    !! The end was reached, forces balance
+      integer :: collapsed = 2  !! The assembly falls
    end type path_end_enum
 
    !> Names of the ends of a path
@@ -70,11 +58,9 @@ contains
    !> The next event, or none within a distance: its distance is the longest one if there is none
    pure type(event_t) function next_event(joints, state, rates, longest) result(event)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Where the assembly is
-      type(coulomb_state_t), intent(in) :: state
+      type(coulomb_state_t), intent(in) :: state  !! Where the assembly is
       type(rates_t), intent(in) :: rates
-      !> Distance within which an event counts
-      real(wp), intent(in) :: longest
+      real(wp), intent(in) :: longest             !! Distance within which an event counts
       real(wp) :: bound(2)
       integer :: i, j
 
@@ -101,16 +87,11 @@ contains
 
    !> Take an event that comes before the others: something positive falls to zero
    pure subroutine meet(rest, rate, kind, joint, corner, event)
-      !> What falls
-      real(wp), intent(in) :: rest
-      !> Its rate
-      real(wp), intent(in) :: rate
-      !> What happens at zero
-      integer, intent(in) :: kind
-      !> Number of the joint
-      integer, intent(in) :: joint
-      !> Corner of the joint, or 0
-      integer, intent(in) :: corner
+      real(wp), intent(in) :: rest   !! What falls
+      real(wp), intent(in) :: rate   !! Its rate
+      integer, intent(in) :: kind    !! What happens at zero
+      integer, intent(in) :: joint   !! Number of the joint
+      integer, intent(in) :: corner  !! Corner of the joint, or 0
       type(event_t), intent(inout) :: event
 
       if (.not. (rate < 0.0_wp .and. rest > 0.0_wp)) return
@@ -120,10 +101,8 @@ contains
    !> Move a state on to its next event and let that happen
    pure subroutine move_on(joints, rates, event, state)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Rates of the state
-      type(rates_t), intent(in) :: rates
-      !> The event, or the end of the way
-      type(event_t), intent(in) :: event
+      type(rates_t), intent(in) :: rates  !! Rates of the state
+      type(event_t), intent(in) :: event  !! The event, or the end of the way
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: shear
       integer :: i, j
@@ -170,12 +149,9 @@ contains
    !> Set the shear force of a joint as what it does allows
    pure subroutine take_shear(joints, j, does, trial, state)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> What it does along itself
-      integer, intent(in) :: does
-      !> The force if it sticks
-      real(wp), intent(in) :: trial
+      integer, intent(in) :: j       !! Number of the joint
+      integer, intent(in) :: does    !! What it does along itself
+      real(wp), intent(in) :: trial  !! The force if it sticks
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: bound
 

@@ -104,16 +104,11 @@ contains
    !> Take a bend that comes before the others: what is positive in one piece and negative in the
    !> other falls or rises to zero
    pure subroutine meet(positive, value, rate, joint, part, first)
-      !> Whether it is the piece where the value is positive
-      logical, intent(in) :: positive
-      !> The value; on the wrong side by rounding alone
-      real(wp), intent(in) :: value
-      !> Its rate
-      real(wp), intent(in) :: rate
-      !> Number of the joint
-      integer, intent(in) :: joint
-      !> Part of the joint
-      integer, intent(in) :: part
+      logical, intent(in) :: positive  !! Whether it is the piece where the value is positive
+      real(wp), intent(in) :: value    !! The value; on the wrong side by rounding alone
+      real(wp), intent(in) :: rate     !! Its rate
+      integer, intent(in) :: joint     !! Number of the joint
+      integer, intent(in) :: part      !! Part of the joint
       type(break_t), intent(inout) :: first
       real(wp) :: distance
 

@@ -21,12 +21,9 @@ module dda_ray_matrix
 
    !> The numbers of a factor
    type :: digits_enum
-      !> In working precision
-      integer :: working = 0
-      !> With some more digits
-      integer :: extended = 1
-      !> With twice the digits
-      integer :: wide = 2
+      integer :: working = 0   !! In working precision
+      integer :: extended = 1  !! With some more digits
+      integer :: wide = 2      !! With twice the digits
    end type digits_enum
 
    !> Names of these numbers
@@ -62,8 +59,7 @@ contains
    !> Pattern of the matrix and of its factor
    pure subroutine plan_matrix(rays, springs)
       type(joint_rays_t), intent(in) :: rays
-      !> The matrix, without numbers
-      type(ray_matrix_t), intent(out) :: springs
+      type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
       integer :: j, n, pair(2, size(rays%block, 2))
 
       allocate (springs%entry(size(rays%block, 2)), springs%second_is_row(size(rays%block, 2)))
@@ -120,8 +116,7 @@ contains
    pure subroutine add_digits(rays, mass, digits, springs)
       type(joint_rays_t), intent(in) :: rays
       real(wp), intent(in) :: mass(:, 0:)
-      !> One of digits_of
-      integer, intent(in) :: digits
+      integer, intent(in) :: digits  !! One of digits_of
       type(ray_matrix_t), intent(inout) :: springs
       logical :: usable
 
@@ -173,12 +168,9 @@ contains
 
    !> sum = sum + a' b
    pure subroutine add_product(a, b, sum)
-      !> First factor, transposed
-      real(wp), intent(in) :: a(n_side, 3)
-      !> Second factor
-      real(wp), intent(in) :: b(n_side, 3)
-      !> What it is added to
-      real(wp), intent(inout) :: sum(3, 3)
+      real(wp), intent(in) :: a(n_side, 3)  !! First factor, transposed
+      real(wp), intent(in) :: b(n_side, 3)  !! Second factor
+      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
       integer :: c, r
 
       do c = 1, 3

@@ -18,8 +18,7 @@ module dda_wide_factor
 
    !> The factor; its plan is that of the factor in working precision
    type :: wide_factor_t
-      !> The numbers
-      type(panels_t) :: panels
+      type(panels_t) :: panels  !! The numbers
    end type wide_factor_t
 
    !> Assemble springs along all rays and masses, and factor

@@ -61,10 +61,8 @@ contains
    !> Take in new joints: lists, pattern, plan of the factor, springs
    pure subroutine new_springs(springs, n_dof, n_equation, equations)
       type(joint_springs_t), intent(in) :: springs
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> Number of movable blocks
-      integer, intent(in) :: n_equation
+      integer, intent(in) :: n_dof       !! Unknowns of one block
+      integer, intent(in) :: n_equation  !! Number of movable blocks
       type(equations_t), intent(inout) :: equations
 
       call list_joints(springs, n_dof, n_equation, equations)
@@ -249,11 +247,9 @@ contains
    !> Whether the matrix is that of a joint's face
    pure logical function holds(equations, cone, face, j)
       type(equations_t), intent(in) :: equations
-      !> Bounds of the joint's force
-      type(cone_t), intent(in) :: cone
+      type(cone_t), intent(in) :: cone  !! Bounds of the joint's force
       type(joint_face_t), intent(in) :: face
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: j          !! Number of the joint
 
       associate (held => equations%held(j))
          holds = face%slip == held%slip .and. (face%open(1) .eqv. held%open(1)) &
@@ -284,8 +280,7 @@ contains
    pure subroutine add_springs(springs, cone, e, equations)
       type(joint_springs_t), intent(in) :: springs
       type(cone_t), intent(in) :: cone(:)
-      !> Number of the equation
-      integer, intent(in) :: e
+      integer, intent(in) :: e  !! Number of the equation
       type(equations_t), intent(inout) :: equations
       integer :: first, j, k, last, side
 

@@ -35,8 +35,7 @@ contains
    pure function own_load(system, equations) result(own)
       type(block_system_t), intent(in) :: system
       type(equations_t), intent(in) :: equations
-      !> The loads: (n_equation) [N/m]
-      real(wp) :: own(size(equations%felt, 2))
+      real(wp) :: own(size(equations%felt, 2))  !! The loads: (n_equation) [N/m]
       integer :: b, e
 
       do b = 1, size(system%equation)
@@ -50,8 +49,7 @@ contains
    !> nothing of it
    pure logical function is_drowned(system, joint, springs, equations)
       type(block_system_t), intent(in) :: system
-      !> The joints, placed: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
+      type(joint_t), intent(in) :: joint(:)  !! The joints, placed: (n_joint)
       type(joint_springs_t), intent(in) :: springs
       type(equations_t), intent(in) :: equations
       real(wp) :: least, own(size(equations%felt, 2)), rounding
@@ -78,20 +76,17 @@ contains
    !> Radius of gyration of a block
    pure real(wp) function gyration(system, b)
       type(block_system_t), intent(in) :: system
-      !> Number of the block
-      integer, intent(in) :: b
+      integer, intent(in) :: b  !! Number of the block
 
       gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
    end function gyration
 
    !> Acceleration of a settled step, and how far it is from balance
    pure subroutine measure_balance(system, springs, equations, step)
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
+      type(block_system_t), intent(in) :: system   !! The blocks before the step
       type(joint_springs_t), intent(in) :: springs
       type(equations_t), intent(in) :: equations
-      !> The step; acceleration and residues are set
-      type(step_context_t), intent(inout) :: step
+      type(step_context_t), intent(inout) :: step  !! The step; acceleration and residues are set
       real(wp) :: around(size(equations%felt, 1), size(equations%felt, 2))
       real(wp) :: own(size(equations%felt, 2)), acceleration, mean, residue, whole
       integer :: b, e
@@ -122,10 +117,8 @@ contains
 
    !> Share of a whole that may be nothing
    elemental real(wp) function share_of(part, whole)
-      !> Its part
-      real(wp), intent(in) :: part
-      !> The whole
-      real(wp), intent(in) :: whole
+      real(wp), intent(in) :: part   !! Its part
+      real(wp), intent(in) :: whole  !! The whole
 
       share_of = 0.0_wp
       if (.not. part > 0.0_wp) return
@@ -186,14 +179,10 @@ contains
 
    !> Whether the acceleration of a block is more than the open-close loop may leave to a light one
    elemental logical function is_felt(mass, mean_mass, whole, acceleration)
-      !> Mass of the block [kg/m]
-      real(wp), intent(in) :: mass
-      !> Mean mass of all blocks [kg/m]
-      real(wp), intent(in) :: mean_mass
-      !> Sum of all loads [N/m]
-      real(wp), intent(in) :: whole
-      !> Acceleration of the block [m/s2]
-      real(wp), intent(in) :: acceleration
+      real(wp), intent(in) :: mass          !! Mass of the block [kg/m]
+      real(wp), intent(in) :: mean_mass     !! Mean mass of all blocks [kg/m]
+      real(wp), intent(in) :: whole         !! Sum of all loads [N/m]
+      real(wp), intent(in) :: acceleration  !! Acceleration of the block [m/s2]
 
       is_felt = mass >= light*mean_mass .or. mass*acceleration >= left_over*whole
    end function is_felt

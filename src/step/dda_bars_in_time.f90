@@ -42,8 +42,7 @@ contains
    !> The springs of the joints of a step and behind them some of nothing
    pure subroutine append_springs(contacts, more, springs)
       type(joint_springs_t), intent(in) :: contacts
-      !> Springs of all together
-      integer, intent(in) :: more
+      integer, intent(in) :: more  !! Springs of all together
       type(joint_springs_t), intent(out) :: springs
       integer :: n
 

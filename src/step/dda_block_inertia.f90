@@ -116,8 +116,7 @@ contains
    !> Energy of motion
    pure real(wp) function kinetic_energy(equations, velocity)
       type(equations_t), intent(in) :: equations
-      !> Velocities: (n_dof, n_equation)
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_equation)
       integer :: e
 
       kinetic_energy = 0.0_wp
@@ -158,10 +157,8 @@ contains
    !> Velocities as the equations have them
    pure function packed_velocity(system, n_dof) result(velocity)
       type(block_system_t), intent(in) :: system
-      !> Unknowns of a block
-      integer, intent(in) :: n_dof
-      !> The velocities: (n_dof, n_equation)
-      real(wp) :: velocity(n_dof, maxval(system%equation))
+      integer, intent(in) :: n_dof                          !! Unknowns of a block
+      real(wp) :: velocity(n_dof, maxval(system%equation))  !! The velocities: (n_dof, n_equation)
       integer :: b
 
       do b = 1, size(system%equation)
@@ -173,10 +170,8 @@ contains
    !> is that across the narrow side of the block: A D11/(rho S)
    pure function strain_follows(system, dt) result(follows)
       type(block_system_t), intent(in) :: system
-      !> Length of the longest step [s]
-      real(wp), intent(in) :: dt
-      !> The answer: (n_block)
-      logical :: follows(size(system%equation))
+      real(wp), intent(in) :: dt                 !! Length of the longest step [s]
+      logical :: follows(size(system%equation))  !! The answer: (n_block)
       real(wp) :: d(3, 3), narrow
       integer :: b
 

@@ -56,8 +56,7 @@ contains
    pure type(block_system_t) function displaced_blocks(system, settings, motion)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
       real(wp) :: of_block(6)
       integer :: b, e
 
@@ -74,12 +73,9 @@ contains
 
    !> Move one block by a finite motion
    pure subroutine move_block(block, motion, d, system)
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Its motion in the step; strain in fixed directions: (6)
-      real(wp), intent(in) :: motion(6)
-      !> Hooke's law: (3, 3) [Pa]
-      real(wp), intent(in) :: d(3, 3)
+      integer, intent(in) :: block       !! Number of the block
+      real(wp), intent(in) :: motion(6)  !! Its motion in the step; strain in fixed directions: (6)
+      real(wp), intent(in) :: d(3, 3)    !! Hooke's law: (3, 3) [Pa]
       type(block_system_t), intent(inout) :: system
       integer :: v
 
@@ -101,8 +97,7 @@ contains
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
       type(contacts_t), intent(inout) :: contacts
-      !> Whether a contact lost strength in this step
-      logical, intent(out) :: breaks
+      logical, intent(out) :: breaks  !! Whether a contact lost strength in this step
       real(wp) :: left(2)
       integer :: j
 
@@ -140,12 +135,9 @@ contains
 
    !> Share of strength that slip leaves
    elemental real(wp) function worn(intact, slip, slip_length)
-      !> Share that was left before
-      real(wp), intent(in) :: intact
-      !> The slip [m]
-      real(wp), intent(in) :: slip
-      !> Slip that takes all of it; 0 where any does [m]
-      real(wp), intent(in) :: slip_length
+      real(wp), intent(in) :: intact       !! Share that was left before
+      real(wp), intent(in) :: slip         !! The slip [m]
+      real(wp), intent(in) :: slip_length  !! Slip that takes all of it; 0 where any does [m]
 
       worn = 0.0_wp
       if (slip < intact*slip_length) worn = intact - slip/slip_length

@@ -30,8 +30,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: n_equation
       integer, intent(out) :: n
-      !> Number of each joint's group: (n_joint)
-      integer, intent(out) :: group(:)
+      integer, intent(out) :: group(:)  !! Number of each joint's group: (n_joint)
       integer :: root(n_equation), number(n_equation), pair(2), i, j
 
       root = [(i, i=1, n_equation)]
@@ -57,8 +56,7 @@ contains
 
       !> The block that stands for the group of a block
       pure integer function root_of(block)
-         !> The block
-         integer, intent(in) :: block
+         integer, intent(in) :: block  !! The block
 
          root_of = block
          do while (root(root_of) /= root_of)

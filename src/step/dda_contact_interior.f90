@@ -32,13 +32,10 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
          type(equations_t), intent(in) :: equations
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
-         !> The problem; the size of a force is given
-         type(problem_t), intent(inout) :: p
+         type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
          type(interior_t), intent(inout) :: x
-         !> Factorisations so far
-         integer, intent(inout) :: passes
-         !> Whether the faces agree
-         logical, intent(out) :: agreed
+         integer, intent(inout) :: passes     !! Factorisations so far
+         logical, intent(out) :: agreed       !! Whether the faces agree
       end subroutine settle_faces
 
       !> The same of many joints, which rather end than keep to the way that the loads have led
@@ -141,14 +138,11 @@ contains
    !> One step from an iterate: a predictor, and a corrector towards equal products
    pure subroutine improve(springs, mean, merit, p, x, length)
       type(joint_springs_t), intent(in) :: springs
-      !> Mean product of slack and flow, in squares of a force
-      real(wp), intent(in) :: mean
-      !> Forces that are wrong, over the size of a force
-      real(wp), intent(in) :: merit
+      real(wp), intent(in) :: mean     !! Mean product of slack and flow, in squares of a force
+      real(wp), intent(in) :: merit    !! Forces that are wrong, over the size of a force
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
-      !> How much of the step was gone
-      real(wp), intent(out) :: length
+      real(wp), intent(out) :: length  !! How much of the step was gone
       type(interior_t) :: step
 
       step = x
@@ -211,8 +205,7 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
-      !> The problem; the rests are set
-      type(problem_t), intent(inout) :: p
+      type(problem_t), intent(inout) :: p  !! The problem; the rests are set
       type(interior_t), intent(in) :: x
       real(wp), intent(out) :: mean, merit
 
@@ -256,8 +249,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
-      !> What they lack: (4, n_joint) [N/m]
-      real(wp) :: rest(4, size(p%joint))
+      real(wp) :: rest(4, size(p%joint))  !! What they lack: (4, n_joint) [N/m]
       integer :: i
 
       do i = 1, size(p%joint)
@@ -274,10 +266,8 @@ contains
    !> Mean of slack times flow, over what the blocks give: in squares of a force
    pure real(wp) function mean_product(p, slack, flow)
       type(problem_t), intent(in) :: p
-      !> Slacks: (4, n_joint) [N/m]
-      real(wp), intent(in) :: slack(:, :)
-      !> Flows: (4, n_joint) [m]
-      real(wp), intent(in) :: flow(:, :)
+      real(wp), intent(in) :: slack(:, :)  !! Slacks: (4, n_joint) [N/m]
+      real(wp), intent(in) :: flow(:, :)   !! Flows: (4, n_joint) [m]
 
       mean_product = (sum(slack(:3, :)*flow(:3, :)/p%unit, p%bounded(:3, :)) &
          & + sum(slack(4, :)*flow(4, :)/p%unit(3, :), p%bounded(4, :))) &
@@ -288,8 +278,7 @@ contains
    pure function weighted(p, mean) result(product_of)
       type(problem_t), intent(in) :: p
       real(wp), intent(in) :: mean
-      !> The products: (4, n_joint) [J/m]
-      real(wp) :: product_of(4, size(p%joint))
+      real(wp) :: product_of(4, size(p%joint))  !! The products: (4, n_joint) [J/m]
 
       product_of(:3, :) = mean*p%unit
       product_of(4, :) = product_of(3, :)
@@ -300,8 +289,7 @@ contains
    pure real(wp) function longest(p, x, step, share)
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x, step
-      !> How much of the way to the first zero is gone
-      real(wp), intent(in) :: share
+      real(wp), intent(in) :: share  !! How much of the way to the first zero is gone
       integer :: i, k
 
       longest = 1.0_wp
@@ -322,10 +310,8 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       type(interior_t), intent(in) :: x
-      !> The problem; what is lacking is set
-      type(problem_t), intent(inout) :: p
-      !> Receives the forces: (3, n_joint of all) [N/m]
-      real(wp), intent(inout) :: force(:, :)
+      type(problem_t), intent(inout) :: p     !! The problem; what is lacking is set
+      real(wp), intent(inout) :: force(:, :)  !! Receives the forces: (3, n_joint of all) [N/m]
       real(wp) :: bound
       integer :: i
 

@@ -27,20 +27,13 @@ submodule (dda_settle_in_time) dda_contact_sweeps
 
    !> What a group is swept for
    type :: sweeps_for_enum
-      !> To see whether its forces stay
-      integer :: a_look = 0
-      !> To rounding
-      integer :: rounding = 1
-      !> To see whether it settles soon
-      integer :: haste = 2
-      !> Until no step notices what is left
-      integer :: patience = 3
-      !> To make good what interior springs leave
-      integer :: the_rest = 4
-      !> The same where more may be left
-      integer :: the_last = 5
-      !> The same where a longer step has failed by what was left
-      integer :: the_end = 6
+      integer :: a_look = 0    !! To see whether its forces stay
+      integer :: rounding = 1  !! To rounding
+      integer :: haste = 2     !! To see whether it settles soon
+      integer :: patience = 3  !! Until no step notices what is left
+      integer :: the_rest = 4  !! To make good what interior springs leave
+      integer :: the_last = 5  !! The same where more may be left
+      integer :: the_end = 6   !! The same where a longer step has failed by what was left
    end type sweeps_for_enum
 
    !> Names of what a group is swept for
@@ -314,10 +307,8 @@ contains
    !> The face that a joint's force lies on
    pure type(joint_face_t) function face_of(cone, force, shift) result(face)
       type(cone_t), intent(in) :: cone
-      !> The force: (3) [N/m]
-      real(wp), intent(in) :: force(3)
-      !> Tension that the contacts carry, and a zero: (3) [N/m]
-      real(wp), intent(in) :: shift(3)
+      real(wp), intent(in) :: force(3)  !! The force: (3) [N/m]
+      real(wp), intent(in) :: shift(3)  !! Tension that the contacts carry, and a zero: (3) [N/m]
 
       face%open = .not. force(1:2) + shift(1:2) > 0.0_wp
       if (abs(force(3)) >= shear_bound(cone, force + shift)) &

@@ -98,10 +98,8 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
-      !> Joint forces: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(out) :: motion(:, :)
+      real(wp), intent(in) :: force(:, :)    !! Joint forces: (3, n_joint) [N/m]
+      real(wp), intent(out) :: motion(:, :)  !! The motion: (n_dof, n_equation)
       integer :: e, j, side
 
       motion = equations%load

@@ -137,10 +137,8 @@ contains
 
    !> A joint half way between where it is before and after a step
    pure type(joint_t) function half_way(before, after) result(joint)
-      !> The joint before the step
-      type(joint_t), intent(in) :: before
-      !> The joint after it
-      type(joint_t), intent(in) :: after
+      type(joint_t), intent(in) :: before  !! The joint before the step
+      type(joint_t), intent(in) :: after   !! The joint after it
       integer :: k
 
       joint = before
@@ -155,8 +153,7 @@ contains
 
    !> 2 tan(t/2)/t of a turn t
    pure real(wp) function turn_ratio(turn)
-      !> The turn [rad]
-      real(wp), intent(in) :: turn
+      real(wp), intent(in) :: turn  !! The turn [rad]
 
       turn_ratio = 1.0_wp + turn**2/12.0_wp
       if (abs(turn) > 1.0e-3_wp) turn_ratio = 2.0_wp*tan(turn/2.0_wp)/turn

@@ -13,12 +13,9 @@ module dda_energy
 
    !> Energies after each step
    type :: audit_t
-      !> Whether they are wanted
-      logical :: wanted = .false.
-      !> Steps kept
-      integer :: n = 0
-      !> The energies, the first n of them
-      type(energy_t), allocatable :: energy(:)
+      logical :: wanted = .false.               !! Whether they are wanted
+      integer :: n = 0                          !! Steps kept
+      type(energy_t), allocatable :: energy(:)  !! The energies, the first n of them
    end type audit_t
 
 contains
@@ -26,8 +23,7 @@ contains
    !> Energies after a step, and what it took and brought added to what the steps before did; what
    !> is left unexplained is numerical dissipation. A step of no length begins the audit
    pure subroutine audit_step(run)
-      !> The run after the step, but for its energies
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(inout) :: run  !! The run after the step, but for its energies
       real(wp) :: before
 
       before = total(run%march%energy)
@@ -105,8 +101,7 @@ contains
    !> Keep the energies after a step
    pure subroutine keep_energy(energy, audit)
       type(energy_t), intent(in) :: energy
-      !> Receives them if they are wanted
-      type(audit_t), intent(inout) :: audit
+      type(audit_t), intent(inout) :: audit  !! Receives them if they are wanted
       type(energy_t), allocatable :: longer(:)
 
       if (.not. audit%wanted) return

@@ -111,11 +111,9 @@ contains
       type(problem_t), intent(inout) :: p
       logical, intent(in) :: hasty
       type(interior_t), intent(inout) :: x
-      !> Faces: (n_joint)
-      type(joint_face_t), intent(inout) :: face(:)
+      type(joint_face_t), intent(inout) :: face(:)  !! Faces: (n_joint)
       integer, intent(inout) :: passes
-      !> How many forces disagree with their faces
-      integer, intent(out) :: changes
+      integer, intent(out) :: changes               !! How many forces disagree with their faces
       integer :: least, pass, stale
 
       changes = huge(changes)
@@ -161,11 +159,9 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
-      !> The problem; what is lacking is set
-      type(problem_t), intent(inout) :: p
+      type(problem_t), intent(inout) :: p         !! The problem; what is lacking is set
       type(interior_t), intent(in) :: x
-      !> The faces: (n_joint)
-      type(joint_face_t), intent(out) :: face(:)
+      type(joint_face_t), intent(out) :: face(:)  !! The faces: (n_joint)
       real(wp) :: force(3), trial(3)
       integer :: i
 
@@ -184,8 +180,7 @@ contains
    pure subroutine hold_faces(springs, face, p, x)
       type(joint_springs_t), intent(in) :: springs
       type(joint_face_t), intent(in) :: face(:)
-      !> The problem; how the bounds yield is set
-      type(problem_t), intent(inout) :: p
+      type(problem_t), intent(inout) :: p  !! The problem; how the bounds yield is set
       type(interior_t), intent(inout) :: x
       integer :: i
 
@@ -210,8 +205,7 @@ contains
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       type(joint_face_t), intent(inout) :: face(:)
-      !> How many forces disagree
-      integer, intent(out) :: changes
+      integer, intent(out) :: changes  !! How many forces disagree
       real(wp) :: force(3), excess, opening(3), least
       integer :: i, k
 

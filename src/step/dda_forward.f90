@@ -110,8 +110,7 @@ contains
    !> One step and what it says of the blocks
    pure subroutine take_step(run, answer, error, album)
       type(run_t), intent(inout) :: run
-      !> One of verdict; undecided where the run goes on
-      integer, intent(out) :: answer
+      integer, intent(out) :: answer  !! One of verdict; undecided where the run goes on
       type(error_t), allocatable, intent(inout) :: error
       type(album_t), intent(inout), optional :: album
       logical :: collapsed

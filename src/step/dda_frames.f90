@@ -144,8 +144,7 @@ contains
 
    !> What pictures are counted by: time where they have an interval, else displacement [s or m]
    pure real(wp) function progress(time, displacement, album)
-      !> Sum of the lengths of the steps [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! Sum of the lengths of the steps [s]
       real(wp), intent(in) :: displacement
       type(album_t), intent(in) :: album
 
@@ -159,8 +158,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       integer, intent(in) :: step
       real(wp), intent(in) :: time, displacement
-      !> Largest motion of a point in the last step [m]
-      real(wp), intent(in) :: farthest
+      real(wp), intent(in) :: farthest  !! Largest motion of a point in the last step [m]
       logical, intent(in) :: last
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)
@@ -197,8 +195,7 @@ contains
    !> Keep where the measured points are
    pure subroutine keep_track(system, current, step, time, album)
       type(block_system_t), intent(in) :: system
-      !> Whether they move; otherwise displacements are small
-      logical, intent(in) :: current
+      logical, intent(in) :: current  !! Whether they move; otherwise displacements are small
       integer, intent(in) :: step
       real(wp), intent(in) :: time
       type(album_t), intent(inout) :: album
@@ -228,14 +225,10 @@ contains
    pure function speed_of(system, current, block, place, point) result(speed)
       type(block_system_t), intent(in) :: system
       logical, intent(in) :: current
-      !> The block
-      integer, intent(in) :: block
-      !> Where the point is: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> Where it is in the reference shape: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> The velocity: (2) [m/s]
-      real(wp) :: speed(2)
+      integer, intent(in) :: block      !! The block
+      real(wp), intent(in) :: place(2)  !! Where the point is: (2) [m]
+      real(wp), intent(in) :: point(2)  !! Where it is in the reference shape: (2) [m]
+      real(wp) :: speed(2)              !! The velocity: (2) [m/s]
 
       associate (centre => system%centroid(:, block))
          if (current) then
@@ -249,8 +242,7 @@ contains
 
    !> Room for the ways of points and the reactions of so many steps
    pure subroutine make_room_for_track(n, album)
-      !> Number of steps
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of steps
       type(album_t), intent(inout) :: album
       real(wp), allocatable :: when(:, :), track(:, :, :), speed(:, :, :), reaction(:, :, :)
       integer :: before, room

@@ -80,10 +80,8 @@ contains
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: max_changes
-      !> Change of a bound that counts as none [N/m]
-      real(wp), intent(in) :: tolerance
-      !> Bounds: (n_joint) [N/m]
-      real(wp), intent(inout) :: bound(:)
+      real(wp), intent(in) :: tolerance    !! Change of a bound that counts as none [N/m]
+      real(wp), intent(inout) :: bound(:)  !! Bounds: (n_joint) [N/m]
       type(step_state_t), intent(inout) :: state
       real(wp), dimension(size(bound)) :: best, change, next
       real(wp) :: largest, least
@@ -120,12 +118,9 @@ contains
    !> mixed change is least, moved by that change
    pure subroutine accelerate(known, point, change, next)
       type(anderson_t), intent(inout) :: known
-      !> The last point: (n)
-      real(wp), intent(in) :: point(:)
-      !> How the iteration would change it: (n)
-      real(wp), intent(in) :: change(:)
-      !> The point to try next: (n)
-      real(wp), intent(out) :: next(:)
+      real(wp), intent(in) :: point(:)   !! The last point: (n)
+      real(wp), intent(in) :: change(:)  !! How the iteration would change it: (n)
+      real(wp), intent(out) :: next(:)   !! The point to try next: (n)
       integer :: k
 
       if (.not. allocated(known%point)) allocate (known%point(size(point), memory + 1), &
@@ -151,8 +146,7 @@ contains
    pure function coulomb_bound(springs, state) result(bound)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
-      !> The bounds: (n_joint) [N/m]
-      real(wp) :: bound(size(springs%stiffness))
+      real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
 
       bound = springs%cone%limit + springs%cone%friction &
          & *sum(state%force(1:2, :) + springs%shift(1:2, :), dim=1)

@@ -126,8 +126,7 @@ contains
 
    !> Whether a change that falls as it did in the last round needs more sweeps than are worth it
    pure logical function takes_long(change, lately)
-      !> The change over what counts as none
-      real(wp), intent(in) :: change
+      real(wp), intent(in) :: change  !! The change over what counts as none
       real(wp), intent(in) :: lately
 
       takes_long = .not. change < lately
@@ -160,12 +159,9 @@ contains
    pure subroutine go_on(springs, joint, change, square, way, sweeps)
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: joint(:)
-      !> What the sweep has changed: (3, n) [N/m]
-      real(wp), intent(in) :: change(:, :)
-      !> Its square; that of the sweep before in
-      real(wp), intent(inout) :: square
-      !> The direction: (3, n) [N/m]
-      real(wp), intent(inout) :: way(:, :)
+      real(wp), intent(in) :: change(:, :)  !! What the sweep has changed: (3, n) [N/m]
+      real(wp), intent(inout) :: square     !! Its square; that of the sweep before in
+      real(wp), intent(inout) :: way(:, :)  !! The direction: (3, n) [N/m]
       type(sweeps_t), intent(inout) :: sweeps
       real(wp) :: ratio, last
       integer :: j
@@ -238,8 +234,7 @@ contains
       type(contact_view_t), intent(in) :: view
       integer, intent(in) :: j
       real(wp), intent(in) :: force(3), motion(n_dof, 0:*)
-      !> Openings and slip: (3) [m]
-      real(wp), intent(out) :: gap(3)
+      real(wp), intent(out) :: gap(3)  !! Openings and slip: (3) [m]
       integer :: a, b, i, k
 
       a = springs%equation(1, j)
@@ -264,8 +259,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       integer, intent(in) :: j
-      !> The change: (3) [N/m]
-      real(wp), intent(in) :: change(3)
+      real(wp), intent(in) :: change(3)  !! The change: (3) [N/m]
       real(wp), intent(inout) :: motion(n_dof, 0:*)
       integer :: a, b, i, k
 

@@ -40,10 +40,8 @@ contains
    !> Number the blocks of the joints as these come
    pure subroutine number_blocks(springs, n_equation, p)
       type(joint_springs_t), intent(in) :: springs
-      !> Movable blocks in all
-      integer, intent(in) :: n_equation
-      !> The problem; equations and blocks are set
-      type(problem_t), intent(inout) :: p
+      integer, intent(in) :: n_equation    !! Movable blocks in all
+      type(problem_t), intent(inout) :: p  !! The problem; equations and blocks are set
       integer :: e, i, side, number(0:n_equation), equation(2*size(p%joint))
 
       number = 0
@@ -103,8 +101,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
       real(wp), intent(in) :: motion(:, :)
-      !> What it adds: (3, n_joint) [m]
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out) :: opening(:, :)  !! What it adds: (3, n_joint) [m]
       real(wp) :: sum_of(3)
       integer :: b, d, i, side
 
@@ -128,8 +125,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
       real(wp), intent(in) :: force(:, :)
-      !> Receives them: (n_dof, n_block) [N/m]
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout) :: load(:, :)  !! Receives them: (n_dof, n_block) [N/m]
       integer :: b, d, i, side
 
       do i = 1, size(p%joint)
@@ -221,10 +217,8 @@ contains
    !> Add the springs of one joint to the matrix
    pure subroutine add_springs(springs, i, p)
       type(joint_springs_t), intent(in) :: springs
-      !> Place of the joint in the problem
-      integer, intent(in) :: i
-      !> The problem; the matrix receives the stiffness
-      type(problem_t), intent(inout) :: p
+      integer, intent(in) :: i             !! Place of the joint in the problem
+      type(problem_t), intent(inout) :: p  !! The problem; the matrix receives the stiffness
       real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
       real(wp) :: unit(3)
       integer :: b, d, first, k, one
@@ -258,10 +252,8 @@ contains
 
    !> Add the product of a column and a row
    pure subroutine add_outer(column, row, matrix)
-      !> The column, and the row: (n_dof)
-      real(wp), intent(in) :: column(:), row(:)
-      !> Receives it: (n_dof, n_dof)
-      real(wp), intent(inout) :: matrix(:, :)
+      real(wp), intent(in) :: column(:), row(:)  !! The column, and the row: (n_dof)
+      real(wp), intent(inout) :: matrix(:, :)    !! Receives it: (n_dof, n_dof)
       integer :: c
 
       do c = 1, size(row)
@@ -273,12 +265,9 @@ contains
    pure function answer(springs, p, i, drive) result(force)
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
-      !> Place of the joint in the problem
-      integer, intent(in) :: i
-      !> By how much: (3) [m]
-      real(wp), intent(in) :: drive(3)
-      !> The forces: (3) [N/m]
-      real(wp) :: force(3)
+      integer, intent(in) :: i          !! Place of the joint in the problem
+      real(wp), intent(in) :: drive(3)  !! By how much: (3) [m]
+      real(wp) :: force(3)              !! The forces: (3) [N/m]
 
       associate (yield => p%yield(:, i))
          force(1:2) = merge(drive(1:2)/(p%soft(1:2, i) + yield(1:2)), 0.0_wp, p%given(1:2, i))

@@ -38,14 +38,10 @@ module dda_open_close
 
    !> A line of motions
    type :: line_t
-      !> Openings and slips where it begins: (3, n_joint) [m]
-      real(wp), allocatable :: from(:, :)
-      !> Their growth by the whole way: (3, n_joint) [m]
-      real(wp), allocatable :: rate(:, :)
-      !> Slope of the energy of blocks and bars where it begins
-      real(wp) :: slope = 0.0_wp
-      !> Its growth by the whole way
-      real(wp) :: curvature = 0.0_wp
+      real(wp), allocatable :: from(:, :)  !! Openings and slips where it begins: (3, n_joint) [m]
+      real(wp), allocatable :: rate(:, :)  !! Their growth by the whole way: (3, n_joint) [m]
+      real(wp) :: slope = 0.0_wp           !! Slope of the energy of blocks and bars where it begins
+      real(wp) :: curvature = 0.0_wp       !! Its growth by the whole way
    end type line_t
 
 contains
@@ -87,10 +83,8 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
-      !> Loads that nothing balances: (n_dof, n_equation)
-      real(wp), intent(out) :: rest(:, :)
-      !> Whether rounding can make as much
-      logical, intent(out) :: balanced
+      real(wp), intent(out) :: rest(:, :)  !! Loads that nothing balances: (n_dof, n_equation)
+      logical, intent(out) :: balanced     !! Whether rounding can make as much
       real(wp) :: rounding(size(rest, 1), size(rest, 2)), noise
       real(wp) :: coupled(size(rest, 1), size(rest, 2))
       integer :: e, j, side
@@ -155,8 +149,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
       type(line_t), intent(in) :: line
-      !> Both ends, and the slopes there
-      real(wp), intent(out) :: low, high, slope_low, slope_high
+      real(wp), intent(out) :: low, high, slope_low, slope_high  !! Both ends, and the slopes there
 
       low = 0.0_wp
       slope_low = slope_at(springs, state, line, low)
@@ -175,8 +168,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
       type(line_t), intent(in) :: line
-      !> How far along it
-      real(wp), intent(in) :: way
+      real(wp), intent(in) :: way  !! How far along it
       real(wp) :: slope, force(3), shift(3)
       type(joint_face_t) :: face
       integer :: j
@@ -194,10 +186,8 @@ contains
    pure subroutine block_slope(equations, from, direction, slope, curvature)
       type(equations_t), intent(in) :: equations
       real(wp), intent(in) :: from(:, :), direction(:, :)
-      !> The slope where the way begins
-      real(wp), intent(out) :: slope
-      !> Its growth by the whole way
-      real(wp), intent(out) :: curvature
+      real(wp), intent(out) :: slope      !! The slope where the way begins
+      real(wp), intent(out) :: curvature  !! Its growth by the whole way
       integer :: e
 
       slope = sum(bar_motion(equations%bars, direction)*from)
@@ -256,8 +246,7 @@ contains
    pure subroutine change_faces(equations, springs, state)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> The step; its faces are changed
-      type(step_state_t), intent(inout) :: state
+      type(step_state_t), intent(inout) :: state  !! The step; its faces are changed
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face))
 
@@ -290,10 +279,8 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       real(wp), intent(in) :: gap(:)
-      !> Whether other joints of its two blocks alone count
-      logical, intent(in) :: of_blocks
-      !> The joints: (n_joint)
-      logical :: is_peak(size(gap))
+      logical, intent(in) :: of_blocks  !! Whether other joints of its two blocks alone count
+      logical :: is_peak(size(gap))     !! The joints: (n_joint)
       real(wp) :: highest, threshold
       integer :: e, j, k, side
 
@@ -317,8 +304,7 @@ contains
 
    !> A number that tells sets of faces apart
    pure function hash(face) result(number)
-      !> Faces: (n_joint)
-      type(joint_face_t), intent(in) :: face(:)
+      type(joint_face_t), intent(in) :: face(:)  !! Faces: (n_joint)
       integer(int64) :: number
       integer(int64) :: code
       integer :: j
@@ -335,8 +321,7 @@ contains
 
       !> A number spread over all bits by shifts, which cannot overflow
       pure function mixed(code)
-         !> Number to spread
-         integer(int64), intent(in) :: code
+         integer(int64), intent(in) :: code  !! Number to spread
          integer(int64) :: mixed
 
          mixed = ieor(code, ishft(code, 21))

@@ -19,8 +19,7 @@ contains
    pure function supports_of(system, boundary) result(support)
       type(block_system_t), intent(in) :: system
       type(boundary_t), intent(in) :: boundary
-      !> Block, and number of the held point or 0: (2, n)
-      integer, allocatable :: support(:, :)
+      integer, allocatable :: support(:, :)  !! Block, and number of the held point or 0: (2, n)
       integer :: i, n
 
       n = 0
@@ -48,12 +47,9 @@ contains
    !> Force of a joint on one of its blocks, and its moment about the origin of coordinates
    pure function force_on(joint, force, side) result(wrench)
       type(joint_t), intent(in) :: joint
-      !> Its force N1, N2, T: (3) [N/m]
-      real(wp), intent(in) :: force(3)
-      !> Which of its blocks, 1 or 2
-      integer, intent(in) :: side
-      !> Components along x and y, and moment: (3) [N/m, N/m, N]
-      real(wp) :: wrench(3)
+      real(wp), intent(in) :: force(3)  !! Its force N1, N2, T: (3) [N/m]
+      integer, intent(in) :: side       !! Which of its blocks, 1 or 2
+      real(wp) :: wrench(3)             !! Components along x and y, and moment: (3) [N/m, N/m, N]
       integer :: k
 
       wrench(1:2) = force(3)*joint%tangent
@@ -97,8 +93,7 @@ contains
    !> Keep the reactions of a dynamic step: the mean over it of what changes the momentum of the
    !> blocks
    pure subroutine keep_reactions(run, album)
-      !> The run after the step
-      type(run_t), intent(in) :: run
+      type(run_t), intent(in) :: run  !! The run after the step
       type(album_t), intent(inout) :: album
       real(wp) :: force(2), place(2)
       integer :: h, i, k

@@ -145,12 +145,9 @@ module dda_settle_in_time
          type(equations_t), intent(in) :: equations
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
-         !> Numbers of the joints: (n)
-         integer, intent(in) :: joint(:)
-         !> Forces of all joints: (3, n_joint) [N/m]
-         real(wp), intent(in) :: force(:, :)
-         !> Motion of all blocks: (n_dof, n_equation) [m]
-         real(wp), intent(in) :: motion(:, :)
+         integer, intent(in) :: joint(:)       !! Numbers of the joints: (n)
+         real(wp), intent(in) :: force(:, :)   !! Forces of all joints: (3, n_joint) [N/m]
+         real(wp), intent(in) :: motion(:, :)  !! Motion of all blocks: (n_dof, n_equation) [m]
          type(problem_t), intent(out) :: p
       end subroutine pose
 
@@ -159,10 +156,8 @@ module dda_settle_in_time
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
          type(problem_t), intent(in) :: p
-         !> The motion: (n_dof, n_block) [m]
-         real(wp), intent(in) :: motion(:, :)
-         !> The openings: (3, n_joint) [m]
-         real(wp), intent(out) :: opening(:, :)
+         real(wp), intent(in) :: motion(:, :)    !! The motion: (n_dof, n_block) [m]
+         real(wp), intent(out) :: opening(:, :)  !! The openings: (3, n_joint) [m]
       end subroutine see_openings
 
       !> What forces and motion lack of balance, and of openings that are closed
@@ -171,8 +166,7 @@ module dda_settle_in_time
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
          type(interior_t), intent(in) :: x
-         !> The problem; balance and openings are set
-         type(problem_t), intent(inout) :: p
+         type(problem_t), intent(inout) :: p  !! The problem; balance and openings are set
       end subroutine see_lack
 
       !> Forces and motion that give what is lacking
@@ -190,8 +184,7 @@ module dda_settle_in_time
          type(joint_springs_t), intent(in) :: springs
          type(problem_t), intent(in) :: p
          real(wp), intent(in) :: force(:, :)
-         !> The distances: (4, n_joint) [N/m]
-         real(wp), intent(out) :: slack(:, :)
+         real(wp), intent(out) :: slack(:, :)  !! The distances: (4, n_joint) [N/m]
       end subroutine see_bounds
 
       !> The matrix with the springs as their bounds yield, and its factor, of which stays what they
@@ -199,8 +192,7 @@ module dda_settle_in_time
       pure module subroutine factor_springs(equations, springs, p)
          type(equations_t), intent(in) :: equations
          type(joint_springs_t), intent(in) :: springs
-         !> The problem; matrix and factor are made anew
-         type(problem_t), intent(inout) :: p
+         type(problem_t), intent(inout) :: p  !! The problem; matrix and factor are made anew
       end subroutine factor_springs
 
    end interface
@@ -278,8 +270,7 @@ contains
    pure function friction_of(springs, state) result(bound)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
-      !> The bounds: (n_joint) [N/m]
-      real(wp) :: bound(size(springs%stiffness))
+      real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
       integer :: j
 
       bound = coulomb_bound(springs, state)

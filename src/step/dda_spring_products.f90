@@ -14,15 +14,11 @@ contains
    !> Rows of one side of a joint, projected on its face: p R P
    pure function projected(springs, cone, face, side, j) result(steep)
       type(joint_springs_t), intent(in) :: springs
-      !> Bounds of the joint's force
-      type(cone_t), intent(in) :: cone
+      type(cone_t), intent(in) :: cone            !! Bounds of the joint's force
       type(joint_face_t), intent(in) :: face
-      !> Side of the joint, 1 or 2
-      integer, intent(in) :: side
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> The projected rows: (n_dof, 3)
-      real(wp) :: steep(size(springs%row, 1), 3)
+      integer, intent(in) :: side                 !! Side of the joint, 1 or 2
+      integer, intent(in) :: j                    !! Number of the joint
+      real(wp) :: steep(size(springs%row, 1), 3)  !! The projected rows: (n_dof, 3)
       real(wp) :: tangent(3, 3), constant(3)
 
       steep = springs%stiffness(j)*springs%row(:, :, side, j)
@@ -33,12 +29,9 @@ contains
 
    !> c = c + a b' of three columns
    pure subroutine add_product(a, b, c)
-      !> First factor: (n, 3)
-      real(wp), intent(in) :: a(:, :)
-      !> Second factor: (n, 3)
-      real(wp), intent(in) :: b(:, :)
-      !> What the product is added to: (n, n)
-      real(wp), intent(inout) :: c(:, :)
+      real(wp), intent(in) :: a(:, :)     !! First factor: (n, 3)
+      real(wp), intent(in) :: b(:, :)     !! Second factor: (n, 3)
+      real(wp), intent(inout) :: c(:, :)  !! What the product is added to: (n, n)
       integer :: k
 
       do k = 1, size(b, 1)
@@ -51,11 +44,9 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(cone_t), intent(in) :: cone
       type(joint_face_t), intent(in) :: face
-      !> Its trial force before the motion: (3) [N/m]
-      real(wp), intent(in) :: trial(3)
+      real(wp), intent(in) :: trial(3)       !! Its trial force before the motion: (3) [N/m]
       integer, intent(in) :: j
-      !> Receives the load: (n_dof, n_equation)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout) :: load(:, :)  !! Receives the load: (n_dof, n_equation)
       real(wp) :: tangent(3, 3), constant(3)
       integer :: c, e, side
 

@@ -33,8 +33,7 @@ module dda_step
       !> A step of blocks that stand still, or are found to: nothing moves in it
       pure module subroutine rest(run, still)
          type(run_t), intent(inout) :: run
-         !> Whether they stand still; otherwise nothing has changed
-         logical, intent(out) :: still
+         logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
       end subroutine rest
 
       !> What a step begins with: masses as the blocks have turned, whether contacts remember their
@@ -139,10 +138,8 @@ module dda_step
       !> forces that it was
       pure logical module function is_slow(run, velocity, finer)
          type(run_t), intent(in) :: run
-         !> Velocities: (n_dof, n_equation)
-         real(wp), intent(in) :: velocity(:, :)
-         !> Whether forces were finer
-         logical, intent(in) :: finer
+         real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_equation)
+         logical, intent(in) :: finer            !! Whether forces were finer
       end function is_slow
 
       !> Length of a step in which rounding of gaps moves blocks less than forces that are not
@@ -155,8 +152,7 @@ module dda_step
       !> which are assembled
       pure module subroutine stands_still(run, still)
          type(run_t), intent(inout) :: run
-         !> The answer
-         logical, intent(out) :: still
+         logical, intent(out) :: still  !! The answer
       end subroutine stands_still
 
       !> A step, begun, in which nothing moves: its forces are those before

@@ -45,8 +45,7 @@ contains
    !> Where they do not, nothing changes but the passes that are counted
    pure subroutine come_to_rest(run, still)
       type(run_t), intent(inout) :: run
-      !> Whether they stand still
-      logical, intent(out) :: still
+      logical, intent(out) :: still  !! Whether they stand still
       type(run_state_t) :: before
       real(wp) :: held(size(run%equations%fixed%force))
 
@@ -66,8 +65,7 @@ contains
 
    !> Count the work of loads on the way to where blocks stand still
    pure subroutine count_work(start, run)
-      !> Motion of the blocks before it: (6, n_block)
-      real(wp), intent(in) :: start(:, :)
+      real(wp), intent(in) :: start(:, :)  !! Motion of the blocks before it: (6, n_block)
       type(run_t), intent(inout) :: run
       real(wp) :: work
       integer :: b, e, n
@@ -87,8 +85,7 @@ contains
    !> Take the speed that coarser contact forces have left
    pure subroutine take_speed(run, taken)
       type(run_t), intent(inout) :: run
-      !> Whether none is left
-      logical, intent(out) :: taken
+      logical, intent(out) :: taken  !! Whether none is left
       integer :: i
 
       taken = .false.
@@ -113,8 +110,7 @@ contains
    !> inertia bears nothing. What bears a force touches: no gap that rounding has left asks for more
    pure subroutine balance_forces(run, still)
       type(run_t), intent(inout) :: run
-      !> Whether they do
-      logical, intent(out) :: still
+      logical, intent(out) :: still  !! Whether they do
       integer :: i
 
       call place_contacts(run)

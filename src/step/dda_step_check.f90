@@ -192,10 +192,8 @@ contains
    !> How easily an impact at a contact moves its two blocks
    pure real(wp) function ease_of(run, k, j) result(ease)
       type(run_t), intent(in) :: run
-      !> Which contact of the joint
-      integer, intent(in) :: k
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: k  !! Which contact of the joint
+      integer, intent(in) :: j  !! Number of the joint
       integer :: e, i, side
 
       ease = 0.0_wp
@@ -210,12 +208,9 @@ contains
 
    !> Time to cover a way at constant acceleration
    pure real(wp) function falling_time(way, speed, acceleration)
-      !> The way, positive [m]
-      real(wp), intent(in) :: way
-      !> Speed at the beginning [m/s]
-      real(wp), intent(in) :: speed
-      !> Acceleration [m/s2]
-      real(wp), intent(in) :: acceleration
+      real(wp), intent(in) :: way           !! The way, positive [m]
+      real(wp), intent(in) :: speed         !! Speed at the beginning [m/s]
+      real(wp), intent(in) :: acceleration  !! Acceleration [m/s2]
       real(wp) :: square, root
 
       falling_time = huge(falling_time)

@@ -178,12 +178,9 @@ module dda_step_context
 
    !> What the next step of a run begins with
    type :: run_state_t
-      !> The blocks
-      type(block_system_t) :: system
-      !> The contacts
-      type(contacts_t) :: contacts
-      !> What is carried on beside them
-      type(march_t) :: march
+      type(block_system_t) :: system  !! The blocks
+      type(contacts_t) :: contacts    !! The contacts
+      type(march_t) :: march          !! What is carried on beside them
    end type run_state_t
 
    !> A rest on the path of a static run, to return to
@@ -229,8 +226,7 @@ contains
    !> Gap below which two blocks count as touching
    pure real(wp) function near_gap(system, pair)
       type(block_system_t), intent(in) :: system
-      !> The two blocks: (2)
-      integer, intent(in) :: pair(2)
+      integer, intent(in) :: pair(2)  !! The two blocks: (2)
 
       near_gap = near*sqrt(minval(system%area(pair)))
    end function near_gap

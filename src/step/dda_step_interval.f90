@@ -163,20 +163,16 @@ contains
 
    !> Longest static step: its inertia must not drown in the rounding of the stiffness
    pure real(wp) function longest_static_step(mean_mass, stiffest)
-      !> Mean mass of the blocks [kg/m]
-      real(wp), intent(in) :: mean_mass
-      !> Stiffness of the stiffest spring [N/m per metre depth]
-      real(wp), intent(in) :: stiffest
+      real(wp), intent(in) :: mean_mass  !! Mean mass of the blocks [kg/m]
+      real(wp), intent(in) :: stiffest   !! Stiffness of the stiffest spring [N/m per metre depth]
 
       longest_static_step = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
    end function longest_static_step
 
    !> By what the next static step is longer
    pure real(wp) function static_growth(acceleration, last_acceleration)
-      !> Acceleration of this step [m/s2]
-      real(wp), intent(in) :: acceleration
-      !> That of the step before [m/s2]
-      real(wp), intent(in) :: last_acceleration
+      real(wp), intent(in) :: acceleration       !! Acceleration of this step [m/s2]
+      real(wp), intent(in) :: last_acceleration  !! That of the step before [m/s2]
 
       static_growth = merge(1.0_wp, growth, acceleration < settling*last_acceleration)
    end function static_growth
@@ -185,10 +181,8 @@ contains
    !> work of the loads is then speed
    pure logical function falls_glued(equations, motion, dt)
       type(equations_t), intent(in) :: equations
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: dt            !! Length of the step [s]
       real(wp) :: kinetic, work
       integer :: e
 
@@ -206,8 +200,7 @@ contains
    !> blocks add up by chance
    pure function feigned_motion(system) result(motion)
       type(block_system_t), intent(in) :: system
-      !> The motion [m]
-      real(wp) :: motion
+      real(wp) :: motion  !! The motion [m]
       real(wp) :: slender
       integer :: b
 
@@ -230,8 +223,7 @@ contains
    pure function dynamic_step(settings, march) result(dt)
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
-      !> The length [s]
-      real(wp) :: dt
+      real(wp) :: dt  !! The length [s]
       real(wp) :: fall
 
       dt = settings%time_step
@@ -248,10 +240,8 @@ contains
    !> Shorten a dynamic step that would move too far, or beyond the end of the run
    pure subroutine fit_interval(settings, speed, march)
       type(settings_t), intent(in) :: settings
-      !> Speed of the fastest point [m/s]
-      real(wp), intent(in) :: speed
-      !> The march; the length of the next step is set
-      type(march_t), intent(inout) :: march
+      real(wp), intent(in) :: speed          !! Speed of the fastest point [m/s]
+      type(march_t), intent(inout) :: march  !! The march; the length of the next step is set
       real(wp) :: left
 
       if (settings%current .and. speed*march%dt > march%allowed_motion) &
@@ -334,10 +324,8 @@ contains
    !> Largest motion of a point at the radius of gyration by the strain of its block
    pure function straining_motion(system, motion) result(largest)
       type(block_system_t), intent(in) :: system
-      !> Motion of the blocks: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> The largest motion [m]
-      real(wp) :: largest
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_equation)
+      real(wp) :: largest                   !! The largest motion [m]
       integer :: b, e
 
       largest = 0.0_wp
@@ -353,8 +341,7 @@ contains
    pure function largest_motion(system, motion) result(largest)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)
-      !> The largest motion [m]
-      real(wp) :: largest
+      real(wp) :: largest  !! The largest motion [m]
       real(wp) :: gyration
       integer :: b, e
 

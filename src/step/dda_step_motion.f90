@@ -68,8 +68,7 @@ contains
 
    !> Whether joints are of the same corners and edges
    pure logical function are_same(joint, other)
-      !> The joints: (n_joint)
-      type(joint_t), intent(in) :: joint(:), other(:)
+      type(joint_t), intent(in) :: joint(:), other(:)  !! The joints: (n_joint)
       integer :: j, k
 
       are_same = size(joint) == size(other)

@@ -47,12 +47,9 @@ contains
 
    !> Let blocks reach as far as those that may strike them
    pure subroutine reach_like_neighbours(joint, equation, reach)
-      !> The joints of the step before: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
-      !> Equation of each block, 0 for a fixed one: (n_block)
-      integer, intent(in) :: equation(:)
-      !> The reach: (n_block) [m]
-      real(wp), intent(inout) :: reach(:)
+      type(joint_t), intent(in) :: joint(:)  !! The joints of the step before: (n_joint)
+      integer, intent(in) :: equation(:)     !! Equation of each block, 0 for a fixed one: (n_block)
+      real(wp), intent(inout) :: reach(:)    !! The reach: (n_block) [m]
       real(wp) :: own(size(reach))
       integer :: j
 
@@ -104,10 +101,8 @@ contains
    !> Let blocks reach as far as a motion takes them
    pure subroutine widen_margins(system, motion, reach)
       type(block_system_t), intent(in) :: system
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> The reach: (n_block) [m]
-      real(wp), intent(inout) :: reach(:)
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      real(wp), intent(inout) :: reach(:)   !! The reach: (n_block) [m]
       real(wp) :: way(size(reach))
 
       way = corner_motion(system, motion)
@@ -143,8 +138,7 @@ contains
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
-      !> The motion: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: travel(2, size(system%vertex, 2))  !! The motion: (2, n_vertex) [m]
       real(wp) :: motion(6, maxval(system%equation))
       integer :: b, e
 
@@ -167,8 +161,7 @@ contains
    pure function travel_by(system, motion) result(travel)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)
-      !> The motion of the corners: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: travel(2, size(system%vertex, 2))  !! The motion of the corners: (2, n_vertex) [m]
       real(wp) :: t(2, 6), centroid(2)
       integer :: b, e, v
 

@@ -121,8 +121,7 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
-      !> The force [N/m]
-      real(wp) :: noise
+      real(wp) :: noise  !! The force [N/m]
 
       noise = 1.0e-13_wp*equations%force_scale + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
          & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
@@ -158,8 +157,7 @@ contains
    !> Admissible forces and faces of the joints after a motion
    pure subroutine joint_forces(springs, state)
       type(joint_springs_t), intent(in) :: springs
-      !> The step; everything but the motion is set
-      type(step_state_t), intent(inout) :: state
+      type(step_state_t), intent(inout) :: state  !! The step; everything but the motion is set
       real(wp) :: shift(3)
       integer :: j
 

@@ -195,10 +195,8 @@ contains
 
    !> No rates of strains that follow their load
    pure subroutine drop_strain_rates(equation, follows, equations)
-      !> Equation of each block, 0 for a fixed one: (n_block)
-      integer, intent(in) :: equation(:)
-      !> Blocks without strain rates: (n_block)
-      logical, intent(in) :: follows(:)
+      integer, intent(in) :: equation(:)  !! Equation of each block, 0 for a fixed one: (n_block)
+      logical, intent(in) :: follows(:)   !! Blocks without strain rates: (n_block)
       type(equations_t), intent(inout) :: equations
       integer :: b, e
 
@@ -302,10 +300,8 @@ contains
       type(run_t), intent(in) :: run
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: j
-      !> Its forces: (3) [N/m]
-      real(wp), intent(in) :: force(3)
-      !> How the blocks have moved: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: force(3)      !! Its forces: (3) [N/m]
+      real(wp), intent(in) :: motion(:, :)  !! How the blocks have moved: (6, n_block)
       real(wp) :: turn(3)
       integer :: b, side
 
@@ -335,8 +331,7 @@ contains
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
    pure real(wp) function joint_mass(system, pair)
       type(block_system_t), intent(in) :: system
-      !> The two blocks: (2)
-      integer, intent(in) :: pair(2)
+      integer, intent(in) :: pair(2)  !! The two blocks: (2)
 
       joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)
    end function joint_mass

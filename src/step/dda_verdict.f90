@@ -33,16 +33,11 @@ module dda_verdict
 
    !> Answers of an analysis
    type :: verdict_enum
-      !> Not known
-      integer :: undecided = 0
-      !> At rest under the full load
-      integer :: stable = 1
-      !> A mechanism that gains speed without end
-      integer :: collapsed = 2
-      !> A dynamic run that reached its end
-      integer :: completed = 3
-      !> A search that closed its bracket
-      integer :: found = 4
+      integer :: undecided = 0  !! Not known
+      integer :: stable = 1     !! At rest under the full load
+      integer :: collapsed = 2  !! A mechanism that gains speed without end
+      integer :: completed = 3  !! A dynamic run that reached its end
+      integer :: found = 4      !! A search that closed its bracket
    end type verdict_enum
 
    !> Names of the verdicts
@@ -112,10 +107,8 @@ contains
 
    !> The pairs of blocks that touch
    pure function neighbours_of(joint) result(pair)
-      !> Their joints: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
-      !> The two blocks of each joint: (2, n_joint)
-      integer :: pair(2, size(joint))
+      type(joint_t), intent(in) :: joint(:)  !! Their joints: (n_joint)
+      integer :: pair(2, size(joint))        !! The two blocks of each joint: (2, n_joint)
 
       pair(1, :) = joint%block(1)
       pair(2, :) = joint%block(2)
@@ -166,8 +159,7 @@ contains
    !> How far the smaller of two blocks has left the place to which the larger would carry it
    pure real(wp) function parted(system, pair)
       type(block_system_t), intent(in) :: system
-      !> The two blocks: (2)
-      integer, intent(in) :: pair(2)
+      integer, intent(in) :: pair(2)  !! The two blocks: (2)
       integer :: large, small
 
       large = pair(maxloc(system%area(pair), dim=1))
@@ -189,8 +181,7 @@ contains
    !> Whether the blocks have gone as far as means collapse; keeps how far they have
    pure subroutine has_collapsed(run, collapsed)
       type(run_t), intent(inout) :: run
-      !> Whether they have collapsed
-      logical, intent(out) :: collapsed
+      logical, intent(out) :: collapsed  !! Whether they have collapsed
       real(wp) :: displacement
 
       collapsed = .false.
@@ -263,10 +254,8 @@ contains
 
    !> x' a x
    pure real(wp) function quadratic(a, x)
-      !> Symmetric matrix: (n, n)
-      real(wp), intent(in) :: a(:, :)
-      !> Column: (n)
-      real(wp), intent(in) :: x(:)
+      real(wp), intent(in) :: a(:, :)  !! Symmetric matrix: (n, n)
+      real(wp), intent(in) :: x(:)     !! Column: (n)
       integer :: c, r
 
       quadratic = 0.0_wp
@@ -283,8 +272,7 @@ contains
    !> and its strains. It falls if a step proves so; or, where a displacement means collapse, if a
    !> corner has moved as far. What rests once a block has fallen does not stand
    pure integer function judge_verdict(march, step, settings)
-      !> The march, with the acceleration of the step before
-      type(march_t), intent(in) :: march
+      type(march_t), intent(in) :: march  !! The march, with the acceleration of the step before
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
       logical :: at_rest, falls, goes_on
