@@ -112,7 +112,7 @@ def _buttresses() -> list[Scene]:
 
 
 #: Rectangular pulses: percent of g, critical duration, what is accepted, and that of links whose hinges stay [s]
-PULSES = ((100, 0.2246, 0.0006, 0.2363), (60, 0.4769, 0.001, 0.4857), (45, 0.8286, 0.003, 0.8689))
+PULSES = ((100, 0.22393, 0.0006, 0.2363), (60, 0.47627, 0.001, 0.4857), (45, 0.82628, 0.003, 0.8689))
 
 
 def _pulses() -> list[Scene]:
