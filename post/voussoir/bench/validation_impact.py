@@ -78,10 +78,10 @@ def _rocking() -> list[Scene]:
         for block, share in enumerate((0.25, 0.5, 0.75), 1):
             start = f"from {share} of its angle"
             exact = quarter_period(b, h, share)
-            checks.append(Check(f"quarter period {start} [s]", exact, _upright(block), 1e-2))
+            checks.append(Check(f"quarter period {start} [s]", exact, _upright(block), 1e-5))
             exact = next_amplitude(b, h, share)
             swing = _swing(block, math.atan2(b, h))
-            checks.append(Check(f"next amplitude {start}", exact, swing, 1e-2))
+            checks.append(Check(f"next amplitude {start}", exact, swing, 1e-3))
         source = "Housner 1963, nonlinear"
         scenes.append(Scene(ROCKING, deck, source, tuple(checks), rate=True))
     pulses = (("pulse_rocks", 0.98, "stands"), ("pulse_overturns", 1.02, "fallen"))

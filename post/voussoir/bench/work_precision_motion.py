@@ -146,7 +146,7 @@ def rocking() -> Motion:
     exact = quarter_period(width / 2.0, height / 2.0, 0.5)
     other = next_amplitude(width / 2.0, height / 2.0, 0.5)
     checks = (("rocking: quarter period", exact, upright), ("rocking: next tilt", other, swing))
-    groups = {"joint": {"friction_deg": 78.0}}
+    groups = {"joint": {"friction_deg": 78.0}, "material": {"young": 5e12}}
     return Motion(text, groups, 0.75, 0.008, checks)
 
 
