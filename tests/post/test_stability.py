@@ -9,8 +9,9 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+from voussoir.bench.checks import Check  # noqa: E402
 from voussoir.bench.deck_runs import Finished  # noqa: E402
-from voussoir.bench.stability_judge import (  # noqa: E402
+from voussoir.bench.expectations import (  # noqa: E402
     Critical,
     Measured,
     Refused,
@@ -19,10 +20,9 @@ from voussoir.bench.stability_judge import (  # noqa: E402
     Warned,
     judge,
 )
+from voussoir.bench.scene import Scene  # noqa: E402
 from voussoir.bench.stability_random import tower_push  # noqa: E402
-from voussoir.bench.stability_scene import Scene  # noqa: E402
 from voussoir.bench.stability_scenes import catalogue, random_scenes  # noqa: E402
-from voussoir.bench.validation_scene import Check  # noqa: E402
 from voussoir.command import stability  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 

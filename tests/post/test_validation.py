@@ -13,12 +13,14 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("numpy")
 
+from voussoir.bench.checks import Check  # noqa: E402
+from voussoir.bench.expectations import Measured  # noqa: E402
+from voussoir.bench.scene import Scene  # noqa: E402
 from voussoir.bench.validation_assemblies import roof_wedge, snap_load  # noqa: E402
 from voussoir.bench.validation_impact import next_amplitude, quarter_period  # noqa: E402
 from voussoir.bench.validation_motion import stick_slip  # noqa: E402
 from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E402
 from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
-from voussoir.bench.validation_scene import Check, Scene  # noqa: E402
 from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.dda_program import find_input  # noqa: E402
@@ -30,10 +32,10 @@ FAST = [scene for scene in SCENES if not scene.slow]
 
 
 def run_program(scene: Scene, halvings: int = 0) -> list[Line]:
-    return run_scene(Path(os.environ["DDA"]), DECKS, scene, halvings)
+    return run_scene(DECKS, scene, halvings)
 
 
-@pytest.mark.parametrize("scene", FAST, ids=lambda scene: f"{scene.name}-{scene.section}")
+@pytest.mark.parametrize("scene", FAST, ids=lambda scene: f"{scene.name}-{scene.group}")
 def test_scene_has_its_exact_answer(scene: Scene) -> None:
     for line in run_program(scene):
         assert line.accepted, f"{line.check}: {line.computed}, error {line.errors[0]}"
@@ -127,8 +129,8 @@ def test_command_writes_table_and_page(tmp_path: Path, capsys) -> None:
 
 def test_miss_is_told_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys) -> None:
     (scene,) = [scene for scene in SCENES if scene.name == "column"]
-    wrong = dataclasses.replace(scene.checks[0], exact=0.25)
-    false_scene = dataclasses.replace(scene, checks=(wrong,))
+    wrong = dataclasses.replace(scene.expectation.checks[0], exact=0.25)
+    false_scene = dataclasses.replace(scene, expectation=Measured((wrong,)))
     monkeypatch.setattr("voussoir.command.validation.all_scenes", lambda: (false_scene,))
     words = ["validation", "--quiet", "--out", str(tmp_path), "--scenes", "column"]
     assert main(words) == 1
@@ -148,8 +150,8 @@ def test_what_is_no_scene_or_no_deck_is_bad_input(tmp_path: Path, capsys) -> Non
 def test_page_of_the_documents_has_every_scene() -> None:
     page = (REPOSITORY / "docs" / "validation.md").read_text()
     for scene in SCENES:
-        for check in scene.checks:
-            assert f"| `{scene.name}` ({scene.source}) | {check.what} |" in page
+        for check in scene.expectation.checks:
+            assert f"| `{scene.name}` ({scene.note}) | {check.what} |" in page
 
 
 def test_every_deck_of_the_benchmarks_is_a_scene() -> None:

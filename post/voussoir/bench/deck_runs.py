@@ -7,11 +7,12 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Mapping
+import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from voussoir.dda_program import find_dda
+from voussoir.dda_program import find_dda, set_options
 
 #: A row of results.csv: its columns as text
 Row = dict[str, str]
@@ -28,28 +29,35 @@ class Finished:
     message: str = ""  #: What it printed as error
     not_a_number: tuple[str, ...] = ()  #: Names of result files that hold NaN or Inf
     folder: Path = Path()  #: Folder of its results
+    seconds: float = 0.0  #: Wall time of the run
 
 
 def run_deck(
-    deck: str | bytes, folder: Path, timeout: float = 600.0, jobs: int = 1, files: Mapping[str, str] | None = None
+    deck: str | bytes | Path, folder: Path, timeout: float = 600.0, jobs: int = 1,
+    files: Mapping[str, str] | None = None, settings: Sequence[str] = ()
 ) -> Finished:
-    """Write a deck and files (names and texts) into a folder, run it there for a time at most [s], read its results."""
+    """Run a deck, its text or where it is, in a folder with files (names and texts), for a time at most [s]."""
     folder.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder / "out", ignore_errors=True)
-    (folder / "deck.nml").write_bytes(deck if isinstance(deck, bytes) else deck.encode())
+    word = "deck.nml"
+    if isinstance(deck, Path):
+        word = str(deck.absolute())
+    else:
+        (folder / word).write_bytes(deck if isinstance(deck, bytes) else deck.encode())
     for name, text in (files or {}).items():
         (folder / name).write_text(text, encoding="utf-8")
-    command = [str(find_dda()), "run", "deck.nml", "--out", "out"]
+    command = [str(find_dda()), "run", word, "--out", "out", "--jobs", str(jobs), *set_options(settings)]
+    start = time.monotonic()
     try:
         done = subprocess.run(
-            [*command, "--jobs", str(jobs)], cwd=folder, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-            capture_output=True, text=True, timeout=timeout, check=False)
+            command, cwd=folder, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
+            timeout=timeout, check=False)
     except subprocess.TimeoutExpired:
         return Finished(None, message=f"stopped after {timeout:g} s")
-    out = folder / "out"
+    seconds, out = time.monotonic() - start, folder / "out"
     return Finished(
         done.returncode, read_rows(out / "results.csv"), _remarks(out / "log.txt"), done.stderr.strip(),
-        tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)), out)
+        tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)), out, seconds)
 
 
 def read_rows(file: Path) -> list[Row]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from voussoir import theory
-from voussoir.bench.stability_judge import Critical, Refused, Same, Verdict
-from voussoir.bench.stability_scene import Scene
+from voussoir.bench.expectations import Critical, Refused, Same, Verdict
+from voussoir.bench.scene import Scene
 
 #: Weight of a cubic metre of the decks' default masonry [N/m3]
 UNIT_WEIGHT = 2240.0 * 9.81

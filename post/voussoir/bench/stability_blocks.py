@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 
-from voussoir.bench.stability_judge import Critical, Measured, Refused, Verdict
-from voussoir.bench.stability_scene import (
+from voussoir.bench.expectations import Critical, Measured, Refused, Verdict
+from voussoir.bench.scene import (
     Corners, Scene, block_scene, in_both, rectangle, written_block, written_blocks,
 )
-from voussoir.bench.validation_scene import Check, Outcome, verdict
+from voussoir.bench.checks import Check, Outcome, verdict
 
 #: Weight of a cubic metre of the decks that set it [N/m3]
 WEIGHT = 25000.0

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from voussoir.bench.stability_blocks import BASE, WEIGHT, normal_force
-from voussoir.bench.stability_judge import Expectation, Measured, Refused, Verdict, Warned
-from voussoir.bench.stability_scene import Scene, block_scene, rectangle, written_block, written_blocks
-from voussoir.bench.validation_scene import GRAVITY, Check, verdict
+from voussoir.bench.expectations import Expectation, Measured, Refused, Verdict, Warned
+from voussoir.bench.scene import Scene, block_scene, rectangle, written_block, written_blocks
+from voussoir.bench.checks import GRAVITY, Check, verdict
 
 _SQUARE = rectangle(0.0, 0.0, 1.0, 1.0)
 _BLOCK = written_block(_SQUARE)

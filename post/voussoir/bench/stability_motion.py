@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from voussoir.bench.stability_judge import Measured
-from voussoir.bench.stability_scene import Scene, block_scene, rectangle, written_block
+from voussoir.bench.expectations import Measured
+from voussoir.bench.scene import Scene, block_scene, rectangle, written_block
 from voussoir.bench.validation_impact import largest_rise
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, end, verdict
+from voussoir.bench.checks import DENSITY, GRAVITY, Check, Outcome, end, verdict
 
 #: Steps of every length from the shortest on [s]
 STEPS = tuple(10.0**k for k in range(-7, 1))

@@ -10,7 +10,7 @@ from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 
 from voussoir.bench.report_tables import markdown, write_csv
-from voussoir.bench.stability_judge import RIGHT, UNDECIDED, WRONG
+from voussoir.bench.expectations import RIGHT, UNDECIDED, WRONG
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from voussoir.bench.stability_blocks import BASE, at_rest, wall
-from voussoir.bench.stability_judge import Critical, Verdict
+from voussoir.bench.expectations import Critical, Verdict
 from voussoir.bench.stability_motion import moving
-from voussoir.bench.stability_scene import GEOMETRIES, Scene, block_scene, rectangle, written_block, written_blocks
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, end
+from voussoir.bench.scene import GEOMETRIES, Scene, block_scene, rectangle, written_block, written_blocks
+from voussoir.bench.checks import DENSITY, GRAVITY, Check, end
 
 
 def random_blocks(count: int, seed: int) -> Iterator[Scene]:

@@ -9,7 +9,7 @@ from voussoir.bench.stability_blocks import block_scenes
 from voussoir.bench.stability_input import input_scenes
 from voussoir.bench.stability_motion import motion_scenes
 from voussoir.bench.stability_random import random_blocks
-from voussoir.bench.stability_scene import Scene
+from voussoir.bench.scene import Scene
 
 
 def catalogue() -> Iterator[Scene]:

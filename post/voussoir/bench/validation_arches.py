@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
-from voussoir.bench.validation_scene import Check, Scene, critical, in_both, under, verdict
+from voussoir.bench.checks import Check, critical, verdict
+from voussoir.bench.scene import Scene, benchmark, benchmark_in_both
 
 ARCHES = "Arches"
 
@@ -16,7 +18,7 @@ THICKNESS = {
 BY_NUMBER = {14: 0.359609, 15: 0.356745, 21: 0.356026, 50: 0.353657}
 BY_FRICTION = {0.6: 0.373612, 0.5: 0.367966, 0.4: 0.257000, 0.3: 0.138946}
 SIX_DIGITS = "limit analysis, six digits"
-_scene = under(ARCHES)
+_scene = partial(benchmark, ARCHES)
 
 
 def _arches() -> list[Scene]:
@@ -34,8 +36,8 @@ def _arches() -> list[Scene]:
     return [
         _scene("arch_polygons", SIX_DIGITS, *rows),
         _scene("arch_friction", "limit analysis", *states),
-        *in_both(ARCHES, "lateral_arch", SIX_DIGITS, push, moved=1e-3),
-        *in_both(ARCHES, "lateral_arch_blocks", SIX_DIGITS, push, moved=1e-3),
+        *benchmark_in_both(ARCHES, "lateral_arch", SIX_DIGITS, push, moved=1e-3),
+        *benchmark_in_both(ARCHES, "lateral_arch_blocks", SIX_DIGITS, push, moved=1e-3),
         *_lateral(), *_loaded(), _sliding(), *_buttresses(), *_pulses(),
     ]
 
@@ -50,8 +52,8 @@ def _lateral() -> list[Scene]:
         critical(f"force over weight, friction {mu}", exact, 4e-6, case)
         for case, (mu, exact) in enumerate(BY_FRICTION.items(), 1)
     ]
-    pairs = zip(in_both(ARCHES, "lateral_arches", SIX_DIGITS, *number, moved=1e-3),
-                in_both(ARCHES, "lateral_arch_friction", SIX_DIGITS, *rubbed, moved=1e-3))
+    pairs = zip(benchmark_in_both(ARCHES, "lateral_arches", SIX_DIGITS, *number, moved=1e-3),
+                benchmark_in_both(ARCHES, "lateral_arch_friction", SIX_DIGITS, *rubbed, moved=1e-3))
     return [scene for pair in pairs for scene in pair]
 
 
@@ -73,7 +75,7 @@ def _loaded() -> list[Scene]:
         area = n * math.sin(math.pi / n) * ratio
         share = lambda outcome, area=area: 1e4 / (outcome.critical * area)  # noqa: E731
         check = Check("load over weight of the arch", exact, share, 3e-6)
-        scenes += in_both(ARCHES, deck, SIX_DIGITS, check, moved=2e-3)
+        scenes += benchmark_in_both(ARCHES, deck, SIX_DIGITS, check, moved=2e-3)
     return scenes
 
 
@@ -105,7 +107,7 @@ def _buttresses() -> list[Scene]:
         scene
         for height, width in ((1, 0.26813), (2, 0.33394), (3, 0.36364))
         for deck, share, state in (("stand", 1.01, "stable"), ("fall", 0.99, "collapsed"))
-        for scene in in_both(
+        for scene in benchmark_in_both(
             ARCHES, f"buttresses_{height}_{deck}", f"limit analysis: {width} R",
             verdict(state, f"buttresses {share * width:.5f} R wide"))
     ]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from voussoir.bench.validation_scene import MOVED, YOUNG, Check, Outcome, Scene, critical, in_both, verdict
+from voussoir.bench.checks import YOUNG, Check, Outcome, critical, verdict
+from voussoir.bench.scene import MOVED, Scene, benchmark, benchmark_in_both
 
 ASSEMBLIES = "Assemblies"
 
@@ -23,17 +24,17 @@ def _assemblies() -> list[Scene]:
         Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", _in_notch(phi), _normal(k), 1e-8, case)
         for case, phi in enumerate((0, 10, 20), 1) for k in (0, 1)
     ]
-    pairs = zip(in_both(ASSEMBLIES, "stack", "weight above", *stack),
-                in_both(ASSEMBLIES, "wedge_in_notch", "W/(2 (sin b + mu cos b))", *notch))
+    pairs = zip(benchmark_in_both(ASSEMBLIES, "stack", "weight above", *stack),
+                benchmark_in_both(ASSEMBLIES, "wedge_in_notch", "W/(2 (sin b + mu cos b))", *notch))
     scenes = [scene for pair in pairs for scene in pair]
     for deck, source, what, exact in (
         ("two_wedges", "W1 tan(a1 - phi) = W2 tan(phi - a2)", "unit weight of the passive wedge [N/m3]", wedges),
         ("slide_with_cohesion", "W (sin a - cos a tan phi)/A", "cohesion [Pa]", cohesion),
         ("post_and_lintel", "limit analysis", "horizontal force over weight", 1.0 / 3.0),
     ):
-        scenes += in_both(ASSEMBLIES, deck, source, critical(what, exact, 2e-8), moved=1e-4)
+        scenes += benchmark_in_both(ASSEMBLIES, deck, source, critical(what, exact, 2e-8), moved=1e-4)
     four = verdict("stable", "reference geometry"), verdict("stable", "current geometry", 2)
-    return [*scenes, Scene(ASSEMBLIES, "four_corners", "stands", four)]
+    return [*scenes, benchmark(ASSEMBLIES, "four_corners", "stands", *four)]
 
 
 def _in_notch(friction_deg: float) -> float:
@@ -105,14 +106,14 @@ def _pressed() -> list[Scene]:
     beam = tuple(Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust) for k in range(3))
     sagging = Check("thrust of the sagging beam over w LL/(8 (h - z))", 1.0, _sagging, 1e-4)
     roof = critical("unit weight of the wedge [N/m3]", pull, 1e-4)
-    pairs = zip(in_both(ASSEMBLIES, "jammed", "2 mu N = W", jammed),
-                in_both(ASSEMBLIES, "roof_wedge", "Brady and Brown, derived again", roof, moved=2e-3))
+    pairs = zip(benchmark_in_both(ASSEMBLIES, "jammed", "2 mu N = W", jammed),
+                benchmark_in_both(ASSEMBLIES, "roof_wedge", "Brady and Brown, derived again", roof, moved=2e-3))
     return [
         *(scene for pair in pairs for scene in pair),
-        Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", beam),
-        Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", (sagging,), MOVED),
-        Scene(ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0",
-              (critical("unit weight [N/m3]", bar, 1e-4),)),
+        benchmark(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", *beam),
+        benchmark(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", sagging, settings=MOVED),
+        benchmark(ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0",
+                  critical("unit weight [N/m3]", bar, 1e-4)),
     ]
 
 
@@ -143,7 +144,7 @@ def _walls() -> list[Scene]:
             what = f"tilt of limit analysis, friction {mu} [deg]"
             checks.append(Check(what, limit, _associated_tilt, 1e-4, case, scale=1.0))
             checks.append(critical(f"push of first collapse, friction {mu}", push, 2e-6, case))
-        scenes.append(Scene(ASSEMBLIES, deck, "loading path", tuple(checks)))
+        scenes.append(benchmark(ASSEMBLIES, deck, "loading path", *checks))
     return scenes
 
 

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, YOUNG, Check, Outcome, Scene
+from voussoir.bench.checks import DENSITY, GRAVITY, YOUNG, Check, Outcome
+from voussoir.bench.scene import Scene, benchmark
 
 ROCKING = "Blocks that rock"
 IMPACT = "Impact and energy"
@@ -83,18 +84,18 @@ def _rocking() -> list[Scene]:
             swing = _swing(block, math.atan2(b, h))
             checks.append(Check(f"next amplitude {start}", exact, swing, 1e-3))
         source = "Housner 1963, nonlinear"
-        scenes.append(Scene(ROCKING, deck, source, tuple(checks), rate=True))
+        scenes.append(benchmark(ROCKING, deck, source, *checks, rate=True))
     pulses = (("pulse_rocks", 0.98, "stands"), ("pulse_overturns", 1.02, "fallen"))
     for deck, share, falls in pulses:
         what = f"0.3 g for {share} of 0.40905 s"
         check = Check(what, falls, _fate(1, 0.2, 1.0))
-        scenes.append(Scene(ROCKING, deck, "nonlinear, integrated", (check,)))
+        scenes.append(benchmark(ROCKING, deck, "nonlinear, integrated", check))
     checks = []
     for k, (b, h, push, time) in enumerate(PULSES):
         for i, (share, falls) in enumerate(((0.98, "stands"), (1.02, "fallen")), 1):
             what = f"{2 * b:g} x {2 * h:g} m: {push:g} g for {share} of {time} s"
             checks.append(Check(what, falls, _fate(2 * k + i, b, h)))
-    return [*scenes, Scene(ROCKING, "pulses", "nonlinear, integrated", tuple(checks), slow=True)]
+    return [*scenes, benchmark(ROCKING, "pulses", "nonlinear, integrated", *checks, slow=True)]
 
 
 #: Half width, half height [m], push [g] and the time that overturns the block [s]
@@ -159,9 +160,9 @@ def _bounces() -> list[Scene]:
             met.append(Check(what, exact, speed, 1e-6, case, scale=3.0))
     never = Check("largest rise of energy in a step [J/m]", 0.0, largest_rise, 1e-6, scale=1.0)
     return [
-        Scene(IMPACT, "bounce", "e^(2n) H", (*tops, period, *rises), rate=True),
-        Scene(IMPACT, "collision", "v1 - (1 + e) m2/(m1 + m2) (v1 - v2)", tuple(met), rate=True),
-        Scene(IMPACT, "momentum", "energy never rises", (never,)),
+        benchmark(IMPACT, "bounce", "e^(2n) H", *tops, period, *rises, rate=True),
+        benchmark(IMPACT, "collision", "v1 - (1 + e) m2/(m1 + m2) (v1 - v2)", *met, rate=True),
+        benchmark(IMPACT, "momentum", "energy never rises", never),
     ]
 
 

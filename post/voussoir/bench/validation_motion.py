@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import partial
 
 import numpy as np
 
-from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, Scene, end, under, verdict
+from voussoir.bench.checks import DENSITY, GRAVITY, Check, Outcome, end, verdict
+from voussoir.bench.scene import Scene, benchmark
 
 FLIGHT = "Blocks that fly"
 SLIDING = "Blocks that slide"
@@ -117,7 +119,7 @@ def _flights() -> list[Scene]:
     away = "largest change of a corner's distance from the centre, relative"
     strain = Check(away, 0.0, _radius_change, 1e-12, scale=1.0)
     area = Check("largest change of area, relative", 0.0, _area_change, 1e-12, scale=1.0)
-    scene = under(FLIGHT)
+    scene = partial(benchmark, FLIGHT)
     return [
         scene(
             "free_fall", "-g tt/2; m (g t)^2/2",
@@ -163,7 +165,7 @@ def _slides() -> list[Scene]:
         verdict("collapsed" if case < 3 else "stable", f"{phi} deg, {geometry} geometry", case)
         for case, (phi, geometry) in enumerate(itertools.product((29.9, 30.1), ("reference", "current")), 1)
     ]
-    scene = under(SLIDING)
+    scene = partial(benchmark, SLIDING)
     return [
         scene("slope", "stands iff phi > a", *states),
         scene(
@@ -196,7 +198,8 @@ def _shaken() -> list[Scene]:
     One ground is given by its acceleration, its velocity and its displacement.
     """
     return [
-        under(SLIDING)(
+        benchmark(
+            SLIDING,
             deck, "Newmark 1965, integrated",
             Check("way down the slope at the end [m]", exact, _along(dip), 1e-2),
             Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24), rate=True)
@@ -234,7 +237,7 @@ def _sticking() -> Scene:
     """A block that a periodic force moves to and fro."""
     exact = stick_slip(5.0, 8.0, 10.0)
     check = Check("way after 10 s [m]", exact, end(0), 1e-2)
-    return Scene(SLIDING, "stick_slip", "F cos t against friction, integrated", (check,), rate=True)
+    return benchmark(SLIDING, "stick_slip", "F cos t against friction, integrated", check, rate=True)
 
 
 #: Every scene of this module

@@ -59,7 +59,7 @@ def write_lines(lines: Sequence[Line], file: Path) -> None:
     """Write the table with every digit; columns error_2, error_4 hold the errors in shorter steps."""
     longest = max((len(line.errors) for line in lines), default=1)
     write_csv(file, [*_COLUMNS, *(f"error_{2**k}" for k in range(1, longest))], (
-        [line.scene.section, line.scene.name, line.check.what, line.scene.source, line.check.exact, line.computed,
+        [line.scene.group, line.scene.name, line.check.what, line.scene.note, line.check.exact, line.computed,
          *line.errors[:1], line.check.accept, "" if line.rate is None else f"{line.rate:.3f}", f"{line.seconds:.3f}",
          _verdict(line), *line.errors[1:]]
         for line in lines
@@ -72,7 +72,7 @@ def page(lines: Sequence[Line], version: str) -> str:
     scenes = len({line.scene.name for line in lines})
     text = [_HEAD, f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."]
     heads = ("scene", "quantity", "exact", "computed", "error", "accepted", "rate", "time")
-    for section, own in itertools.groupby(lines, lambda line: line.scene.section):
+    for section, own in itertools.groupby(lines, lambda line: line.scene.group):
         text += ["", f"## {section}", "", *markdown(heads, "l" * len(heads), map(_row, own))]
     return "\n".join(text) + "\n" + _TAIL
 
@@ -99,5 +99,5 @@ def _row(line: Line) -> list[str]:
     if not line.accepted:
         cells[3] = f"{cells[3]} **MISSED**".strip()
     rate = "-" if line.rate is None else f"{round(line.rate, 1) + 0.0:.1f}"
-    name = f"`{line.scene.name}` ({line.scene.source})"
+    name = f"`{line.scene.name}` ({line.scene.note})"
     return [name, check.what, *cells, rate, f"{line.seconds:.2f}"]

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from voussoir.bench.validation_scene import GRAVITY, Check, Outcome, Scene, critical, in_both, verdict
+from voussoir.bench.checks import GRAVITY, Check, Outcome, critical, verdict
+from voussoir.bench.scene import Scene, benchmark, benchmark_in_both
 
 TOPPLING = "Blocks that topple"
 
@@ -56,7 +57,7 @@ def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
     exact = [foot_acceleration(b, h, slope * DEGREE, math.tan(phi * DEGREE)) for phi in friction]
     what = "acceleration of the foot, friction {:.4f} deg [m/s2]"
     checks = tuple(Check(what.format(friction[k]), exact[k], foot, 1e-2, k + 1, scale=exact[0]) for k in range(2))
-    return Scene(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", checks, rate=True)
+    return benchmark(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", *checks, rate=True)
 
 
 #: Stacks that lean out a little less and a little more than they can
@@ -81,12 +82,12 @@ def _toppling() -> Iterator[Scene]:
          critical("the same, tan phi 0.3", 0.3, 2e-8, 2)),
         ("column", "b/h", critical(force, 0.2, 2e-8)),
     ):
-        yield from in_both(TOPPLING, deck, source, *checks, moved=1e-4)
+        yield from benchmark_in_both(TOPPLING, deck, source, *checks, moved=1e-4)
     for onset in ONSETS:
         yield _onset(*onset)
     for deck, state, what in _OVERHANGS:
-        yield from in_both(TOPPLING, deck, "harmonic", verdict(state, what))
-    yield from in_both(
+        yield from benchmark_in_both(TOPPLING, deck, "harmonic", verdict(state, what))
+    yield from benchmark_in_both(
         TOPPLING, "goodman_bray", "Goodman and Bray 1976: 38.15; limit analysis: 33.4",
         verdict("stable", "40 deg", 1), verdict("collapsed", "32.9 deg", 5), verdict("collapsed", "30 deg", 6))
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 from voussoir.bench import (
     validation_arches, validation_assemblies, validation_impact, validation_motion, validation_rest, validation_strain,
 )
-from voussoir.bench.validation_scene import Check, Outcome, Scene
-from voussoir.dda_program import DdaError, path_word, set_options
+from voussoir.bench.checks import Check, Outcome
+from voussoir.bench.deck_runs import run_deck
+from voussoir.bench.scene import Scene
+from voussoir.dda_program import DdaError
 
 #: Errors below this are round-off: they have no rate
 ROUND_OFF = 1e-9
@@ -53,40 +53,25 @@ def all_scenes() -> tuple[Scene, ...]:
     sections = (
         validation_motion.FLIGHT, validation_motion.SLIDING, validation_rest.TOPPLING, validation_impact.ROCKING,
         validation_impact.IMPACT, validation_strain.STRAIN, validation_assemblies.ASSEMBLIES, validation_arches.ARCHES)
-    return tuple(sorted(scenes, key=lambda scene: sections.index(scene.section)))
+    return tuple(sorted(scenes, key=lambda scene: sections.index(scene.group)))
 
 
-def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]:
+def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
     """Run a scene, where it has a rate again in steps halved so often; DdaError has the program's own message."""
-    deck = decks / f"{scene.deck}.nml"
-    columns = []
+    deck, checks = decks / f"{scene.deck}.nml", scene.expectation.checks
+    columns, seconds = [], []
     for k in range(1 + (halvings if scene.rate else 0)):
-        settings = [*scene.settings, *_step(deck, k)]
         with tempfile.TemporaryDirectory() as folder:
-            start = time.monotonic()
-            _run(dda, deck, settings, Path(folder))
-            columns.append((time.monotonic() - start, _measured(scene, Path(folder))))
-    lines = []
-    for i, check in enumerate(scene.checks):
-        errors = tuple(check.error(values[i]) for _, values in columns)
-        lines.append(Line(scene, check, columns[0][1][i], errors, columns[0][0]))
-    return lines
-
-
-def _measured(scene: Scene, folder: Path) -> list[float | str]:
-    """What each check of a scene measures in the results of a run."""
-    outcomes = {case: Outcome(folder, case) for case in {check.case for check in scene.checks}}
-    return [check.measure(outcomes[check.case]) for check in scene.checks]
-
-
-def _run(dda: Path, deck: Path, settings: list[str], folder: Path) -> None:
-    """Run a deck into a folder."""
-    words = [str(dda), "run", path_word(deck), "--out", str(folder), "--quiet"]
-    words += set_options(settings)
-    done = subprocess.run(words, capture_output=True, text=True)
-    if done.returncode != 0:
-        message = done.stderr.strip() or f"dda run ended with status {done.returncode}"
-        raise DdaError(message, done.returncode)
+            finished = run_deck(deck, Path(folder), settings=[*scene.settings, *_step(deck, k)])
+            if finished.status != 0:
+                raise DdaError(finished.message or f"dda run ended with status {finished.status}", finished.status or 3)
+            outcomes = {case: Outcome(finished.folder, case) for case in {check.case for check in checks}}
+            columns.append([check.measure(outcomes[check.case]) for check in checks])
+            seconds.append(finished.seconds)
+    return [
+        Line(scene, check, values[0], tuple(map(check.error, values)), seconds[0])
+        for check, values in zip(checks, zip(*columns))
+    ]
 
 
 def _step(deck: Path, halvings: int) -> list[str]:

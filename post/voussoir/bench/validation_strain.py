@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from voussoir.bench.validation_scene import GRAVITY, YOUNG, Check, Outcome, Scene, in_both
+from voussoir.bench.checks import GRAVITY, YOUNG, Check, Outcome
+from voussoir.bench.scene import Scene, benchmark, benchmark_in_both
 
 STRAIN = "Strain of blocks"
 
@@ -34,10 +35,10 @@ def _strains() -> list[Scene]:
     swing = (Check("frequency, 1.10266 of the bar's [1/s]", frequency, _swings(1), 1e-3),)
     decay = (Check("amplitude lost in a cycle of 2565 steps", lost, _lost_amplitude, 1e-2),)
     return [
-        *in_both(STRAIN, "uniaxial", "Hooke", *pressed_checks),
-        *in_both(STRAIN, "bar_own_weight", "rho g HH/(2E)", *bar),
-        Scene(STRAIN, "bar_swings", "sqrt(3E/rho)/(2 pi H)", swing, rate=True),
-        Scene(STRAIN, "bar_swings", "a step: 1/sqrt(1 + (w dt)^2/2)", decay),
+        *benchmark_in_both(STRAIN, "uniaxial", "Hooke", *pressed_checks),
+        *benchmark_in_both(STRAIN, "bar_own_weight", "rho g HH/(2E)", *bar),
+        benchmark(STRAIN, "bar_swings", "sqrt(3E/rho)/(2 pi H)", *swing, rate=True),
+        benchmark(STRAIN, "bar_swings", "a step: 1/sqrt(1 + (w dt)^2/2)", *decay),
     ]
 
 
@@ -69,9 +70,9 @@ def _sheared() -> list[Scene]:
         for i, (name, exact) in enumerate((("sx", -1e6), ("sy", -2e6), ("txy", -5e5)))
     )
     return [
-        Scene(STRAIN, "pure_shear", "2 (1 + nu) tau/E", shear),
-        Scene(STRAIN, "stress_stays", "what it was", tuple(stays)),
-        Scene(STRAIN, "stress_turns", "sx, sy = sy, sx; txy = -txy", turned),
+        benchmark(STRAIN, "pure_shear", "2 (1 + nu) tau/E", *shear),
+        benchmark(STRAIN, "stress_stays", "what it was", *stays),
+        benchmark(STRAIN, "stress_turns", "sx, sy = sy, sx; txy = -txy", *turned),
     ]
 
 
@@ -93,8 +94,8 @@ def _chains() -> list[Scene]:
         for case, (what, e) in enumerate(moduli, 1)
     )
     return [
-        Scene(STRAIN, "glued_columns", "chain of n bar elements", tuple(columns)),
-        Scene(STRAIN, "wave", "sqrt(modulus/rho)", waves, slow=True),
+        benchmark(STRAIN, "glued_columns", "chain of n bar elements", *columns),
+        benchmark(STRAIN, "wave", "sqrt(modulus/rho)", *waves, slow=True),
     ]
 
 

@@ -81,7 +81,7 @@ def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iter
         yield made[name]()
 
 
-def _arch_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
+def _arch_panel(scene: scenes.SceneClass, folder: Path, repeats: int) -> Panel:
     """A panel of arches; linear programs where blocks do not move."""
     arch = Arch(90.0, 36)
     points = list(_dda_points(scene, lambda method: arch.exact(), folder, repeats))
@@ -90,7 +90,7 @@ def _arch_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
     return Panel(scene.title, tuple(points))
 
 
-def _block_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
+def _block_panel(scene: scenes.SceneClass, folder: Path, repeats: int) -> Panel:
     """A panel of blocks of a file: both answers, by the finest run and by its proven bounds."""
     finest = _run(scene, {"search": {"tolerance": 1e-12}}, folder, 1)
     row = finest.rows[0]
@@ -110,7 +110,7 @@ def _block_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
     return Panel(scene.title, tuple(points), associated / coulomb - 1.0)
 
 
-def _dda_points(scene: scenes.Scene, exact: Callable[[str], float], folder: Path, repeats: int) -> Iterator[Point]:
+def _dda_points(scene: scenes.SceneClass, exact: Callable[[str], float], folder: Path, repeats: int) -> Iterator[Point]:
     """All settings of the methods of dda."""
     for method, settings in scene.methods.items():
         for setting in settings:
@@ -128,7 +128,7 @@ def _words(setting: Mapping[str, Any]) -> str:
         value in keys.items())
 
 
-def _run(scene: scenes.Scene, setting: Mapping[str, Any], folder: Path, repeats: int) -> Finished:
+def _run(scene: scenes.SceneClass, setting: Mapping[str, Any], folder: Path, repeats: int) -> Finished:
     """Run one setting so many times within one process."""
     groups = merged(scene.groups, setting)
     penalty = groups.get("analysis", {}).pop("penalty_ratio", None)
@@ -168,7 +168,7 @@ def _median_time(solve: Callable[[], float], repeats: int) -> tuple[float, float
     return answer, statistics.median(times)
 
 
-def _bisected(scene: scenes.Scene, arch: Arch, repeats: int) -> Iterator[Point]:
+def _bisected(scene: scenes.SceneClass, arch: Arch, repeats: int) -> Iterator[Point]:
     """Critical thicknesses by bisection of linear programs, from 20 % below to 20 % above."""
     exact = arch.exact()
     for method, solver in ((scenes.SIMPLEX, "highs-ds"), (scenes.INTERIOR, "highs-ipm")):
@@ -189,7 +189,7 @@ def _bisect(arch: Arch, stands: Callable[..., bool], exact: float, goal: float) 
     return (low + high) / 2.0
 
 
-def _programs(scene: scenes.Scene, assembly: Assembly, exact: float, repeats: int) -> Iterator[Point]:
+def _programs(scene: scenes.SceneClass, assembly: Assembly, exact: float, repeats: int) -> Iterator[Point]:
     """The associated limit by linear programs."""
     friction = math.tan(math.radians(scene.friction_deg))
     for method, solver in ((scenes.SIMPLEX, "highs-ds"), (scenes.INTERIOR, "highs-ipm")):

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from voussoir.bench.deck_runs import Finished, run_deck
-from voussoir.bench.stability_scene import BLOCKS, Corners, rectangle, written_block
+from voussoir.bench.scene import BLOCKS, Corners, rectangle, written_block
 from voussoir.bench.validation_impact import next_amplitude, quarter_period
 from voussoir.bench.validation_motion import slide
-from voussoir.bench.validation_scene import GRAVITY, Outcome
+from voussoir.bench.checks import GRAVITY, Outcome
 from voussoir.bench.work_precision_scenes import ELASTIC, ORIGINAL, RIGID
 from voussoir.deck.text import Groups, deck_text, merged
 

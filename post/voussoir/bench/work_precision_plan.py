@@ -14,7 +14,7 @@ from typing import Any
 
 from voussoir.bench.deck_runs import read_rows
 from voussoir.bench.report_tables import markdown
-from voussoir.bench.stability_scene import BLOCKS, Corners, written_block
+from voussoir.bench.scene import BLOCKS, Corners, written_block
 from voussoir.bench.work_precision_runs import FRICTION_DEG, Arch
 from voussoir.dda_program import find_dda
 from voussoir.deck.text import Groups, deck_text

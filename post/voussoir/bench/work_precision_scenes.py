@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from voussoir.bench.stability_scene import BLOCKS, Corners, rectangle, written_block
+from voussoir.bench.scene import BLOCKS, Corners, rectangle, written_block
 
 #: Names of the methods, as legends have them; where each stands is a panel's affair
 RIGID = "DDA, rigid blocks"
@@ -27,7 +27,7 @@ Settings = tuple[Mapping[str, Any], ...]
 
 
 @dataclass(frozen=True)
-class Scene:
+class SceneClass:
     """A class of scenes, by one of them."""
 
     name: str  #: A word for tables
@@ -57,7 +57,7 @@ def _searched(kind: Mapping[str, Any], parameter: str, friction: float) -> dict[
         "search": {"parameter": parameter}}
 
 
-def arch() -> Scene:
+def arch() -> SceneClass:
     """A semicircle of 36 voussoirs: its critical thickness."""
     groups = _searched({"arch": {"half_angle_deg": 90.0, "voussoirs": 36}}, "thickness_ratio", 60.0)
     stiffness = _each("analysis", "penalty_ratio", (1.0, 1e4))
@@ -66,10 +66,10 @@ def arch() -> Scene:
         ELASTIC: _with(_FINE + stiffness, unknowns=6),
         ORIGINAL: _with(_COARSE, mode="limerick"),
     }
-    return Scene("arch", "Arch: critical thickness of 36 voussoirs", groups, methods, 60.0)
+    return SceneClass("arch", "Arch: critical thickness of 36 voussoirs", groups, methods, 60.0)
 
 
-def moving_arch() -> Scene:
+def moving_arch() -> SceneClass:
     """The same with blocks that move: how far its answer is from that of rigid ones."""
     groups = _searched({"arch": {"half_angle_deg": 90.0, "voussoirs": 36}}, "thickness_ratio", 60.0)
     current = {"analysis": {"geometry": "current"}, "search": {"tolerance": 1e-6}}
@@ -85,10 +85,10 @@ def moving_arch() -> Scene:
         ),
         ORIGINAL: _each("material", "young", (5e9, 5e11), analysis={"mode": "limerick"}, search={"tolerance": 1e-2}),
     }
-    return Scene("moving arch", "Arch that moves: critical thickness", groups, methods, 60.0)
+    return SceneClass("moving arch", "Arch that moves: critical thickness", groups, methods, 60.0)
 
 
-def wall(courses: int = 8, bricks: int = 5) -> Scene:
+def wall(courses: int = 8, bricks: int = 5) -> SceneClass:
     """A wall of bricks, half a brick displaced: the horizontal force that fells it."""
     text = written_block(rectangle(-1.0, -0.5, bricks + 2.0, 0.5), "fixed")
     for course in range(courses):
@@ -100,10 +100,10 @@ def wall(courses: int = 8, bricks: int = 5) -> Scene:
     original = tuple({"search": {"low": 0.1, "high": 1.0, "tolerance": 10.0**-k}} for k in (1, 2))
     methods = {COULOMB: _FINE, ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")}
     title = f"Wall of {courses} courses: the push that fells it"
-    return Scene("wall", title, groups, methods, 30.0, {BLOCKS: text})
+    return SceneClass("wall", title, groups, methods, 30.0, {BLOCKS: text})
 
 
-def three_rings(rings: int = 3, voussoirs: int = 16) -> Scene:
+def three_rings(rings: int = 3, voussoirs: int = 16) -> SceneClass:
     """An arch of three rings that slide on one another: the load at its quarter point."""
     inner, depth, half = 5.0, 0.25, math.radians(75.0)
     angles = [half * (2.0 * k / voussoirs - 1.0) for k in range(voussoirs + 1)]
@@ -133,4 +133,4 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> Scene:
         COULOMB: _FINE[1:6:2], ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")
     }
     title = "Three rings: load at the quarter point that fells them"
-    return Scene("three rings", title, groups, methods, 35.0, {BLOCKS: text}, number, (x, y))
+    return SceneClass("three rings", title, groups, methods, 35.0, {BLOCKS: text}, number, (x, y))

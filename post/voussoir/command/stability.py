@@ -11,9 +11,9 @@ from itertools import chain
 from pathlib import Path
 
 from voussoir.bench.deck_runs import Finished, Row, run_deck
-from voussoir.bench.stability_judge import RIGHT, UNDECIDED, WRONG, judge
+from voussoir.bench.expectations import RIGHT, UNDECIDED, WRONG, judge
 from voussoir.bench.stability_page import Line, headline, write_lines, write_markdown, write_page
-from voussoir.bench.stability_scene import Scene
+from voussoir.bench.scene import Scene
 from voussoir.bench.stability_scenes import catalogue, random_scenes
 from voussoir.command.options import whole_number
 from voussoir.dda_program import find_dda
@@ -88,7 +88,7 @@ def _line(scene: Scene, finished: Finished) -> Line:
         scene.group, scene.name, judgement.colour, scene.expectation.wanted(), judgement.found, judgement.error,
         total("open_close_iterations"), total("factorisations"), f"{max(conditions):.1e}" if conditions else "",
         f"{sum(float(row['seconds']) for row in rows):.4f}" if rows else "",
-        "; ".join(filter(None, [scene.guard, _seen_guard(rows)])), judgement.reason
+        "; ".join(filter(None, [scene.note, _seen_guard(rows)])), judgement.reason
     )
 
 

@@ -26,15 +26,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the scenes and write the table: 1 if an error is larger than accepted."""
-    dda = find_dda()
-    lines = _lines(arguments, dda)
+    lines = _lines(arguments)
     arguments.out.mkdir(parents=True, exist_ok=True)
     write_lines(lines, arguments.out / "validation.csv")
-    (arguments.out / "validation.md").write_text(page(lines, version_of(dda)), encoding="utf-8")
+    (arguments.out / "validation.md").write_text(page(lines, version_of(find_dda())), encoding="utf-8")
     return 0 if all(line.accepted for line in lines) else 1
 
 
-def _lines(arguments: argparse.Namespace, dda: Path) -> list[Line]:
+def _lines(arguments: argparse.Namespace) -> list[Line]:
     """Lines of all scenes that were asked for."""
     scenes = all_scenes()
     names = {scene.deck for scene in scenes}
@@ -47,7 +46,7 @@ def _lines(arguments: argparse.Namespace, dda: Path) -> list[Line]:
     for scene in scenes:
         if arguments.scenes and scene.deck not in arguments.scenes:
             continue
-        for line in run_scene(dda, decks, scene, arguments.halvings):
+        for line in run_scene(decks, scene, arguments.halvings):
             lines.append(line)
             if not arguments.quiet:
                 print(told(line), flush=True)

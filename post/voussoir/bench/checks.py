@@ -1,15 +1,13 @@
-"""A scene of the validation suite: its deck, and what is taken from the results and compared."""
+"""Quantities with exact answers: how they are taken from the results of a run, and compared."""
 
 from __future__ import annotations
 
 import csv
-import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -106,34 +104,6 @@ class Check:
         return abs(computed - self.exact) / abs(self.exact if self.scale is None else self.scale)
 
 
-@dataclass(frozen=True)
-class Scene:
-    """A deck of `input/benchmarks` and its checks."""
-
-    section: str  #: Heading under which it stands
-    deck: str  #: Name of the deck
-    source: str  #: Where the exact values come from: a formula or a name
-    checks: tuple[Check, ...]  #: What is compared
-    settings: tuple[str, ...] = ()  #: Values of --set
-    slow: bool = False  #: Whether one run takes longer than two seconds
-    rate: bool = False  #: Whether it is run again in shorter steps
-
-    @property
-    def name(self) -> str:
-        """The deck, with what was set."""
-        values = [setting.partition("=")[2] for setting in self.settings]
-        return " ".join([self.deck, *values])
-
-
-def under(section: str) -> Callable[..., Scene]:
-    """What makes scenes below a heading: of a deck, a source, checks, and the other fields by their names."""
-
-    def scene(deck: str, source: str, *checks: Check, **others: Any) -> Scene:
-        return Scene(section, deck, source, checks, **others)
-
-    return scene
-
-
 def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:
     """Measure of a displacement at the end [m]."""
     return lambda outcome: float(outcome.end(point)[axis])
@@ -147,13 +117,3 @@ def verdict(exact: str, what: str, case: int = 1) -> Check:
 def critical(what: str, exact: float, accept: float, case: int = 1, scale: float | None = None) -> Check:
     """A check of a critical value."""
     return Check(what, exact, lambda outcome: outcome.critical, accept, case, scale)
-
-
-#: Settings of a scene with blocks that move
-MOVED = ("analysis%geometry=current",)
-
-
-def in_both(section: str, deck: str, source: str, *checks: Check, moved: float | None = None) -> list[Scene]:
-    """A deck in reference geometry, and with blocks that move and strain, where errors may be `moved`."""
-    elastic = checks if moved is None else tuple(dataclasses.replace(check, accept=moved) for check in checks)
-    return [Scene(section, deck, source, checks), Scene(section, deck, source, elastic, MOVED)]

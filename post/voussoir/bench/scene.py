@@ -1,32 +1,38 @@
-"""A stiff or extreme scene: its deck, its files, what it must answer."""
+"""A scene of validation or stability: its deck, its files, what it must answer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from voussoir.bench.stability_judge import Expectation
+from voussoir.bench.checks import Check
+from voussoir.bench.expectations import Expectation, Measured
 from voussoir.deck.text import deck_text
 
 #: Corners of a polygon [m]
 Corners = Sequence[tuple[float, float]]
 #: Name of the file of blocks beside a deck
 BLOCKS = "scene.blocks"
+#: Settings of a benchmark with blocks that move
+MOVED = ("analysis%geometry=current",)
 #: Both geometries, with the modulus that makes moving blocks nearly rigid [Pa]
 GEOMETRIES = (("reference", 5e9), ("current", 5e12))
 
 
 @dataclass(frozen=True)
 class Scene:
-    """One scene."""
+    """A deck and what it must answer."""
 
-    group: str  #: What is extreme about it
+    group: str  #: Heading under which it stands
     name: str  #: Its place in the group
-    deck: dict[str, dict[str, Any]] | bytes  #: Groups of the deck: keys and values; or the deck as it is written
+    deck: dict[str, dict[str, Any]] | bytes | str  #: Groups of keys and values; as it is written; a benchmark's name
     expectation: Expectation  #: What it must answer
-    guard: str  #: What keeps the answer right
+    note: str  #: Where the exact answer comes from, or what keeps the answer right
     files: Mapping[str, str] = field(default_factory=dict)  #: Names and texts of the files beside the deck
+    settings: tuple[str, ...] = ()  #: Values of --set
+    rate: bool = False  #: Whether it is run again in shorter steps
+    slow: bool = False  #: Whether one run takes longer than two seconds
 
     @property
     def has_lean_plan(self) -> bool:
@@ -40,6 +46,23 @@ class Scene:
         told = {"joints": False, "blocks": False} if lean else {"condition": True}
         output = {"vtu": False, **told, **self.deck.get("output", {})}
         return deck_text({**self.deck, "output": output}).encode()
+
+
+def benchmark(
+    group: str, deck: str, source: str, *checks: Check, settings: tuple[str, ...] = (), **others: bool
+) -> Scene:
+    """A deck of `input/benchmarks`, named with what is set, and where its exact values come from."""
+    name = " ".join([deck, *(setting.partition("=")[2] for setting in settings)])
+    return Scene(group, name, deck, Measured(checks), source, settings=settings, **others)
+
+
+def benchmark_in_both(
+    group: str, deck: str, source: str, *checks: Check, moved: float | None = None
+) -> Iterator[Scene]:
+    """A benchmark in reference geometry, and with blocks that move and strain, where errors may be `moved`."""
+    yield benchmark(group, deck, source, *checks)
+    elastic = checks if moved is None else (replace(check, accept=moved) for check in checks)
+    yield benchmark(group, deck, source, *elastic, settings=MOVED)
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> list[tuple[float, float]]:

@@ -1,4 +1,4 @@
-"""What a stiff or extreme scene must answer, and the judgement of what it did answer."""
+"""What a scene must answer, and the judgement of what it did answer."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from voussoir.bench.deck_runs import Finished, Row
-from voussoir.bench.validation_scene import Check, Outcome
+from voussoir.bench.checks import Check, Outcome
 
 RIGHT, UNDECIDED, WRONG = "right", "undecided", "WRONG"
 
