@@ -1,10 +1,5 @@
-!> Orders of the blocks: reverse Cuthill-McKee keeps a matrix narrow, nested dissection (A. George,
-!> 1973) separates the blocks again and again
-!>
-!> The few blocks that part a group in two are eliminated after both parts. Elimination then costs
-!> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Groups are cut
-!> where it is as far to one of their corners as to another, which of six such cuts meets the fewest
-!> blocks; parts that are small enough are eliminated by minimum degree.
+!> Orders in which blocks are eliminated: a narrow one (reverse Cuthill-McKee), by minimum degree,
+!> or by nested dissection
 module dda_block_order
    implicit none
    private
