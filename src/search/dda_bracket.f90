@@ -34,19 +34,50 @@ contains
 
    !> Search the critical value of a family of scenes
    module procedure find_critical
+      type(search_t) :: part
       logical :: done
 
       done = search%in_time
+      part = search
       if (done) call find_critical_in_time(family, search, critical)
       if (.not. done .and. family%load /= searched_load%none) &
-         & call find_critical_load(family, search, critical, done)
+         & call find_critical_load(family, part, critical, done)
       if (done) return
-      call close_bracket(family, search, critical)
+      call close_bracket(family, part, critical)
+      if (part%low > search%low) call find_other(family, search, part%low, critical)
       if (allocated(critical%standing) .and. .not. family%decides_chains) &
          & call share_forces(family, critical)
       if (allocated(critical%fallen)) call unfold(critical%fallen)
       if (allocated(critical%standing)) call unfold(critical%standing)
    end procedure find_critical
+
+   !> Search the other side of a value that stands: what is found there is told beside what was
+   !> found on this side, or instead of it
+   pure subroutine find_other(family, search, stands, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: stands  !! The value that stands
+      type(critical_t), intent(inout) :: critical
+      type(search_t) :: part
+      type(critical_t) :: other
+      integer :: steps, passes, factorisations
+
+      part = search
+      part%high = stands
+      call close_bracket(family, part, other)
+      steps = critical%steps + other%steps
+      passes = critical%passes + other%passes
+      factorisations = critical%factorisations + other%factorisations
+      if (critical%verdict == verdict%found) then
+         critical%has_other = other%verdict == verdict%found
+         critical%other = merge(other%stop, middle(other%stands, other%falls), other%stops)
+      else if (critical%verdict /= verdict%undecided .and. other%verdict == verdict%found) then
+         critical = other
+      end if
+      critical%steps = steps
+      critical%passes = passes
+      critical%factorisations = factorisations
+   end subroutine find_other
 
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)

@@ -96,7 +96,9 @@ module dda_critical
       !> Search a family whose parameter is a load coefficient
       pure module subroutine find_critical_load(family, search, critical, done)
          class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
+         !> What is searched; where it is not done its low end may become a value that may stand
+         !> between others that fall
+         type(search_t), intent(inout) :: search
          type(critical_t), intent(inout) :: critical
          logical, intent(out) :: done  !! Whether the search could be done so
       end subroutine find_critical_load

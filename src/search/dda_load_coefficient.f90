@@ -9,6 +9,7 @@ module dda_load_coefficient
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_stations, only : bears_live_load, last_history_time, load_stations, &
       & load_stations_t, loads_at, only_weight
+   use dda_path_event, only : path_end
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph, graph_verdict_t, has_friction
    use dda_settings, only : flow_rule, full_push, settings_t
@@ -16,7 +17,8 @@ module dda_load_coefficient
    private
 
    public :: added_loads, can_follow, carry_load, coefficient, full_loads
-   public :: is_push, knows_no_order, restore_weight, seek_rest, value_at_end, with_coefficient
+   public :: is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end
+   public :: with_coefficient
 
    !> A coefficient beside which rounding of the constant loads is not felt
    real(wp), parameter :: many = 2.0_wp**40
@@ -49,6 +51,19 @@ contains
 
       knows_no_order = settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)
    end function knows_no_order
+
+   !> Whether limit analysis can rule values out, whatever leads to them: under Coulomb friction
+   !> live loads come later than dead ones that fall, but gravity acts as it is
+   pure logical function may_seek(load, scene, no_order, width)
+      integer, intent(in) :: load
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: no_order  !! Whether the order in which loads come is nothing to it
+      real(wp), intent(in) :: width    !! How wide the range is
+
+      may_seek = no_order
+      if (load == searched_load%tilt) may_seek = only_weight(scene%settings) &
+         & .and. width <= acos(-1.0_wp)
+   end function may_seek
 
    !> Whether gravity that tilts so far is upright gravity and a push, but for its size
    pure logical function is_push(tilt)
@@ -109,30 +124,41 @@ contains
    end function full_loads
 
    !> Forces that carry the loads at a value that stands; those that carry a limit do not carry less
-   pure subroutine carry_load(load, value, scene, graph, force)
+   pure subroutine carry_load(load, value, scene, graph, proof)
       integer, intent(in) :: load
       real(wp), intent(in) :: value
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> N1, N2, T: (3, n_joint); not allocated where none are found [N/m]
-      real(wp), allocatable, intent(out) :: force(:, :)
+      !> The verdict there; one that stands without a path gets its forces, none where none are
+      !> found
+      type(graph_verdict_t), intent(inout) :: proof
       type(load_decision_t) :: decision
 
+      if (proof%end /= path_end%reached .or. allocated(proof%state)) return
+      if (allocated(proof%force)) deallocate (proof%force)
       call decide_load(graph, full_loads(with_coefficient(scene%settings, load, value), scene, &
          & graph), decision)
-      if (decision%state == load_state%stands) call move_alloc(decision%force, force)
+      if (decision%state == load_state%stands) call move_alloc(decision%force, proof%force)
    end subroutine carry_load
 
-   !> What a coefficient of one adds to the loads
-   pure function added_loads(load, settings, scene, graph) result(live)
+   !> What a coefficient of one adds to the loads; of gravity that tilts, what its angle adds at
+   !> first
+   pure function added_loads(load, settings, scene, graph, value) result(live)
       integer, intent(in) :: load
       type(settings_t), intent(in) :: settings
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      real(wp) :: live(3, graph%n_block)  !! The loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in), optional :: value   !! The angle that gravity has, of one that tilts
+      real(wp) :: live(3, graph%n_block)        !! The loads: (3, n_block) [N/m, N/m, N]
+      type(settings_t) :: none
+      integer :: varied
 
-      live = (full_loads(with_coefficient(settings, load, many), scene, graph) &
-         & - full_loads(with_coefficient(settings, load, 0.0_wp), scene, graph))/many
+      varied = merge(searched_load%push, load, load == searched_load%tilt)
+      none = with_coefficient(settings, load, 0.0_wp)
+      live = (full_loads(with_coefficient(none, varied, many), scene, graph) &
+         & - full_loads(with_coefficient(none, varied, 0.0_wp), scene, graph))/many
+      if (load /= searched_load%tilt .or. .not. present(value)) return
+      live = cos(value)*live - sin(value)*full_loads(none, scene, graph)
    end function added_loads
 
    !> Value of what is searched at which a path ended
@@ -177,39 +203,61 @@ contains
       proof%state%load = proof%state%load/weight
    end subroutine restore_weight
 
-   !> A value of the range that stands, where 0 does not. Values that stand lie between two others:
-   !> the mechanism of one that falls says on which side of it, and how far off at least
+   !> A value of the range that stands, where 0 does not. The mechanism of one that falls rules out
+   !> all values at which the loads drive it: a half line, or half a turn of gravity. What is left
+   !> of the range is looked through until a value stands or nothing is left
    pure subroutine seek_rest(load, scene, graph, low, high, value, found, n_factorisation)
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: low, high        !! The range
-      real(wp), intent(out) :: value           !! The value
+      !> The range; becomes what is not ruled out, nothing of it where high is no more than low
+      real(wp), intent(inout) :: low, high
+      real(wp), intent(out) :: value           !! The value, or the low end
       logical, intent(out) :: found            !! Whether there is one
       integer, intent(out) :: n_factorisation  !! Factorisations
       integer, parameter :: most = 60
       type(load_decision_t) :: decision
-      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), from, to, power, stop
+      real(wp) :: ruled_out(2), first
       integer :: i
 
-      dead = full_loads(with_coefficient(scene%settings, load, 0.0_wp), scene, graph)
-      live = added_loads(load, scene%settings, scene, graph)
-      from = low
-      to = high
+      first = low
       value = 0.0_wp
       n_factorisation = 0
       do i = 1, most
-         call decide_load(graph, dead + value*live, decision)
+         call decide_load(graph, full_loads(with_coefficient(scene%settings, load, value), scene, &
+            & graph), decision)
          n_factorisation = n_factorisation + decision%n_factorisation
          if (decision%state /= load_state%falls) exit
-         power = sum(live*decision%velocity(:3, :))
-         if (.not. abs(power) > 0.0_wp) exit
-         stop = value - sum((dead + value*live)*decision%velocity(:3, :))/power
-         if (power < 0.0_wp) from = max(from, stop)
-         if (power > 0.0_wp) to = min(to, stop)
-         if (.not. to > from) exit
-         value = 0.5_wp*(from + to)
+         ruled_out = driven_range(load, scene, graph, value, decision%velocity(:3, :))
+         if (ruled_out(1) <= low) low = max(low, ruled_out(2))
+         if (ruled_out(2) >= high) high = min(high, ruled_out(1))
+         if (.not. high > low) exit
+         value = 0.5_wp*(low + high)
       end do
       found = decision%state == load_state%stands
+      if (.not. found) value = first
    end subroutine seek_rest
+
+   !> Values at which the loads drive a mechanism that they drive at one of them
+   pure function driven_range(load, scene, graph, value, velocity) result(range)
+      integer, intent(in) :: load
+      type(scene_t), intent(in) :: scene
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: value           !! The value
+      real(wp), intent(in) :: velocity(:, :)  !! The mechanism: (3, n_block)
+      real(wp) :: range(2)                    !! From and to
+      real(wp), parameter :: quarter = acos(0.0_wp)
+      real(wp) :: power, rate
+
+      power = sum(full_loads(with_coefficient(scene%settings, load, value), scene, graph)*velocity)
+      rate = sum(added_loads(load, scene%settings, scene, graph, value)*velocity)
+      if (load == searched_load%tilt) then
+         ! gravity drives it most in one direction, and up to a quarter to either side of that
+         range = value + atan2(rate, power) + [-quarter, quarter]
+      else
+         range = [-huge(rate), huge(rate)]
+         if (rate < 0.0_wp) range(2) = value - power/rate
+         if (rate > 0.0_wp) range(1) = value - power/rate
+      end if
+   end function driven_range
 end module dda_load_coefficient

@@ -10,8 +10,7 @@ submodule (dda_critical) dda_load_search
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
-      & is_push, knows_no_order, restore_weight, seek_rest, value_at_end, &
-      & with_coefficient
+      & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_path_event, only : path_end
    use dda_scene, only : scene_t, searched_load
@@ -48,7 +47,7 @@ submodule (dda_critical) dda_load_search
       type(graph_verdict_t) :: proof
    end type side_t
 
-   !> Share by which a limit is surpassed to see how the blocks move
+   !> Share by which a limit is surpassed to see how the blocks move, or to find it
    real(wp), parameter :: nudge = 1.0e-2_wp
    !> Relative accuracy of a loading path
    real(wp), parameter :: path_resolution = 1.0e-9_wp
@@ -64,8 +63,8 @@ contains
       type(scene_t) :: scene
       type(side_t) :: right, left
       real(wp) :: low, high, origin
-      logical :: found
       integer :: n
+      logical :: rest
 
       call family%build(search%low, scene, error)
       done = .not. allocated(error)
@@ -83,28 +82,55 @@ contains
       ! from an unloaded state outside the range, the path leads through it
       call follow_side(family%load, scene, graph, 0.0_wp, high, 1.0_wp, search, right)
       call follow_side(family%load, scene, graph, 0.0_wp, low, -1.0_wp, search, left)
-      n = 0
-      if ((right%falls_dead .or. left%falls_dead) .and. family%load /= searched_load%tilt &
-         & .and. knows_no_order(scene%settings, graph)) then
-         call seek_rest(family%load, scene, graph, low, high, origin, found, n)
-         if (found) then
-            n = n + right%proof%n_factorisation + left%proof%n_factorisation
-            call follow_side(family%load, scene, graph, origin, high, 1.0_wp, search, right)
-            call follow_side(family%load, scene, graph, origin, low, -1.0_wp, search, left)
-         end if
-      end if
+      call look_elsewhere(family%load, scene, graph, search, low, high, right, left, origin, &
+         & rest, n)
       call tell_fall(scene%settings, graph, right)
       call tell_fall(scene%settings, graph, left)
-      if (right%proof%end == path_end%reached .and. .not. allocated(right%proof%state)) &
-         & call carry_load(family%load, high, scene, graph, right%proof%force)
-      if (left%proof%end == path_end%reached .and. .not. allocated(left%proof%state)) &
-         & call carry_load(family%load, low, scene, graph, left%proof%force)
+      call carry_load(family%load, high, scene, graph, right%proof)
+      call carry_load(family%load, low, scene, graph, left%proof)
       critical%factorisations = n + right%proof%n_factorisation + left%proof%n_factorisation
       critical%steps = right%proof%n_event + left%proof%n_event
       ! what does not stand upright may do so under gravity that acts another way from the beginning
-      done = family%load /= searched_load%tilt .or. right%stands_upright .and. left%stands_upright
+      done = family%load /= searched_load%tilt .or. .not. rest &
+         & .or. right%stands_upright .and. left%stands_upright
       if (done) call conclude(search, low, high, scene, right, left, critical)
+      search%low = search%low + (origin - low)*(search%high - search%low)/(high - low)
+      search%start = search%low
    end procedure find_critical_load
+
+   !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
+   pure subroutine look_elsewhere(load, scene, graph, search, low, high, right, left, origin, &
+      & may_stand, n)
+      integer, intent(in) :: load  !! One of searched_load
+      type(scene_t), intent(in) :: scene
+      type(joint_graph_t), intent(in) :: graph
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: low, high  !! The range
+      type(side_t), intent(inout) :: right, left
+      real(wp), intent(out) :: origin    !! A value that may stand, low where none is known
+      logical, intent(out) :: may_stand  !! Whether not all of the range is known to fall
+      integer, intent(out) :: n          !! Factorisations but for those of the two sides
+      real(wp) :: from, to, margin
+      logical :: found, no_order
+
+      n = 0
+      origin = low
+      from = low
+      to = high
+      may_stand = .true.
+      no_order = knows_no_order(scene%settings, graph)
+      if (.not. (right%falls_dead .or. left%falls_dead)) return
+      if (.not. may_seek(load, scene, no_order, to - from)) return
+      if (.not. no_order .and. right%stands_upright .and. left%stands_upright) return
+      call seek_rest(load, scene, graph, from, to, origin, found, n)
+      may_stand = to > from
+      if (.not. (found .and. no_order)) return
+      n = n + right%proof%n_factorisation + left%proof%n_factorisation
+      ! what is ruled out begins at a limit or beyond
+      margin = nudge*(to - from)
+      call follow_side(load, scene, graph, origin, min(high, to + margin), 1.0_wp, search, right)
+      call follow_side(load, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
+   end subroutine look_elsewhere
 
    !> How a side falls that limit analysis brings down
    pure subroutine tell_fall(settings, graph, side)
@@ -145,9 +171,9 @@ contains
       call find_associated(load, scene, graph, origin, last - origin, search, side, limit)
       side%falls_dead = limit%state == limit_state%no_dead_equilibrium
       far = last
+      if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
       associate (proof => side%proof)
          proof%n_factorisation = limit%n_factorisation
-         if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
          side%stands_upright = knows_no_order(scene%settings, graph)
          if (side%stands_upright .or. side%falls_dead) then
             call take_associated(last - origin, search, limit, side)
@@ -197,26 +223,17 @@ contains
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: origin  !! Value that limit analysis begins with
-      real(wp), intent(in) :: last    !! End of the range, from there
+      real(wp), intent(in) :: origin, last  !! Where it begins, and from there the end of the range
       type(search_t), intent(in) :: search
       type(side_t), intent(inout) :: side
       type(limit_load_t), intent(out) :: limit
-      type(settings_t) :: settings
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), tolerance
-      integer :: varied
 
       if (load == searched_load%tilt .and. .not. (only_weight(scene%settings) &
          & .and. is_push(last))) return
-      varied = load
-      settings = scene%settings
-      if (load == searched_load%tilt) then
-         ! upright gravity and a push are gravity that tilts
-         settings%tilt = 0.0_wp
-         varied = searched_load%push
-      end if
-      dead = full_loads(with_coefficient(settings, varied, origin), scene, graph)
-      live = sign(1.0_wp, last)*added_loads(varied, settings, scene, graph)
+      dead = full_loads(with_coefficient(scene%settings, load, origin), scene, graph)
+      ! gravity and a push across it are gravity that tilts
+      live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
       side%has_limit = limit%state == limit_state%found

@@ -159,3 +159,28 @@ def test_a_jump_that_settles_by_no_small_push_is_a_fall(tmp_path: Path) -> None:
     loads = ", ".join(repr(critical * share) for share in (0.9, 0.999, 1.001, 1.1, 5.0))
     decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
     assert [row["verdict"] for row in decided] == [*2 * ["stable"], *3 * ["collapsed"]]
+
+
+RAMP = "block fixed\n-4 -6\n4 -6\n4 -4\n-4 4\nblock\n-1 1\n1 -1\n2 0\n0 2\n"
+
+
+@pytest.mark.parametrize("flow", ["coulomb", "associated"])
+@pytest.mark.parametrize(("low", "high"), [(-169, -91), (-160, -20), (-130, -20)])
+def test_gravity_that_tilts_is_searched_where_nothing_stands_upright(
+    tmp_path: Path, flow: str, low: float, high: float
+) -> None:
+    """A block on a slope of 45 degrees, friction 30: it stands for gravity 30 degrees about the slope's normal."""
+    search = f"&search parameter = 'gravity_direction_deg', low = {low}, high = {high} /"
+    (row,) = rows(tmp_path, RAMP, f"&analysis flow = '{flow}' /\n&joint friction_deg = 30 /\n{search}")
+    assert row["verdict"] == "found" and float(row["critical"]) == pytest.approx(-105.0, abs=1e-6)
+    run = run_dda("run", "deck.nml", cwd=tmp_path)
+    assert ("it also collapses at -16" in run.stdout) == (low < -165)
+
+
+@pytest.mark.parametrize("seed", [97000, 97060, 97100])
+def test_what_no_direction_of_gravity_lets_stand_falls_by_a_few_factorisations(tmp_path: Path, seed: int) -> None:
+    """Walls and slopes of 41 to 53 blocks: each mechanism rules out half a turn of gravity."""
+    search = "&search parameter = 'gravity_direction_deg', low = -90, high = -20 /"
+    (row,) = rows(tmp_path, block_text(*make_pushed(seed)), search)
+    assert row["verdict"] == "collapsed"
+    assert int(row["factorisations"]) <= 100 and int(row["open_close_iterations"]) == 0
