@@ -1,7 +1,7 @@
 !> The table that a run shows: a line a case, in their order, and no wider than the screen
 module dda_case_table
    use dda_case, only : searched_name
-   use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, scene_kind
+   use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, source_of
    use dda_deck_sweep, only : n_cases, swept_texts
    use dda_screen, only : print_line, screen_t, screen_width
    use dda_text, only : to_text
@@ -132,7 +132,7 @@ contains
       integer :: s
 
       searched = searched_name(deck)
-      arch = scene_kind(deck) == "arch"
+      arch = source_of(deck) == "arch"
       associate (swept => deck%sweeps%name)
          ! a run in time ends when it is over, not with a collapse
          falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")

@@ -4,9 +4,10 @@ module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, key_error, scene_kind
+   use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t
+   use dda_key_names, only : scene_kind, search_group
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
@@ -47,9 +48,9 @@ contains
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error)) call cut_lines(deck, error)
-         if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") &
+         if (.not. allocated(error) .and. deck%value(scene_kind)%text == "blocks") &
             & call key_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
-            & //"'blocks'; copy the file that it names", deck, "scene", "kind")
+            & //"'blocks'; copy the file that it names", deck, scene_kind)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             deck_status = exit_status%bad_input
@@ -80,7 +81,7 @@ contains
          if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
          call case_deck(deck, number, case_of_deck, error)
          if (.not. allocated(error)) then
-            if (scene_kind(case_of_deck) /= "arch") then
+            if (source_of(case_of_deck) /= "arch") then
                call export_blocks(command, stem, case_of_deck, status)
                if (status /= exit_status%success) return
                cycle
@@ -126,7 +127,7 @@ contains
          & "step and penalty, plane strain and gravity (only as unit weight over unit mass)")
       if (what_is_lost(deck) /= "") call print_line(screen, &
          & "   neither form has a place for "//what_is_lost(deck))
-      if (deck%search%given) call print_line(screen, &
+      if (has_group(deck, search_group)) call print_line(screen, &
          & "   the search is not written: the files hold the deck's own value of its parameter")
    end subroutine tell
 end module dda_export

@@ -1,9 +1,12 @@
 !> The plan of a deck in words: what would be computed, and how
 submodule (dda_check) dda_print_plan
    use dda_boundary, only : boundary_t
-   use dda_deck, only : geometry_of, keeps_velocities, scene_kind
+   use dda_deck, only : geometry_of, has_group, keeps_velocities, source_of
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : case_deck, n_cases
+   use dda_key_names, only : analysis_mode, output_condition, output_energy, output_frames, &
+      & output_joints, output_restart, output_vtu, scene_kind, scene_title, search_group, &
+      & search_parameter
    use dda_limerick_model, only : half_size, limerick_model_t
    use dda_limerick_scene, only : limerick_scene
    use dda_model_table, only : models_of, searches_of
@@ -24,20 +27,20 @@ contains
       integer :: s, blocks
       logical :: arch
 
-      arch = scene_kind(deck) == "arch"
+      arch = source_of(deck) == "arch"
       call case_deck(deck, 1, first, error)
       plan = plan_scene(first)
-      if (deck%scene%kind%word /= "blocks") call deck_scene(first, plan, scene)
+      if (deck%value(scene_kind)%text /= "blocks") call deck_scene(first, plan, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       do s = 1, size(deck%sweeps)
          swept = swept//" "//trim(deck%sweeps(s)%name)
       end do
-      call print_line(screen, name//": "//deck%scene%title%text)
+      call print_line(screen, name//": "//deck%value(scene_title)%text)
       call tell(screen, "cases", to_text(n_cases(deck)))
       if (swept /= "") call tell(screen, "swept", swept(2:))
-      if (deck%search%given) then
-         call tell(screen, "search", deck%search%parameter%text)
+      if (has_group(deck, search_group)) then
+         call tell(screen, "search", deck%value(search_parameter)%text)
       else
          call tell(screen, "search", "none")
       end if
@@ -46,7 +49,7 @@ contains
       if (allocated(error)) call tell(screen, "not to run", error_line(error))
       call print_line(screen, "   the first case:")
       call print_model(screen, first)
-      if (first%analysis%mode%word == "limerick") then
+      if (first%value(analysis_mode)%text == "limerick") then
          call print_limerick_plan(screen, first, scene)
          return
       end if
@@ -97,8 +100,8 @@ contains
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: kind, mode
 
-      kind = trim(scene_kind(deck))
-      mode = trim(deck%analysis%mode%word)
+      kind = trim(source_of(deck))
+      mode = deck%value(analysis_mode)%text
       call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck)) &
          & //"; available for "//kind//": "//models_of(kind))
       if (keeps_velocities(deck)) mode = "dynamic"
@@ -126,10 +129,10 @@ contains
       character(len=:), allocatable :: text
 
       text = ""
-      if (deck%output%vtu%flag) text = text//", vtu"
-      if (deck%output%energy%flag) text = text//", energy"
-      if (deck%output%condition%flag) text = text//", condition"
-      if (deck%output%restart%flag) text = text//", restart"
+      if (deck%value(output_vtu)%flag) text = text//", vtu"
+      if (deck%value(output_energy)%flag) text = text//", energy"
+      if (deck%value(output_condition)%flag) text = text//", condition"
+      if (deck%value(output_restart)%flag) text = text//", restart"
       if (text == "") then
          text = "none"
       else
@@ -147,7 +150,7 @@ contains
 
       call limerick_scene(deck, scene, model)
       n = size(model%block_material)
-      if (deck%scene%kind%word == "arch") then
+      if (deck%value(scene_kind)%text == "arch") then
          call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each fixed at 4 points")
       else
          call tell(screen, "blocks", to_text(n)//", fixed at " &
@@ -201,13 +204,13 @@ contains
       call tell(screen, "velocities", &
          & trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
-      if (deck%output%joints%flag) then
+      if (deck%value(output_joints)%flag) then
          call tell(screen, "joints.csv", "joint forces of the run itself")
       else
          call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &
-            & ".false.  ", "not given", deck%output%joints%given)))
+            & ".false.  ", "not given", deck%value(output_joints)%given)))
       end if
-      if (deck%output%frames%whole > 0) then
+      if (nint(deck%value(output_frames)%number) > 0) then
          call tell(screen, "frames", "the case is run once more for its frames")
       else
          call tell(screen, "frames", "none: output%frames is 0")

@@ -3,10 +3,12 @@ module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_deck_sweep, only : few_cases, n_cases, swept_text
    use dda_force_rows, only : bars_header
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, has_group
    use dda_disk_record, only : write_disk_record
    use dda_fill_loads, only : fill_yields
    use dda_error, only : error_t
+   use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
+      & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
    use dda_table_file, only : add_sums, append_line, close_table, length_of, line_sum, &
       & open_table, remove_file, sum_of, sync_table, table_file_t
@@ -115,9 +117,9 @@ contains
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
       tables%disk_file = folder//"/disk.record"
-      tables%has_vtu = deck%output%vtu%flag
+      tables%has_vtu = deck%value(output_vtu)%flag
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
-         & deck%output%condition%flag))
+         & deck%value(output_condition)%flag))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header)
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
          & //parenthesis(left_out(deck)))
@@ -127,22 +129,25 @@ contains
       call name_table(tables%at(table%points), "/points.csv", points_header)
       tables%at(table%points)%wanted = .false.
       if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
-         & size(deck%plan%boundary%measured) > 0 .and. .not. deck%search%given
+         & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, search_group)
       call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header)
-      tables%at(table%reactions)%wanted = deck%output%reactions%flag .and. .not. deck%search%given
+      tables%at(table%reactions)%wanted = deck%value(output_reactions)%flag &
+         & .and. .not. has_group(deck, search_group)
       call name_table(tables%at(table%energy), "/energy.csv", energy_header)
-      tables%at(table%energy)%wanted = deck%output%energy%flag .and. .not. deck%search%given
+      tables%at(table%energy)%wanted = deck%value(output_energy)%flag &
+         & .and. .not. has_group(deck, search_group)
       call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header)
-      tables%at(table%blocks)%wanted = deck%output%blocks%flag
-      tables%at(table%joints)%wanted = deck%output%joints%flag
+      tables%at(table%blocks)%wanted = deck%value(output_blocks)%flag
+      tables%at(table%joints)%wanted = deck%value(output_joints)%flag
       call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header)
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header)
-      tables%at([table%proof_forces, table%proof_motion])%wanted = deck%output%proof%flag
+      tables%at([table%proof_forces, table%proof_motion])%wanted = deck%value(output_proof)%flag
       call name_table(tables%at(table%bars), "/bars.csv", bars_header)
-      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. deck%tie%given &
-         & .or. fill_yields(deck)
+      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) &
+         & .or. has_group(deck, tie_group) .or. fill_yields(deck)
       if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
-      tables%at([table%frames, table%frame_joints])%wanted = deck%output%frames%whole > 0
+      tables%at([table%frames, table%frame_joints])%wanted = &
+         & nint(deck%value(output_frames)%number) > 0
 
    contains
 
@@ -172,17 +177,16 @@ contains
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: text
       character(len=:), allocatable :: files, keys
-      integer :: i
 
       text = ""
       if (n_cases(deck) <= few_cases) return
       files = ""
       keys = ""
-      if (.not. deck%output%joints%given) then
+      if (.not. deck%value(output_joints)%given) then
          files = " and joints.csv"
          keys = ", output%joints = .true."
       end if
-      if (.not. deck%output%blocks%given) then
+      if (.not. deck%value(output_blocks)%given) then
          files = files//" and blocks.csv"
          keys = keys//", output%blocks = .true."
       end if

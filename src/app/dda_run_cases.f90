@@ -8,6 +8,7 @@ submodule (dda_run) dda_run_cases
    use dda_deck_sweep, only : turn_to_case
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t
+   use dda_key_names, only : output_restart
    use dda_kinds, only : wp
    use dda_progress, only : report_progress
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
@@ -240,7 +241,7 @@ contains
       type(case_t), intent(in) :: this
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. this%family%deck%output%restart%flag) return
+      if (.not. this%family%deck%value(output_restart)%flag) return
       if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
       call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
          & this%decision%system, this%decision%contacts, this%onward, error)

@@ -1,13 +1,14 @@
 !> One case of a deck, ready to be computed
 module dda_case
    use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
-   use dda_deck, only : deck_t, file_beside, parameter_t, scene_kind
+   use dda_deck, only : deck_t, file_beside, has_group, parameter_t, source_of
    use dda_deck_check_case, only : search_bracket
    use dda_deck_parameter, only : parameter_name
-   use dda_deck_keys, only : key_index
    use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
    use dda_frames, only : album_t
+   use dda_key_names, only : analysis_mode, analysis_restart, arch_thickness_ratio, &
+      & search_group, search_high, search_low, search_tolerance
    use dda_search, only : critical_t, decision_t, proof_t, search_t
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
@@ -71,18 +72,18 @@ contains
       type(case_t), intent(out) :: this
       character(len=:), allocatable :: searched
 
-      this%restart_file = file_beside(deck, deck%analysis%restart%text)
+      this%restart_file = file_beside(deck, deck%value(analysis_restart)%text)
       this%plan = plan_scene(deck)
       searched = searched_name(deck)
-      this%searches = deck%search%given
-      this%limerick = deck%analysis%mode%word == "limerick"
+      this%searches = has_group(deck, search_group)
+      this%limerick = deck%value(analysis_mode)%text == "limerick"
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
-         & .and. scene_kind(deck) == "arch"
+         & .and. source_of(deck) == "arch"
       call move_alloc(deck, this%family%deck)
       if (this%searches) then
          call prepare_search(this%plan, searched, this%family, this%search)
       else
-         call new_family(this%plan, parameter_t(key=key_index("arch", "thickness_ratio")), &
+         call new_family(this%plan, parameter_t(key=arch_thickness_ratio), &
             & this%family)
       end if
    end subroutine prepare_case
@@ -93,7 +94,7 @@ contains
       character(len=:), allocatable :: name  !! Name of a key
 
       name = ""
-      if (deck%search%given) name = trim(parameter_name(deck%searched))
+      if (has_group(deck, search_group)) name = trim(parameter_name(deck%searched))
    end function searched_name
 
    !> What a deck asks to be searched
@@ -107,18 +108,19 @@ contains
       associate (deck => family%deck)
          call search_bracket(deck, search%low, search%high)
          search%in_time = plan%velocities
-         search%tolerance = deck%search%tolerance%number
+         search%tolerance = deck%value(search_tolerance)%number
          ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
-         if (deck%analysis%mode%word /= "static" &
-            & .and. .not. deck%search%tolerance%given) search%tolerance = 1.0e-4_wp
-         if (scene_kind(deck) == "arch") search%resolution = arch_resolution(deck)
+         if (deck%value(analysis_mode)%text /= "static" &
+            & .and. .not. deck%value(search_tolerance)%given) search%tolerance = 1.0e-4_wp
+         if (source_of(deck) == "arch") search%resolution = arch_resolution(deck)
          search%start = search%low
          if (searched /= "thickness_ratio" .or. plan%velocities) return
          if (family%decides_chains) search%resolution = chain_resolution(deck)
-         if (.not. family%decides_chains) search%resolution_at = deck%arch%thickness_ratio%number
+         if (.not. family%decides_chains) search%resolution_at = &
+            & deck%value(arch_thickness_ratio)%number
          search%start = search_start(deck)
-         if (.not. deck%search%low%given) search%low = 1.0e-5_wp*search%start
-         search%check_far_end = deck%search%high%given
+         if (.not. deck%value(search_low)%given) search%low = 1.0e-5_wp*search%start
+         search%check_far_end = deck%value(search_high)%given
          if (.not. search%check_far_end) search%high = 1.99_wp
          search%start = min(max(search%start, search%low), search%high)
       end associate

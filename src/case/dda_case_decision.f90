@@ -7,8 +7,8 @@ submodule (dda_compute_case) dda_case_decision
    use dda_contacts, only : contacts_t
    use dda_decision, only : decide_in_stages
    use dda_deck, only : parameter_t
-   use dda_deck_keys, only : key_index
    use dda_deck_set, only : put_number
+   use dda_key_names, only : analysis_restart, vehicle_position
    use dda_mechanism, only : follow_collapse
    use dda_restart, only : load_restart
    use dda_settings, only : settings_t
@@ -24,7 +24,7 @@ contains
       type(parameter_t) :: position
       real(wp) :: value
 
-      position%key = key_index("vehicle", "position")
+      position%key = vehicle_position
       call deck_scene(this%family%deck, this%plan, scene)
       call find_worst_position(this%family%deck, scene, value, this%has_worst)
       if (.not. this%has_worst) return
@@ -43,7 +43,7 @@ contains
 
       ! tables tell displacements, which a chain does not keep
       decided = this%family%decides_chains .and. .not. this%tells_tables
-      if (decided) call this%family%link(this%family%deck%arch%thickness_ratio%number, &
+      if (decided) call this%family%link(this%family%deck%value(arch_thickness_ratio)%number, &
          & settings, chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
       ! a chain proves that it falls; how it does is told by all of its blocks
@@ -51,7 +51,7 @@ contains
       if (decided) return
       call deck_scene(this%family%deck, this%plan, this%scene)
       call plan_fall(this)
-      if (this%family%deck%analysis%restart%given) then
+      if (this%family%deck%value(analysis_restart)%given) then
          system = this%scene%system
          contacts = this%scene%contacts
          call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
@@ -71,8 +71,8 @@ contains
 
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = merge(this%tells_tables .or. this%family%deck%output%frames%whole > 0, &
-         & this%searches, this%family%decides_chains)
+      wanted = merge(this%tells_tables .or. nint(this%family%deck%value(output_frames)%number) &
+         & > 0, this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
       if (wanted) call build_once(this%family, value, this%scene)

@@ -1,8 +1,10 @@
 !> What the pictures of a case show, and the runs that are repeated for them
 submodule (dda_compute_case) dda_case_pictures
    use dda_contacts, only : contacts_t
-   use dda_deck, only : scene_kind
+   use dda_deck, only : source_of
    use dda_forward, only : run_to_verdict
+   use dda_key_names, only : analysis_duration, analysis_steps, arch_radius, output_energy, &
+      & output_reactions
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_reactions, only : supports_of
    use dda_settings, only : settings_t
@@ -13,7 +15,7 @@ contains
 
    !> Supports whose reactions a dynamic run tells
    module procedure keep_supports
-      if (this%scene%settings%dynamic .and. this%family%deck%output%reactions%flag) &
+      if (this%scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
          & this%album%support = supports_of(system, this%scene%settings%boundary)
    end procedure keep_supports
 
@@ -21,14 +23,15 @@ contains
    module procedure plan_album
       integer :: frames
 
-      frames = this%family%deck%output%frames%whole
+      frames = nint(this%family%deck%value(output_frames)%number)
       allocate (this%album%point(0))
       if (frames > 0 .and. this%plan%velocities) &
-         & this%album%interval = this%family%deck%analysis%duration%number/real(frames, wp)
+         & this%album%interval = this%family%deck%value(analysis_duration)%number/real(frames, wp)
       if (frames > 0 .and. this%plan%velocities .and. .not. this%album%interval > 0.0_wp) &
-         & this%album%every = max(1, this%family%deck%analysis%steps%whole/frames)
+         & this%album%every = max(1, nint(this%family%deck%value(analysis_steps)%number)/frames)
       if (this%searches) return
-      this%album%audit%wanted = this%plan%velocities .and. this%family%deck%output%energy%flag
+      this%album%audit%wanted = this%plan%velocities &
+         & .and. this%family%deck%value(output_energy)%flag
       if (allocated(this%family%deck%plan%boundary%measured)) &
          & this%album%point = this%family%deck%plan%boundary%measured
    end procedure plan_album
@@ -38,7 +41,7 @@ contains
       type(load_clock_t) :: clock
       integer :: frames
 
-      frames = this%family%deck%output%frames%whole
+      frames = nint(this%family%deck%value(output_frames)%number)
       if (frames == 0 .or. this%scene%settings%dynamic) return
       this%album%follow = this%scene%settings%collapse_displacement
       if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
@@ -85,7 +88,7 @@ contains
             & /real(max(1, count(system%equation > 0)), wp))
       end associate
       associate (deck => this%family%deck)
-         if (scene_kind(deck) == "arch") scene_size = deck%arch%radius%number
+         if (source_of(deck) == "arch") scene_size = deck%value(arch_radius)%number
          if (allocated(deck%cut)) scene_size = deck%cut%scale%size
       end associate
    end function scene_size

@@ -6,9 +6,11 @@ module dda_case_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
    use dda_contacts, only : contacts_t
-   use dda_deck, only : deck_t, scene_kind
+   use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
+   use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
+      & arch_thickness_ratio, joint_friction_deg, output_condition, scene_kind, vehicle_position
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
@@ -101,7 +103,8 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
-      if (this%has_worst) row%worst_position = some_number(this%family%deck%vehicle%position%number)
+      if (this%has_worst) row%worst_position = &
+         & some_number(this%family%deck%value(vehicle_position)%number)
       if (this%has_worst .and. row%verdict /= "collapsed") &
          & remark = position_remark(row%worst_position%value, remark)
       call tell_proof(this%proof, row)
@@ -141,24 +144,24 @@ contains
       character(len=:), allocatable :: searched
 
       searched = searched_name(this%family%deck)
-      row%mode = this%family%deck%analysis%mode%word
-      row%geometry = this%family%deck%analysis%geometry%word
+      row%mode = this%family%deck%value(analysis_mode)%text
+      row%geometry = this%family%deck%value(analysis_geometry)%text
       if (this%limerick) row%geometry = "current"
       row%blocks = movable_blocks(this%family%deck)
-      if (scene_kind(this%family%deck) == "arch") then
+      if (source_of(this%family%deck) == "arch") then
          row%springing_hinge = "none"
          if (searched /= "half_angle_deg") &
-            & row%half_angle_deg = some_number(this%family%deck%arch%half_angle_deg%number)
+            & row%half_angle_deg = some_number(this%family%deck%value(arch_half_angle_deg)%number)
          if (searched /= "thickness_ratio") &
-            & row%thickness_ratio = some_number(this%family%deck%arch%thickness_ratio%number)
+            & row%thickness_ratio = some_number(this%family%deck%value(arch_thickness_ratio)%number)
       end if
       if (deck_friction_acts(this%family%deck) .and. searched /= "friction_deg") &
-         & row%friction_deg = some_number(this%family%deck%joint%friction_deg%number)
+         & row%friction_deg = some_number(this%family%deck%value(joint_friction_deg)%number)
       row%collapse_mode = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
       row%unknowns = this%plan%unknowns
-      row%tells_condition = this%family%deck%output%condition%flag
+      row%tells_condition = this%family%deck%value(output_condition)%flag
    end subroutine describe
 
    !> Whether the friction of the deck may be that of a joint: those of lines have that of their
@@ -166,10 +169,10 @@ contains
    pure logical function deck_friction_acts(deck)
       type(deck_t), intent(in) :: deck
 
-      deck_friction_acts = deck%joint%friction_deg%given
+      deck_friction_acts = deck%value(joint_friction_deg)%given
       if (deck_friction_acts) return
       deck_friction_acts = .not. allocated(deck%file_analysis)
-      if (deck%scene%kind%word == "blocks") deck_friction_acts = lacks_friction(deck%plan)
+      if (deck%value(scene_kind)%text == "blocks") deck_friction_acts = lacks_friction(deck%plan)
    end function deck_friction_acts
 
    !> Tell a case that searches nothing
@@ -189,7 +192,7 @@ contains
          end if
          remark = jump_remark(outcome%jumps, outcome%largest_jump, remark)
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
-            & .and. .not. this%plan%velocities .and. scene_kind(this%family%deck) /= "arch") &
+            & .and. .not. this%plan%velocities .and. source_of(this%family%deck) /= "arch") &
             & remark = fall_remark(this%scene%system, outcome%motion, remark)
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)

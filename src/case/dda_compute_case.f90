@@ -12,6 +12,8 @@ module dda_compute_case
    use dda_frames, only : album_t
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
+   use dda_key_names, only : arch_thickness_ratio, output_frames, output_joints, &
+      & output_thrust_bar, output_thrust_joint, vehicle_worst
    use dda_kinds, only : wp
    use dda_scene, only : build_once, family_t, scene_t
    use dda_search, only : critical_t, decision_t, proof_t, search_t
@@ -177,7 +179,7 @@ contains
          if (allocated(this%critical%fallen)) &
             & call this%family%build(this%critical%falls, this%scene, error)
       else if (this%searches) then
-         if (this%family%deck%vehicle%worst%flag) call place_vehicle(this)
+         if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this)
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) &
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
@@ -187,15 +189,15 @@ contains
       else
          call compute_decision(this)
          if (.not. allocated(this%error)) call see_collapse(this, &
-            & this%family%deck%arch%thickness_ratio%number, this%decision)
+            & this%family%deck%value(arch_thickness_ratio)%number, this%decision)
       end if
       if (this%searches .and. .not. this%family%decides_chains &
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) then
          call build_once(this%family, this%critical%stands, this%standing)
          this%scene = this%standing
       end if
-      if (this%family%deck%output%joints%flag .and. this%searches) call place_joints(this)
-      if (this%searches .and. this%family%deck%output%frames%whole > 0) then
+      if (this%family%deck%value(output_joints)%flag .and. this%searches) call place_joints(this)
+      if (this%searches .and. nint(this%family%deck%value(output_frames)%number) > 0) then
          if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
          if (.not. this%limerick) call take_pictures(this)
       end if
@@ -213,13 +215,13 @@ contains
       if (this%searches) then
          call prove_search(this%family, this%critical, this%standing, this%scene, this%proof)
       else if (allocated(this%scene%contacts%joint)) then
-         joint = this%family%deck%output%thrust_joint%whole
+         joint = nint(this%family%deck%value(output_thrust_joint)%number)
          if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
             & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
             & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
          joint = merge(joint, this%scene%crown_joint, joint > 0)
          call prove_decision(this%scene, this%decision, joint, &
-            & this%family%deck%output%thrust_bar%whole, this%proof)
+            & nint(this%family%deck%value(output_thrust_bar)%number), this%proof)
       end if
    end subroutine prove_case
 end module dda_compute_case

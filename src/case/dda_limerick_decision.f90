@@ -3,6 +3,7 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_contact_types, only : place_joint
    use dda_contacts, only : contacts_t
    use dda_frames, only : frame_is_due, keep_frame
+   use dda_key_names, only : scene_kind
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_contact, only : limerick_contact_t
@@ -26,7 +27,7 @@ contains
 
       call limerick_scene(deck, scene, model)
       if (present(album)) then
-         call plan_pictures(deck%output%frames%whole, model%constants, album)
+         call plan_pictures(nint(deck%value(output_frames)%number), model%constants, album)
          call run_with_pictures(deck, scene, model, run, outcome, album)
          call keep_ways(outcome, album)
       else
@@ -104,7 +105,7 @@ contains
       system = scene%system
       if (allocated(system%bar)) system%bar%force = run%blocks%bolt_force
       contacts = scene%contacts
-      call place_corners(deck%scene%kind%word, run, system)
+      call place_corners(deck%value(scene_kind)%text, run, system)
       call tell_joints(scene, model, run, system%moved, contacts)
       ! blocks of the scheme are those of the scene, in their order
       n = min(size(system%area), size(run%blocks%area))

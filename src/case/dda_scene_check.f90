@@ -2,10 +2,10 @@
 module dda_scene_check
    use dda_deck, only : deck_t, keeps_velocities
    use dda_deck_check_case, only : check_model
-   use dda_deck_keys, only : key_index
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
+   use dda_key_names, only : analysis_mode, analysis_restart, limerick_dynamic, scene_kind
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
@@ -79,10 +79,11 @@ contains
 
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
       call cut_lines(deck, error)
-      if (.not. allocated(error) .and. deck%analysis%restart%given) call check_start(deck, error)
+      if (.not. allocated(error) .and. deck%value(analysis_restart)%given) &
+         & call check_start(deck, error)
       if (.not. allocated(error)) call check_shapes(deck, error)
       if (.not. allocated(error)) call check_live_cases(deck, error)
-      if (allocated(error) .or. deck%scene%kind%word /= "blocks") return
+      if (allocated(error) .or. deck%value(scene_kind)%text /= "blocks") return
       call check_modes(deck, scene, error)
    end subroutine check_scene
 
@@ -92,7 +93,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
 
-      if (deck%scene%kind%word == "lines") call check_modes(deck, scene, error)
+      if (deck%value(scene_kind)%text == "lines") call check_modes(deck, scene, error)
    end subroutine check_lines
 
    !> Check the first case of each mode
@@ -109,15 +110,15 @@ contains
          call turn_to_case(deck, number, work, error)
          if (allocated(error)) return
          mode = findloc(["static  ", "dynamic ", "limerick"] == &
-            & work%analysis%mode%word, .true., dim=1)
+            & work%value(analysis_mode)%text, .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (number == 1 .and. work%scene%kind%word == "blocks") &
+         if (number == 1 .and. work%value(scene_kind)%text == "blocks") &
             & call deck_scene(work, plan_scene(work), scene)
          if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
-         if (allocated(error) .or. all(seen) .or. .not. any(deck%sweeps%parameter%key == &
-            & key_index("analysis", "mode") .or. deck%sweeps%parameter%key == &
-            & key_index("limerick", "dynamic"))) return
+         if (allocated(error) .or. all(seen) .or. .not. any( &
+            & deck%sweeps%parameter%key == analysis_mode &
+            & .or. deck%sweeps%parameter%key == limerick_dynamic)) return
       end do
    end subroutine check_modes
 
@@ -131,25 +132,25 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
 
-      select case (deck%scene%kind%word)
+      select case (deck%value(scene_kind)%text)
       case ("lines")
          ! the analysis file may ask for velocities
          call check_model(deck, error)
          if (allocated(error)) return
-         if (deck%analysis%mode%word /= "limerick") call check_line_scene(deck, error)
+         if (deck%value(analysis_mode)%text /= "limerick") call check_line_scene(deck, error)
       case ("blocks")
-         if (deck%analysis%mode%word == "limerick") call check_limerick_blocks( &
+         if (deck%value(analysis_mode)%text == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
          if (allocated(error)) return
          if (allocated(deck%plan%boundary%change)) call check_stages(deck, error)
          if (allocated(error)) return
-         if (deck%analysis%mode%word == "static") call check_support(deck, scene, error)
+         if (deck%value(analysis_mode)%text == "static") call check_support(deck, scene, error)
          if (.not. allocated(error)) call check_widths(deck, scene, error)
-         if (deck%analysis%mode%word == "static" .and. .not. allocated(error)) &
+         if (deck%value(analysis_mode)%text == "static" .and. .not. allocated(error)) &
             & call check_loads(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
          if (allocated(deck%plan%boundary%absorbing) .and. .not. allocated(error) &
-            & .and. deck%analysis%mode%word == "static") call add_warning(warnings, &
+            & .and. deck%value(analysis_mode)%text == "static") call add_warning(warnings, &
             & "absorb has no effect: mode = 'static' has no time", geometry_file(deck), &
             & deck%plan%boundary%absorbing(1)%line)
       end select

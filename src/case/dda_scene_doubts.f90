@@ -1,6 +1,9 @@
 !> Stages, widths, supports and units of a deck that its scene contradicts or makes doubtful
 submodule (dda_scene_check) dda_scene_doubts
    use dda_block_scene, only : floating_block
+   use dda_deck, only : has_group
+   use dda_key_names, only : analysis_flow, analysis_geometry, material_compressive_strength, &
+      & output_energy, output_reactions, search_group
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -25,21 +28,22 @@ contains
       character(len=:), allocatable :: problem
 
       problem = ""
-      if (deck%search%given) then
+      if (has_group(deck, search_group)) then
          problem = "a search needs blocks that stay"
-      else if (deck%analysis%mode%word == "limerick") then
+      else if (deck%value(analysis_mode)%text == "limerick") then
          problem = "mode = 'limerick' knows no blocks that come or go"
-      else if (deck%output%energy%flag) then
+      else if (deck%value(output_energy)%flag) then
          problem = "output%energy needs blocks that stay"
-      else if (deck%output%reactions%given .and. deck%output%reactions%flag &
-         & .and. deck%analysis%mode%word == "dynamic") then
+      else if (deck%value(output_reactions)%given .and. deck%value(output_reactions)%flag &
+         & .and. deck%value(analysis_mode)%text == "dynamic") then
          problem = "output%reactions of a dynamic run needs blocks that stay"
-      else if ((deck%material%compressive_strength%given .or. any(deck%plan%materials%given(5))) &
-         & .and. deck%analysis%flow%word /= "associated") then
+      else if ((deck%value(material_compressive_strength)%given &
+         & .or. any(deck%plan%materials%given(5))) &
+         & .and. deck%value(analysis_flow)%text /= "associated") then
          problem = "blocks with a compressive_strength need flow = 'associated' where some "// &
             & "come or go"
-      else if ((deck%analysis%mode%word == "dynamic") &
-         & .neqv. deck%analysis%geometry%word == "current") then
+      else if ((deck%value(analysis_mode)%text == "dynamic") &
+         & .neqv. deck%value(analysis_geometry)%text == "current") then
          problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &
             & //"with geometry = 'current'"
       end if

@@ -1,8 +1,10 @@
 !> Where a run of a deck starts: restart files that fit its blocks, and points that live loads lie
 !> on
 submodule (dda_scene_check) dda_start_check
-   use dda_deck, only : deck_error, deck_place_t, file_beside, key_error, place_of
+   use dda_deck, only : deck_error, deck_place_t, file_beside, has_group, key_error, place_of
    use dda_deck_keys, only : deck_key
+   use dda_key_names, only : live_group, load_displacement_factor, load_load_factor, &
+      & search_parameter, vehicle_group
    use dda_live_loads, only : bears_live, check_live_points
    use dda_restart, only : check_restart, load_restart
    use dda_step_context, only : march_t
@@ -18,14 +20,14 @@ contains
       logical :: points, reshaped
       integer :: number
 
-      place = factor_place(deck, "displacement_factor")
+      place = factor_place(deck, load_displacement_factor)
       if (place%line > 0 .and. .not. leads_points(deck)) then
          call deck_error(error, "load%displacement_factor needs a prescribed displacement, got "// &
             & "none; add a displacement line to a file of blocks", deck, place)
          return
       end if
-      place = factor_place(deck, "load_factor")
-      points = deck%live%given .or. deck%vehicle%given
+      place = factor_place(deck, load_load_factor)
+      points = has_group(deck, live_group) .or. has_group(deck, vehicle_group)
       if (place%line == 0 .and. .not. points) return
       reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
          & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
@@ -59,17 +61,16 @@ contains
    end function leads_points
 
    !> Where a factor is given, swept or searched
-   pure type(deck_place_t) function factor_place(deck, name) result(place)
+   pure type(deck_place_t) function factor_place(deck, key) result(place)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: name  !! Its key in &load
-      integer :: key, s
+      integer, intent(in) :: key  !! Place of its key in the registry
+      integer :: s
 
-      key = key_index("load", name)
       if (deck%value(key)%given) place = deck%value(key)%place
       do s = 1, size(deck%sweeps)
          if (deck%sweeps(s)%parameter%key == key) place = deck%sweeps(s)%place
       end do
-      if (deck%searched%key == key) place = place_of(deck, key_index("search", "parameter"))
+      if (deck%searched%key == key) place = place_of(deck, search_parameter)
    end function factor_place
 
    !> Check the file that a run goes on from
@@ -79,11 +80,11 @@ contains
       type(march_t) :: march
       logical :: exists
 
-      name = deck%analysis%restart%text
+      name = deck%value(analysis_restart)%text
       inquire (file=file_beside(deck, name), exist=exists)
       if (.not. exists) then
          call key_error(error, "there is no restart file '"//name//"'; check the name", deck, &
-            & "analysis", "restart")
+            & analysis_restart)
       else if (n_cases(deck) == 1) then
          call deck_scene(deck, plan_scene(deck), scene)
          call load_restart(file_beside(deck, name), scene%settings, scene%system, &

@@ -8,9 +8,11 @@ submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t, value_at
+   use dda_deck, only : has_group
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
+   use dda_key_names, only : fill_group
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_scene, only : searched_load
@@ -97,7 +99,7 @@ contains
 
       bridge%scene = scene
       bridge%road = road_of(scene%system)
-      if (deck%fill%given) then
+      if (has_group(deck, fill_group)) then
          call shape_assembly(deck, assembly, problem)
          allocate (bridge%fill)
          bridge%fill = fill_of(deck, assembly)

@@ -1,11 +1,12 @@
 !> The registry: what a deck says of the shape of an arch and of what lies on it
 module dda_arch_keys
    use dda_deck_key, only : key_kind, key_t
+   use dda_key_names, only : search_high, search_low
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: arch_keys, fill_keys, shape_keys, tie_keys
+   public :: arch_keys, fill_keys, tie_keys
 
    !> Keys of &arch
    type(key_t), parameter :: arch_keys(*) = [ &
@@ -79,12 +80,6 @@ module dda_arch_keys
       key_t(group="arch", name="lune_deg", unit="deg", without="1 m of depth", &
             above=0.0_wp, at_most=360.0_wp, &
             meaning="Angle of the lune of a dome, whose depth grows from its axis.")]
-
-   !> Keys of &arch that make it more than a circular ring of voussoirs
-   character(len=*), parameter :: shape_keys(*) = [character(len=19) :: "shape", "span", "rise", &
-      "right_rise", "thickness", "crown_thickness", "springing_thickness", "joint_direction", &
-      "rings", "spans", "pier_width", "pier_height", "pier_courses", "buttress_width", &
-      "buttress_height", "lune_deg"]
 
    !> Keys of &fill
    type(key_t), parameter :: fill_keys(*) = [ &

@@ -1,25 +1,27 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
-   use dda_arch_keys, only : shape_keys
-   use dda_block_input, only : block_plan_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_block_input, only : block_plan_t, new_plan
    use dda_boundary, only : history_t
    use dda_cut_model, only : cut_model_t
+   use dda_key_names, only : analysis_geometry, analysis_mode, arch_lune_deg, arch_shape, &
+      & arch_span, fill_group, ground_record, limerick_dynamic, material_compressive_strength, &
+      & scene_kind, search_group, search_parameter, tie_group
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
-   use dda_input, only : input_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
-   use dda_text, only : lower_case
+   use dda_text, only : lower_case, read_number
    use dda_warnings, only : warnings_t
-   use dda_deck_key, only : word_length
-   use dda_deck_keys, only : deck_key, first_shape_key, group_index, key_index, last_shape_key
+   use dda_deck_key, only : key_kind, key_t, word_length
+   use dda_deck_keys, only : deck_group, deck_key, group_index
    implicit none
    private
 
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t
    public :: ground_record_t
-   public :: geometry_of, keeps_velocities, place_of, deck_error, key_error
-   public :: scene_kind
+   public :: new_deck, has_group, geometry_of, keeps_velocities, place_of, deck_error, key_error
+   public :: source_of
    public :: add_file_mark, file_beside
 
    !> Where a value was written
@@ -76,13 +78,13 @@ module dda_deck
       type(history_t) :: motion              !! The motion as the file has it
    end type ground_record_t
 
-   !> A deck: what it says by name, as written in the order of the registry, and what its files hold
-   type, extends(input_t) :: deck_t
+   !> A deck: what it says, as written in the order of the registry, and what its files hold
+   type :: deck_t
       !> Name of the file
       character(len=:), allocatable :: file
-      !> Values, in the order of the registry: (0:n), 0 stands for a key that does not exist
+      !> Values, by the names of dda_key_names: (0:n), 0 stands for a key that does not exist
       type(deck_value_t), allocatable :: value(:)
-      !> Where each group begins, line 0 if it is not there: (n)
+      !> Where each group begins, by its name likewise; line 0 if it is not there: (n)
       type(deck_place_t), allocatable :: group(:)
       !> What is searched; key 0 if nothing is
       type(parameter_t) :: searched
@@ -107,50 +109,98 @@ module dda_deck
 
 contains
 
+   !> A deck of defaults
+   pure subroutine new_deck(deck, file)
+      type(deck_t), intent(out) :: deck
+      character(len=*), intent(in) :: file  !! Name that errors will show
+      integer :: i
+
+      deck%file = file
+      call new_plan(deck%plan)
+      allocate (deck%value(0:size(deck_key)), deck%group(size(deck_group)), deck%sweeps(0))
+      deck%value(0)%number = ieee_value(1.0_wp, ieee_quiet_nan)
+      do i = 1, size(deck_key)
+         call put_default(deck%value(i), deck_key(i))
+      end do
+   end subroutine new_deck
+
+   !> Give a value the default of its key
+   pure subroutine put_default(value, key)
+      type(deck_value_t), intent(inout) :: value
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: default
+      logical :: ok
+
+      default = trim(key%default)
+      select case (key%kind)
+      case (key_kind%number, key_kind%whole)
+         call read_number(default, value%number, ok)
+      case (key_kind%word, key_kind%text)
+         value%text = ""
+         if (len(default) > 2) value%text = default(2:len(default) - 1)
+      case (key_kind%flag)
+         value%flag = default == ".true."
+      case (key_kind%numbers)
+         allocate (value%numbers(0))
+      case (key_kind%texts)
+         allocate (value%texts(0))
+      end select
+   end subroutine put_default
+
+   !> Whether a deck has a group
+   pure logical function has_group(deck, group)
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: group  !! Place of the group in the registry
+
+      has_group = deck%group(group)%line > 0
+   end function has_group
+
    !> Whether velocities are kept from step to step: asked by the mode, and in that of the original
    !> by its key, or else by the analysis file
    pure logical function keeps_velocities(deck)
       type(deck_t), intent(in) :: deck
 
-      keeps_velocities = deck%analysis%mode%word == "dynamic"
-      if (deck%analysis%mode%word /= "limerick") return
-      keeps_velocities = deck%limerick%dynamic%flag
-      if (allocated(deck%file_analysis) .and. .not. deck%limerick%dynamic%given) &
+      keeps_velocities = deck%value(analysis_mode)%text == "dynamic"
+      if (deck%value(analysis_mode)%text /= "limerick") return
+      keeps_velocities = deck%value(limerick_dynamic)%flag
+      if (allocated(deck%file_analysis) .and. .not. deck%value(limerick_dynamic)%given) &
          & keeps_velocities = deck%file_analysis%dynamic
    end function keeps_velocities
 
    !> What the blocks of a case are made from, the word of scene%kind: but for arches that are more
    !> than a circular ring of voussoirs, which are a shape
-   pure function scene_kind(deck) result(kind)
+   pure function source_of(deck) result(kind)
       type(deck_t), intent(in) :: deck
       character(len=word_length) :: kind  !! arch, shape, lines or blocks
       character(len=word_length) :: name
       logical :: shaped
 
-      kind = deck%scene%kind%word
+      kind = deck%value(scene_kind)%text
       if (kind /= "arch") return
-      shaped = any(deck%value(first_shape_key + 1:last_shape_key)%given) .or. deck%fill%given &
-         & .or. deck%tie%given .or. deck%material%compressive_strength%given &
-         & .or. deck%arch%shape%word /= "circular"
+      shaped = any(deck%value(arch_span:arch_lune_deg)%given) &
+         & .or. has_group(deck, fill_group) .or. has_group(deck, tie_group) &
+         & .or. deck%value(material_compressive_strength)%given &
+         & .or. deck%value(arch_shape)%text /= "circular"
       if (.not. shaped .and. deck%searched%key > 0) then
-         shaped = deck%searched%key >= first_shape_key .and. deck%searched%key <= last_shape_key &
-            & .or. deck_key(deck%searched%key)%name == "compressive_strength"
-      else if (.not. shaped .and. deck%search%given) then
-         name = lower_case(deck%search%parameter%text)
+         shaped = deck%searched%key >= arch_shape .and. deck%searched%key <= arch_lune_deg &
+            & .or. deck%searched%key == material_compressive_strength
+      else if (.not. shaped .and. has_group(deck, search_group)) then
+         name = lower_case(deck%value(search_parameter)%text)
          name = name(index(name, "%") + 1:)
-         shaped = any(name == shape_keys) .or. name == "compressive_strength"
+         shaped = any(name == deck_key(arch_shape:arch_lune_deg)%name) &
+            & .or. name == "compressive_strength"
       end if
       if (shaped) kind = "shape"
-   end function scene_kind
+   end function source_of
 
    !> Geometry of a case; in the mode of the original blocks always move
    pure function geometry_of(deck) result(word)
       type(deck_t), intent(in) :: deck
       character(len=word_length) :: word  !! reference or current
 
-      word = deck%analysis%geometry%word
-      if (deck%analysis%mode%word == "limerick" &
-         & .and. .not. deck%analysis%geometry%given) word = "current"
+      word = deck%value(analysis_geometry)%text
+      if (deck%value(analysis_mode)%text == "limerick" &
+         & .and. .not. deck%value(analysis_geometry)%given) word = "current"
    end function geometry_of
 
    !> Where a key was given, or else its group: line 0 if neither was given
@@ -177,13 +227,13 @@ contains
    end subroutine deck_error
 
    !> Make an error that names where a key was given, or else its group
-   pure subroutine key_error(error, message, deck, group, name)
+   pure subroutine key_error(error, message, deck, key)
       type(error_t), allocatable, intent(out) :: error
       character(len=*), intent(in) :: message
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: group, name  !! Names of the group and of the key
+      integer, intent(in) :: key  !! Place of the key in the registry
 
-      call deck_error(error, message, deck, place_of(deck, key_index(group, name)))
+      call deck_error(error, message, deck, place_of(deck, key))
    end subroutine key_error
 
    !> Remember what a file that a deck names holds

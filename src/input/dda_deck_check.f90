@@ -10,6 +10,9 @@ submodule (dda_read_deck) dda_deck_check
    use dda_deck_sweep, only : turn_to_case
    use dda_deck_token, only : shown
    use dda_deck_words, only : full_name
+   use dda_key_names, only : arch_group, fill_group, fill_passive_share, fill_unit_weight, &
+      & ground_columns, ground_record, load_gravity, material_density, material_unit_weight, &
+      & output_max_cases, scene_analysis, tie_group, vehicle_axles
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
@@ -20,13 +23,12 @@ contains
 
    !> Read all of them
    module procedure read_ground_records
-      integer :: i, key, s
+      integer :: i, s
 
-      key = key_index("ground", "record")
-      if (deck%ground%record%given) call add_record(deck%ground%record%text, &
-         & deck%value(key)%place, deck, error)
+      if (deck%value(ground_record)%given) call add_record(deck%value(ground_record)%text, &
+         & deck%value(ground_record)%place, deck, error)
       do s = 1, size(deck%sweeps)
-         if (deck%sweeps(s)%parameter%key /= key) cycle
+         if (deck%sweeps(s)%parameter%key /= ground_record) cycle
          do i = 1, size(deck%sweeps(s)%texts)
             if (allocated(error)) return
             call add_record(trim(deck%sweeps(s)%texts(i)), deck%sweeps(s)%place, deck, error)
@@ -77,7 +79,7 @@ contains
       character(len=:), allocatable :: text
       integer :: blank, n
 
-      text = adjustl(deck%ground%columns%text)
+      text = adjustl(deck%value(ground_columns)%text)
       column = "0"
       n = 0
       do while (len_trim(text) > 0)
@@ -88,29 +90,29 @@ contains
       end do
       if (n == 2 .or. n == 3) return
       call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
-         & "got '"//shown(deck%ground%columns%text)//"'; write them as in '1 2'", deck, &
-         & deck%value(key_index("ground", "columns"))%place)
+         & "got '"//shown(deck%value(ground_columns)%text)//"'; write them as in '1 2'", deck, &
+         & deck%value(ground_columns)%place)
    end subroutine split_columns
 
    !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
    module procedure read_lines
       character(len=:), allocatable :: file
 
-      if (deck%scene%kind%word /= "lines") return
-      file = file_beside(deck, deck%scene%geometry%text)
+      if (deck%value(scene_kind)%text /= "lines") return
+      file = file_beside(deck, deck%value(scene_geometry)%text)
       allocate (deck%lines)
       call read_geometry(file, deck%lines, deck%warnings, error)
       if (allocated(error)) then
-         call name_key(deck, "geometry", error)
+         call name_key(deck, scene_geometry, error)
          return
       end if
       call add_file_mark(file_mark(file), deck)
-      if (.not. deck%scene%analysis%given) return
-      file = file_beside(deck, deck%scene%analysis%text)
+      if (.not. deck%value(scene_analysis)%given) return
+      file = file_beside(deck, deck%value(scene_analysis)%text)
       allocate (deck%file_analysis)
       call read_analysis(file, deck%file_analysis, deck%warnings, error)
       if (allocated(error)) then
-         call name_key(deck, "analysis", error)
+         call name_key(deck, scene_analysis, error)
          return
       end if
       call add_file_mark(file_mark(file), deck)
@@ -122,9 +124,8 @@ contains
       character(len=:), allocatable :: message
 
       if (error%line > 0) return
-      message = "scene%"//key//" = '"//deck%value(key_index("scene", key))%text &
-         //"': "//error%message
-      call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
+      message = full_name(deck_key(key))//" = '"//deck%value(key)%text//"': "//error%message
+      call deck_error(error, message, deck, deck%value(key)%place)
    end procedure name_key
 
    !> Check a deck and the cases of its sweeps, before anything is computed
@@ -143,33 +144,32 @@ contains
    pure subroutine check_kind(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=8), parameter :: file_key(2) = ["geometry", "analysis"]
       character(len=:), allocatable :: kind, problem
-      integer :: i
+      integer :: key
 
-      kind = trim(deck%scene%kind%word)
-      if (kind /= "arch" .and. .not. deck%scene%geometry%given) then
+      kind = deck%value(scene_kind)%text
+      if (kind /= "arch" .and. .not. deck%value(scene_geometry)%given) then
          call key_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
-            kind//"; name one", deck, "scene", "kind")
-      else if (kind /= "arch" .and. deck%arch%given) then
+            kind//"; name one", deck, scene_kind)
+      else if (kind /= "arch" .and. has_group(deck, arch_group)) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
-            "'; remove one of the two", deck, deck%group(group_index("arch")))
-      else if (kind /= "arch" .and. deck%fill%given) then
+            "'; remove one of the two", deck, deck%group(arch_group))
+      else if (kind /= "arch" .and. has_group(deck, fill_group)) then
          call deck_error(error, "&fill needs an arch, got scene%kind = '"//kind// &
-            "'; remove one of the two", deck, deck%group(group_index("fill")))
-      else if (kind /= "arch" .and. deck%tie%given) then
+            "'; remove one of the two", deck, deck%group(fill_group))
+      else if (kind /= "arch" .and. has_group(deck, tie_group)) then
          call deck_error(error, "&tie needs an arch, got scene%kind = '"//kind// &
             "'; remove it, and add bar lines to a file of blocks", deck, &
-            deck%group(group_index("tie")))
+            deck%group(tie_group))
       end if
-      do i = 1, 2
-         if (allocated(error) .or. .not. deck%value(key_index("scene", file_key(i)))%given) cycle
+      do key = scene_geometry, scene_analysis
+         if (allocated(error) .or. .not. deck%value(key)%given) cycle
          problem = ""
          if (kind == "arch") problem = "'lines' or 'blocks'"
-         if (kind /= "lines" .and. file_key(i) == "analysis") problem = "'lines'"
+         if (kind /= "lines" .and. key == scene_analysis) problem = "'lines'"
          if (len(problem) == 0) cycle
-         call key_error(error, "scene%"//trim(file_key(i))//" needs scene%kind = "//problem// &
-            ", got '"//kind//"'; change the one or remove the other", deck, "scene", file_key(i))
+         call key_error(error, full_name(deck_key(key))//" needs scene%kind = "//problem// &
+            ", got '"//kind//"'; change the one or remove the other", deck, key)
       end do
    end subroutine check_kind
 
@@ -182,9 +182,9 @@ contains
       type(parameter_t) :: unused
       type(key_t) :: key
 
-      if (.not. deck%search%given) return
-      place = place_of(deck, key_index("search", "parameter"))
-      call find_parameter(deck%search%parameter%text, unused, problem)
+      if (.not. has_group(deck, search_group)) return
+      place = place_of(deck, search_parameter)
+      call find_parameter(deck%value(search_parameter)%text, unused, problem)
       if (len(problem) == 0) then
          key = deck_key(deck%searched%key)
          if (key%group == "search" .or. &
@@ -258,18 +258,17 @@ contains
       logical :: is_weight
 
       why = reason_of_no_effect(deck, deck_key(parameter%key))
-      is_weight = parameter%key == key_index("material", "density") .or. &
-         parameter%key == key_index("load", "gravity")
-      if (deck_key(parameter%key)%group == "arch" .and. deck%scene%kind%word /= "arch") then
+      is_weight = any(parameter%key == [material_density, load_gravity])
+      if (deck_key(parameter%key)%group == "arch" .and. deck%value(scene_kind)%text /= "arch") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: scene%kind is '"// &
-            trim(deck%scene%kind%word)//"'; name another key", deck, place)
+            deck%value(scene_kind)%text//"'; name another key", deck, place)
       else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
             how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
             deck%value(parameter%key)%place)
-      else if (is_weight .and. deck%material%unit_weight%given .and. &
-         deck%analysis%mode%word == "static") then
+      else if (is_weight .and. deck%value(material_unit_weight)%given .and. &
+         deck%value(analysis_mode)%text == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: material%unit_weight is given; remove that", deck, place)
       else if (len(why) > 0) then
@@ -285,42 +284,31 @@ contains
       character(len=:), allocatable :: why
 
       why = ""
-      if ((key%group == "limerick" .or. key%name(:9) == "abutment_") .and. &
-         deck%analysis%mode%word /= "limerick" .and. .not. is_swept(deck, "analysis", "mode")) then
-         why = "analysis%mode is '"//trim(deck%analysis%mode%word)//"'; name another key"
-      else if (key%group == "vehicle" .and. .not. is_known(deck, "vehicle", "axles")) then
+      if ((key%group == "limerick" .or. key%name(:9) == "abutment_") &
+         & .and. deck%value(analysis_mode)%text /= "limerick" &
+         & .and. .not. any(deck%sweeps%parameter%key == analysis_mode)) then
+         why = "analysis%mode is '"//deck%value(analysis_mode)%text//"'; name another key"
+      else if (key%group == "vehicle" .and. .not. is_known(deck, vehicle_axles)) then
          why = "vehicle%axles are not given; give them"
       else if (key%group == "fill" .and. key%name /= "unit_weight" &
-         .and. .not. is_known(deck, "fill", "unit_weight")) then
+         .and. .not. is_known(deck, fill_unit_weight)) then
          why = "fill%unit_weight is not given; give it"
       else if (key%group == "fill" .and. key%name == "friction_deg" &
-         .and. .not. is_known(deck, "fill", "passive_share")) then
+         .and. .not. is_known(deck, fill_passive_share)) then
          why = "fill%passive_share is not given; give it"
-      else if (key%name == "water_rise" .and. deck%scene%kind%word /= "blocks") then
+      else if (key%name == "water_rise" .and. deck%value(scene_kind)%text /= "blocks") then
          why = "water stands in files of blocks alone; name another key"
       end if
    end function reason_of_no_effect
 
    !> Whether a key is given or varied
-   pure logical function is_known(deck, group, name)
+   pure logical function is_known(deck, key)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: group, name  !! Names of its group and of itself
+      integer, intent(in) :: key  !! Place of the key in the registry
 
-      is_known = deck%value(key_index(group, name))%given .or. is_swept(deck, group, name) &
-         .or. deck%searched%key == key_index(group, name)
+      is_known = deck%value(key)%given .or. deck%searched%key == key &
+         & .or. any(deck%sweeps%parameter%key == key)
    end function is_known
-
-   !> Whether a key is swept
-   pure logical function is_swept(deck, group, name)
-      type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: group, name
-      integer :: s
-
-      is_swept = .false.
-      do s = 1, size(deck%sweeps)
-         is_swept = is_swept .or. deck%sweeps(s)%parameter%key == key_index(group, name)
-      end do
-   end function is_swept
 
    !> Whether two parameters are the same
    pure logical function same(a, b)
@@ -340,10 +328,11 @@ contains
       integer :: number, n
 
       n = n_cases(deck)
-      if (n > deck%output%max_cases%whole) then
-         call deck_error(error, "expected at most "//to_text(deck%output%max_cases%whole) &
-            //" cases, got "//to_text(n)//" or more; raise output%max_cases if they are meant", &
-            deck, deck%sweeps(size(deck%sweeps))%place)
+      if (n > nint(deck%value(output_max_cases)%number)) then
+         call deck_error(error, "expected at most " &
+            & //to_text(nint(deck%value(output_max_cases)%number))//" cases, got "//to_text(n) &
+            & //" or more; raise output%max_cases if they are meant", deck, &
+            & deck%sweeps(size(deck%sweeps))%place)
          return
       end if
       call choose_cases(cases, n, chosen, error)

@@ -1,11 +1,17 @@
 !> What the keys of one case must be to one another
 module dda_deck_check_case
+   use dda_key_names, only : analysis_damping, analysis_duration, analysis_flow, &
+      & analysis_geometry, analysis_mode, analysis_restart, analysis_restitution, &
+      & analysis_start, analysis_unknowns, arch_facet_deg, arch_group, arch_half_angle_deg, &
+      & arch_joints_deg, arch_voussoirs, joint_residual_deg, joint_slip_length, load_gravity, &
+      & material_unit_weight, output_energy, output_frames, output_restart, scene_analysis, &
+      & scene_kind, search_high, search_low, search_parameter
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
-   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_deck_keys, only : deck_key
    use dda_deck, only : deck_error, deck_place_t, deck_t, geometry_of, keeps_velocities, &
-      & key_error, place_of, scene_kind
+      & key_error, source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
@@ -34,18 +40,20 @@ contains
       if (.not. allocated(error)) call check_strength(deck, error)
       if (allocated(error)) return
       ! files of blocks have loads of their own
-      if (.not. keeps_velocities(deck) .and. .not. (deck%load%gravity%number > 0.0_wp &
-         .or. deck%material%unit_weight%given .or. deck%scene%analysis%given &
-         .or. deck%scene%kind%word == "blocks" .and. deck%analysis%mode%word /= "limerick")) then
+      if (.not. keeps_velocities(deck) .and. .not. (deck%value(load_gravity)%number > 0.0_wp &
+         & .or. deck%value(material_unit_weight)%given .or. deck%value(scene_analysis)%given &
+         & .or. deck%value(scene_kind)%text == "blocks" &
+         & .and. deck%value(analysis_mode)%text /= "limerick")) then
          call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
-            deck%value(key_index("load", "gravity"))%place)
-      else if (deck%analysis%unknowns%given .and. all(deck%analysis%unknowns%whole /= [3, 6])) then
-         call key_error(error, "analysis%unknowns must be 3 or 6, got "// &
-            to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, "analysis", &
-            & "unknowns")
+            deck%value(load_gravity)%place)
+      else if (deck%value(analysis_unknowns)%given &
+         & .and. all(nint(deck%value(analysis_unknowns)%number) /= [3, 6])) then
+         call key_error(error, "analysis%unknowns must be 3 or 6, got " &
+            & //to_text(nint(deck%value(analysis_unknowns)%number))//"; choose one of the two", &
+            & deck, analysis_unknowns)
       else
-         if (scene_kind(deck) == "arch") call check_shape(deck, error)
+         if (source_of(deck) == "arch") call check_shape(deck, error)
          if (allocated(error) .or. deck%searched%key == 0) return
          call check_bracket(deck, error)
       end if
@@ -57,13 +65,13 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! What the table of models does not have
       character(len=:), allocatable :: mode, kind, problem
 
-      mode = trim(deck%analysis%mode%word)
-      kind = trim(scene_kind(deck))
+      mode = deck%value(analysis_mode)%text
+      kind = trim(source_of(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
       if (len(problem) > 0) then
          call key_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
             kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem// &
-            "; 'dda help models' lists them", deck, "analysis", "geometry")
+            "; 'dda help models' lists them", deck, analysis_geometry)
          return
       end if
       if (deck%searched%key == 0) return
@@ -71,9 +79,9 @@ contains
       if (mode == "limerick" .and. keeps_velocities(deck)) &
          problem = "with velocities it ends 'completed', neither stable nor collapsed"
       if (len(problem) > 0) call key_error(error, "search%parameter: expected a key that "// &
-         "mode = '"//trim(deck%analysis%mode%word)//"' of scene%kind = '"//kind// &
+         "mode = '"//deck%value(analysis_mode)%text//"' of scene%kind = '"//kind// &
          "' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem// &
-         "; 'dda help models' lists them", deck, "search", "parameter")
+         "; 'dda help models' lists them", deck, search_parameter)
    end subroutine check_model
 
    !> Check that the mode and the geometry have a use for the keys that are given
@@ -84,63 +92,63 @@ contains
       logical :: moves
       integer :: key
 
-      mode = trim(deck%analysis%mode%word)
-      moves = deck%analysis%geometry%word == "current"
+      mode = deck%value(analysis_mode)%text
+      moves = deck%value(analysis_geometry)%text == "current"
       key = 0
-      if (deck%analysis%restitution%number > 0.0_wp &
+      if (deck%value(analysis_restitution)%number > 0.0_wp &
          .and. .not. (mode == "dynamic" .and. moves)) then
-         key = key_index("analysis", "restitution")
+         key = analysis_restitution
          problem = "restitution needs mode = 'dynamic' and geometry = 'current'"
-      else if (deck%analysis%damping%number > 0.0_wp .and. mode /= "dynamic") then
-         key = key_index("analysis", "damping")
+      else if (deck%value(analysis_damping)%number > 0.0_wp .and. mode /= "dynamic") then
+         key = analysis_damping
          problem = "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two"
-      else if (deck%analysis%duration%given .and. mode /= "dynamic") then
-         key = key_index("analysis", "duration")
+      else if (deck%value(analysis_duration)%given .and. mode /= "dynamic") then
+         key = analysis_duration
          problem = "duration needs mode = 'dynamic': a static run has no time"
-      else if (deck%analysis%restart%given .and. mode /= "dynamic") then
-         key = key_index("analysis", "restart")
+      else if (deck%value(analysis_restart)%given .and. mode /= "dynamic") then
+         key = analysis_restart
          problem = "analysis%restart needs mode = 'dynamic': a static run comes to rest by itself"
-      else if (deck%analysis%start%word == "static" .and. (mode /= "dynamic" &
-         .or. deck%analysis%restart%given)) then
-         key = key_index("analysis", "start")
+      else if (deck%value(analysis_start)%text == "static" .and. (mode /= "dynamic" &
+         .or. deck%value(analysis_restart)%given)) then
+         key = analysis_start
          problem = "start = 'static' needs mode = 'dynamic' and a run from its beginning; remove it"
-      else if (deck%analysis%flow%word == "associated" .and. mode /= "static") then
-         key = key_index("analysis", "flow")
+      else if (deck%value(analysis_flow)%text == "associated" .and. mode /= "static") then
+         key = analysis_flow
          problem = "flow = 'associated' needs mode = 'static', got '"//mode// &
             "'; remove one of the two"
-      else if (deck%analysis%unknowns%given .and. mode == "limerick") then
-         key = key_index("analysis", "unknowns")
+      else if (deck%value(analysis_unknowns)%given .and. mode == "limerick") then
+         key = analysis_unknowns
          problem = "analysis%unknowns needs another mode than 'limerick', whose blocks "// &
             "have 6; remove it"
-      else if (deck%output%energy%flag .and. mode == "limerick") then
-         key = key_index("output", "energy")
+      else if (deck%value(output_energy)%flag .and. mode == "limerick") then
+         key = output_energy
          problem = "output%energy needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (deck%output%restart%flag .and. mode == "limerick") then
-         key = key_index("output", "restart")
+      else if (deck%value(output_restart)%flag .and. mode == "limerick") then
+         key = output_restart
          problem = "output%restart needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (deck%output%frames%whole > 0 .and. .not. (moves .or. mode == "limerick")) then
-         key = key_index("output", "frames")
+      else if (nint(deck%value(output_frames)%number) > 0 .and. .not. (moves .or. mode &
+         & == "limerick")) then
+         key = output_frames
          problem = "output%frames needs geometry = 'current': in reference geometry no block "// &
             "moves; change one of the two"
       end if
-      if (key > 0) call deck_error(error, problem, deck, place_of(deck, key))
+      if (key > 0) call key_error(error, problem, deck, key)
    end subroutine check_use
 
    !> Check that joints may lose strength by slip
    pure subroutine check_slip(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(inout) :: error
-      character(len=*), parameter :: name(2) = ["residual_deg", "slip_length "]
-      integer :: i
+      integer :: key
 
       if (allocated(error)) return
-      do i = 1, size(name)
-         if (.not. deck%value(key_index("joint", trim(name(i))))%given) cycle
-         if (any(deck%scene%kind%word == ["lines ", "blocks"]) .and. deck%analysis%mode%word &
-            /= "limerick" .and. deck%analysis%flow%word /= "associated") cycle
-         call key_error(error, "joint%"//trim(name(i))//" needs scene%kind = 'lines' or "// &
-            "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, &
-            & "joint", trim(name(i)))
+      do key = joint_residual_deg, joint_slip_length
+         if (.not. deck%value(key)%given) cycle
+         if (any(deck%value(scene_kind)%text == ["lines ", "blocks"]) &
+            & .and. deck%value(analysis_mode)%text /= "limerick" &
+            & .and. deck%value(analysis_flow)%text /= "associated") cycle
+         call key_error(error, full_name(deck_key(key))//" needs scene%kind = 'lines' or "// &
+            "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, key)
          return
       end do
    end subroutine check_slip
@@ -151,15 +159,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: span
 
-      if (deck%arch%joints_deg%given) then
+      if (deck%value(arch_joints_deg)%given) then
          call check_joints(deck, error)
          return
       end if
-      span = 2.0_wp*deck%arch%half_angle_deg%number/deck%arch%voussoirs%number
-      if (span < 180.0_wp .or. deck%arch%facet_deg%given) return
+      span = 2.0_wp*deck%value(arch_half_angle_deg)%number/deck%value(arch_voussoirs)%number
+      if (span < 180.0_wp .or. deck%value(arch_facet_deg)%given) return
       call deck_error(error, "one chord per voussoir needs voussoirs of less than 180 degrees, "// &
          "got "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
-         later(deck, "half_angle_deg", "voussoirs"))
+         later(deck, arch_half_angle_deg, arch_voussoirs))
    end subroutine check_shape
 
    !> Check joints_deg, and what is given beside it
@@ -170,9 +178,9 @@ contains
       type(deck_place_t) :: place
       integer :: n, i
 
-      place = deck%value(key_index("arch", "joints_deg"))%place
+      place = deck%value(arch_joints_deg)%place
       problem = ""
-      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
+      associate (joints => deck%value(arch_joints_deg)%numbers)
          n = size(joints)
          if (n < 2) then
             problem = "must be two angles or more, got "//to_text(n)// &
@@ -180,9 +188,9 @@ contains
          else if (abs(joints(1)) > 0.0_wp) then
             problem = "must begin with 0 (the crown), got "//to_text(joints(1))// &
                "; write the joints of one half only"
-         else if (deck%arch%voussoirs%given) then
+         else if (deck%value(arch_voussoirs)%given) then
             problem = "and arch%voussoirs exclude one another; remove one of them"
-            place = later(deck, "joints_deg", "voussoirs")
+            place = later(deck, arch_joints_deg, arch_voussoirs)
          end if
          do i = 2, n
             if (len(problem) > 0) exit
@@ -205,30 +213,29 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: half_angle, last
 
-      if (.not. deck%arch%half_angle_deg%given) return
-      half_angle = deck%arch%half_angle_deg%number
-      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
+      if (.not. deck%value(arch_half_angle_deg)%given) return
+      half_angle = deck%value(arch_half_angle_deg)%number
+      associate (joints => deck%value(arch_joints_deg)%numbers)
          last = joints(size(joints))
       end associate
       if (.not. abs(last - half_angle) > same_angle) return
       call deck_error(error, "arch%joints_deg ends at "//to_text(last)// &
          ", but arch%half_angle_deg is "//to_text(half_angle)//"; remove half_angle_deg", deck, &
-         later(deck, "joints_deg", "half_angle_deg"))
+         later(deck, arch_joints_deg, arch_half_angle_deg))
    end subroutine check_half_angle
 
    !> Where the later one of two keys of &arch was given; a --set is later than the deck
    pure type(deck_place_t) function later(deck, a, b) result(place)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: a  !! Name of the first key
-      character(len=*), intent(in) :: b  !! Name of the second key
+      integer, intent(in) :: a, b  !! Places of the keys in the registry
       type(deck_place_t) :: other
       logical :: other_is_later
 
-      place = deck%value(key_index("arch", a))%place
-      other = deck%value(key_index("arch", b))%place
+      place = deck%value(a)%place
+      other = deck%value(b)%place
       other_is_later = other%line > place%line .and. .not. place%from_command
       if (other%from_command .or. other_is_later) place = other
-      if (place%line == 0) place = deck%group(group_index("arch"))
+      if (place%line == 0) place = deck%group(arch_group)
    end function later
 
    !> Check the two ends of the search
@@ -241,32 +248,31 @@ contains
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
          call key_error(error, "a search for "//parameter_name(deck%searched)// &
             " needs search%low and search%high, which have no default; give both", deck, &
-            & "search", "parameter")
+            & search_parameter)
       else if (.not. low < high) then
-         call deck_error(error, "search%low must be below search%high, got "//to_text(low)// &
+         call key_error(error, "search%low must be below search%high, got "//to_text(low)// &
             " and "//to_text(high)//"; make low the smaller one", deck, &
-            place_of(deck, key_index("search", &
-            trim(merge("high", "low ", deck%search%high%given)))))
+            & merge(search_high, search_low, deck%value(search_high)%given))
       else
-         call check_end(deck, "low", error)
-         if (.not. allocated(error)) call check_end(deck, "high", error)
+         call check_end(deck, search_low, error)
+         if (.not. allocated(error)) call check_end(deck, search_high, error)
       end if
    end subroutine check_bracket
 
    !> Check that the parameter can take one end of the search
-   pure subroutine check_end(deck, name, error)
+   pure subroutine check_end(deck, key, error)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: name  !! low or high
+      integer, intent(in) :: key  !! Place of the key of that end in the registry
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
-      associate (bound => deck%value(key_index("search", name)))
+      associate (bound => deck%value(key))
          if (.not. bound%given) return
          problem = number_problem(deck%searched%key, bound%number)
          if (len(problem) > 0) then
-            call deck_error(error, "search%"//name//": "//problem// &
+            call deck_error(error, full_name(deck_key(key))//": "//problem// &
                "; choose an end that it can take", deck, bound%place)
-         else if (deck_key(deck%searched%key)%group == "arch" .and. scene_kind(deck) == "arch") then
+         else if (deck_key(deck%searched%key)%group == "arch" .and. source_of(deck) == "arch") then
             call check_end_shape(deck, bound%number, bound%place, error)
          end if
       end associate
@@ -293,7 +299,7 @@ contains
 
       low = deck_key(deck%searched%key)%search_low
       high = deck_key(deck%searched%key)%search_high
-      if (deck%search%low%given) low = deck%search%low%number
-      if (deck%search%high%given) high = deck%search%high%number
+      if (deck%value(search_low)%given) low = deck%value(search_low)%number
+      if (deck%value(search_high)%given) high = deck%value(search_high)%number
    end subroutine search_bracket
 end module dda_deck_check_case

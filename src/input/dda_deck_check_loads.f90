@@ -1,9 +1,19 @@
 !> What a deck says of the ground and of what means collapse in time, of live loads, and of the
 !> strength of its blocks
 module dda_deck_check_loads
-   use dda_deck, only : deck_error, deck_place_t, deck_t, key_error, place_of
-   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_deck, only : deck_error, deck_place_t, deck_t, has_group, key_error, place_of
+   use dda_deck_keys, only : deck_key
+   use dda_deck_words, only : full_name
    use dda_error, only : error_t
+   use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
+      & analysis_collapse_rotation_deg, analysis_duration, analysis_flow, analysis_geometry, &
+      & analysis_mode, analysis_restart, ground_amplitude, ground_direction_deg, &
+      & ground_duration, ground_frequency, ground_group, ground_pulse, ground_record, &
+      & ground_unit, joint_cohesion, joint_residual_deg, joint_tension, live_fx, live_fy, &
+      & live_group, live_x, live_y, load_gravity_direction_deg, load_horizontal_coefficient, &
+      & load_live_horizontal, load_load_factor, material_compressive_strength, scene_geometry, &
+      & scene_kind, search_high, search_low, search_parameter, vehicle_axles, vehicle_group, &
+      & vehicle_position, vehicle_spacings, vehicle_worst
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -26,20 +36,20 @@ contains
       if (.not. allocated(error) .and. deck%searched%key > 0) call check_search_in_time(deck, error)
       if (allocated(error)) return
       key = ground_key(deck)
-      if (.not. deck%ground%given .and. key == 0) return
-      place = deck%group(group_index("ground"))
+      if (.not. has_group(deck, ground_group) .and. key == 0) return
+      place = deck%group(ground_group)
       if (place%line == 0) place = deck%value(key)%place
-      if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
+      if (place%line == 0) place = place_of(deck, search_parameter)
       key = 0
       problem = ""
-      if (deck%analysis%mode%word /= "dynamic") then
+      if (deck%value(analysis_mode)%text /= "dynamic") then
          problem = "&ground needs mode = 'dynamic', got '" &
-            & //trim(deck%analysis%mode%word)//"'; change the one or remove the other"
-      else if (gives(deck, "pulse") .and. gives(deck, "record")) then
+            & //deck%value(analysis_mode)%text//"'; change the one or remove the other"
+      else if (gives(deck, ground_pulse) .and. gives(deck, ground_record)) then
          problem = "&ground needs a pulse or a record, got both; remove one of them"
-         key = key_index("ground", "record")
-      else if (.not. (gives(deck, "pulse") .or. gives(deck, "record")) &
-         & .and. deck%scene%kind%word /= "blocks") then
+         key = ground_record
+      else if (.not. (gives(deck, ground_pulse) .or. gives(deck, ground_record)) &
+         & .and. deck%value(scene_kind)%text /= "blocks") then
          problem = "&ground needs a pulse or a record, got none; give one"
       end if
       if (len(problem) == 0) call check_keys(deck, problem, key)
@@ -58,13 +68,11 @@ contains
       ground_key = findloc(deck_key%group == "ground" .and. deck%value(1:)%given, .true., dim=1)
    end function ground_key
 
-   !> Whether a key of &ground is given, or searched
-   pure logical function gives(deck, name)
+   !> Whether a key is given, or searched
+   pure logical function gives(deck, key)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: name  !! Name of the key
-      integer :: key
+      integer, intent(in) :: key  !! Place of the key in the registry
 
-      key = key_index("ground", name)
       gives = deck%value(key)%given .or. deck%searched%key == key
    end function gives
 
@@ -75,34 +83,34 @@ contains
       character(len=:), allocatable, intent(inout) :: problem
       !> The key at fault, 0 if one is missing
       integer, intent(inout) :: key
-      character(len=*), parameter :: name(7) = [character(len=13) :: "amplitude", "duration", &
-         & "frequency", "direction_deg", "columns", "quantity", "unit"]
-      logical :: needed(size(name)), fits(size(name))
-      character(len=:), allocatable :: what
+      logical, dimension(ground_amplitude:ground_unit) :: needed, fits
+      character(len=:), allocatable :: what, name
       integer :: i
 
       needed = .false.
       fits = .false.
-      if (gives(deck, "record")) then
+      if (gives(deck, ground_record)) then
          what = "a record"
-         fits([1, 4, 5, 6, 7]) = .true.
-      else if (.not. gives(deck, "pulse")) then
+         fits = .true.
+         fits(ground_duration:ground_frequency) = .false.
+      else if (.not. gives(deck, ground_pulse)) then
          what = "the motion of the file of blocks"
-      else if (deck%ground%pulse%word == "sine") then
+      else if (deck%value(ground_pulse)%text == "sine") then
          what = "a sine"
-         needed([1, 3]) = .true.
-         fits(:4) = .true.
+         needed([ground_amplitude, ground_frequency]) = .true.
+         fits(:ground_direction_deg) = .true.
       else
          what = "a rectangular pulse"
-         needed(:2) = .true.
-         fits([1, 2, 4]) = .true.
+         needed(:ground_duration) = .true.
+         fits([ground_amplitude, ground_duration, ground_direction_deg]) = .true.
       end if
-      do i = 1, size(name)
-         if (needed(i) .and. .not. gives(deck, trim(name(i)))) then
-            problem = "&ground needs "//trim(name(i))//" for "//what//", got none; give it"
-         else if (gives(deck, trim(name(i))) .and. .not. fits(i)) then
-            problem = "ground%"//trim(name(i))//" has no effect on "//what//"; remove it"
-            key = key_index("ground", trim(name(i)))
+      do i = ground_amplitude, ground_unit
+         name = trim(deck_key(i)%name)
+         if (needed(i) .and. .not. gives(deck, i)) then
+            problem = "&ground needs "//name//" for "//what//", got none; give it"
+         else if (gives(deck, i) .and. .not. fits(i)) then
+            problem = "ground%"//name//" has no effect on "//what//"; remove it"
+            key = i
          end if
          if (len(problem) > 0) return
       end do
@@ -119,26 +127,27 @@ contains
 
       measured = 0
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
-      point = deck%analysis%collapse_point%whole
+      point = nint(deck%value(analysis_collapse_point)%number)
       if (point > measured) then
          call key_error(error, "analysis%collapse_point needs a measured point, "// &
             & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
-            & deck, "analysis", "collapse_point")
+            & deck, analysis_collapse_point)
          return
       end if
       call check_wear(deck, error)
       if (allocated(error)) return
-      gives = deck%ground%pulse%given .or. allocated(deck%ground_record)
+      gives = deck%value(ground_pulse)%given .or. allocated(deck%ground_record)
       do s = 1, size(deck%sweeps)
-         gives = gives .or. deck%sweeps(s)%parameter%key == key_index("ground", "pulse")
+         gives = gives .or. deck%sweeps(s)%parameter%key == ground_pulse
       end do
       if (gives .and. deck%plan%ground_line > 0) then
          call deck_error(error, "&ground needs a file of blocks whose ground is at rest, got "// &
             & "one that moves it in line "//to_text(deck%plan%ground_line)//"; remove one", &
-            & deck, deck%group(group_index("ground")))
-      else if (deck%ground%given .and. .not. gives .and. deck%plan%ground_line == 0) then
+            & deck, deck%group(ground_group))
+      else if (has_group(deck, ground_group) .and. .not. gives &
+         & .and. deck%plan%ground_line == 0) then
          call deck_error(error, "&ground needs a pulse, a record, or a file of blocks that "// &
-            & "moves the ground, got none; give one", deck, deck%group(group_index("ground")))
+            & "moves the ground, got none; give one", deck, deck%group(ground_group))
       end if
    end subroutine check_block_file
 
@@ -146,18 +155,17 @@ contains
    pure subroutine check_wear(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: key
-      integer :: i
+      integer :: i, key
 
-      key = ""
-      if (deck%analysis%mode%word == "limerick") key = "mode"
-      if (deck%analysis%flow%word == "associated") key = "flow"
-      if (key == "") return
+      key = 0
+      if (deck%value(analysis_mode)%text == "limerick") key = analysis_mode
+      if (deck%value(analysis_flow)%text == "associated") key = analysis_flow
+      if (key == 0) return
       do i = 1, size(deck%plan%laws)
          if (.not. any(deck%plan%laws(i)%given(4:5))) cycle
-         call key_error(error, "analysis%"//key//" needs joints without residual_deg and " &
-            & //"slip_length, got line "//to_text(deck%plan%laws(i)%line)//" of " &
-            & //"the file of blocks; change one of the two", deck, "analysis", key)
+         call key_error(error, full_name(deck_key(key))//" needs joints without " &
+            & //"residual_deg and slip_length, got line "//to_text(deck%plan%laws(i)%line) &
+            & //" of the file of blocks; change one of the two", deck, key)
          return
       end do
    end subroutine check_wear
@@ -168,47 +176,45 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
-      if (deck%analysis%mode%word /= "dynamic") return
+      if (deck%value(analysis_mode)%text /= "dynamic") return
       problem = ""
-      if (deck%analysis%geometry%word /= "current") then
+      if (deck%value(analysis_geometry)%text /= "current") then
          problem = "a search with mode = 'dynamic' needs geometry = 'current', where blocks "// &
             & "move, got 'reference'; change it"
-      else if (.not. deck%analysis%duration%given) then
+      else if (.not. deck%value(analysis_duration)%given) then
          problem = "a search with mode = 'dynamic' needs analysis%duration, in which "// &
             & "blocks can collapse, got none; give it"
-      else if (deck%analysis%restart%given) then
+      else if (deck%value(analysis_restart)%given) then
          problem = "a search needs a run from its beginning, got analysis%restart; remove it"
-      else if (.not. (deck%search%low%given .and. deck%search%high%given)) then
+      else if (.not. (deck%value(search_low)%given .and. deck%value(search_high)%given)) then
          problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
       end if
-      if (len(problem) > 0) call key_error(error, problem, deck, "search", "parameter")
+      if (len(problem) > 0) call key_error(error, problem, deck, search_parameter)
    end subroutine check_search_in_time
 
    !> Check what means collapse in a dynamic run
    pure subroutine check_collapse(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), parameter :: name(2) = [character(len=21) :: "collapse_rotation_deg", &
-         & "collapse_point"]
-      integer :: i
+      integer :: key
 
-      do i = 1, size(name)
-         if (.not. deck%value(key_index("analysis", trim(name(i))))%given) cycle
-         if (deck%analysis%mode%word == "dynamic" &
-            & .and. deck%analysis%geometry%word == "current") cycle
-         call key_error(error, "analysis%"//trim(name(i))//" needs mode = 'dynamic' and "// &
-            & "geometry = 'current'; remove it", deck, "analysis", trim(name(i)))
+      do key = analysis_collapse_rotation_deg, analysis_collapse_point
+         if (.not. deck%value(key)%given) cycle
+         if (deck%value(analysis_mode)%text == "dynamic" &
+            & .and. deck%value(analysis_geometry)%text == "current") cycle
+         call key_error(error, full_name(deck_key(key))//" needs mode = 'dynamic' and "// &
+            & "geometry = 'current'; remove it", deck, key)
          return
       end do
-      if (.not. deck%analysis%collapse_point%given) return
-      if (deck%scene%kind%word /= "blocks") then
+      if (.not. deck%value(analysis_collapse_point)%given) return
+      if (deck%value(scene_kind)%text /= "blocks") then
          call key_error(error, "analysis%collapse_point needs a file of blocks with "// &
-            & "measured points, got kind = '"//trim(deck%scene%kind%word)//"'", &
-            & deck, "analysis", "collapse_point")
-      else if (.not. deck%analysis%collapse_displacement%given) then
+            & "measured points, got kind = '"//deck%value(scene_kind)%text//"'", &
+            & deck, analysis_collapse_point)
+      else if (.not. deck%value(analysis_collapse_displacement)%given) then
          call key_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
             & "displacement of that point that means collapse, got none; give it", deck, &
-            & "analysis", "collapse_point")
+            & analysis_collapse_point)
       end if
    end subroutine check_collapse
 
@@ -217,50 +223,48 @@ contains
       type(deck_t), intent(in) :: deck
       !> Lists that do not go together, or what has no effect
       type(error_t), allocatable, intent(out) :: error
-      integer :: push
       logical :: pushed
 
-      if (deck%live%given) call check_lists(deck, error)
-      if (.not. allocated(error) .and. deck%vehicle%given) call check_vehicle(deck, error)
+      if (has_group(deck, live_group)) call check_lists(deck, error)
+      if (.not. allocated(error) .and. has_group(deck, vehicle_group)) &
+         & call check_vehicle(deck, error)
       if (allocated(error)) return
-      push = key_index("load", "horizontal_coefficient")
-      pushed = deck%searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
-      if (deck%load%live_horizontal%flag .and. .not. pushed) &
+      pushed = deck%searched%key == load_horizontal_coefficient &
+         & .or. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
+      if (deck%value(load_live_horizontal)%flag .and. .not. pushed) &
          & call key_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
-         & "than 0, got 0; give one, or remove live_horizontal", deck, "load", "live_horizontal")
+         & "than 0, got 0; give one, or remove live_horizontal", deck, load_live_horizontal)
    end subroutine check_live
 
    !> Check the lists of &live
    pure subroutine check_lists(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=2), parameter :: name(4) = ["x ", "y ", "fx", "fy"]
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
-      integer :: i, key, n
+      integer :: key, n
 
-      place = deck%group(group_index("live"))
+      place = deck%group(live_group)
       problem = ""
-      n = size(deck%live%x%numbers)
+      n = size(deck%value(live_x)%numbers)
       if (n == 0) problem = "&live needs x and y, where its forces act, got none; give both"
-      do i = 2, size(name)
+      do key = live_y, live_fy
          if (len(problem) > 0) exit
-         key = key_index("live", name(i))
-         if (i > 2 .and. .not. (deck%value(key)%given .or. deck%searched%key == key)) cycle
+         if (key > live_y .and. .not. gives(deck, key)) cycle
          if (size(deck%value(key)%numbers) == n) cycle
-         problem = "live%"//trim(name(i))//" needs as many numbers as live%x, "//to_text(n) &
+         problem = full_name(deck_key(key))//" needs as many numbers as live%x, "//to_text(n) &
             & //", got "//to_text(size(deck%value(key)%numbers))//"; give one per force"
          place = place_of(deck, key)
       end do
       if (len(problem) > 0) then
          continue
-      else if (deck%analysis%mode%word == "limerick") then
+      else if (deck%value(analysis_mode)%text == "limerick") then
          problem = "&live needs another mode than 'limerick', whose loads are those of its "// &
             & "files; remove one of the two"
       else if (group_of(deck) == "arch") then
          problem = "&live needs an arch that keeps its shape, but the search changes it, "// &
             & "and its points stay; sweep the shape, with x and y linked"
-         place = place_of(deck, key_index("search", "parameter"))
+         place = place_of(deck, search_parameter)
       else if (group_of(deck) /= "live" .and. .not. has_forces(deck)) then
          problem = "&live needs a force other than 0, got none; give fx or fy"
       end if
@@ -276,35 +280,35 @@ contains
       logical :: worst
       integer :: n
 
-      place = deck%group(group_index("vehicle"))
-      worst = deck%vehicle%worst%flag
-      n = size(deck%vehicle%axles%numbers)
+      place = deck%group(vehicle_group)
+      worst = deck%value(vehicle_worst)%flag
+      n = size(deck%value(vehicle_axles)%numbers)
       problem = ""
       if (n == 0) then
          problem = "&vehicle needs axles, got none; give their weights"
-      else if (size(deck%vehicle%spacings%numbers) /= n - 1) then
+      else if (size(deck%value(vehicle_spacings)%numbers) /= n - 1) then
          problem = "vehicle%spacings needs one number fewer than there are axles, "// &
-            & to_text(n - 1)//", got "//to_text(size(deck%vehicle%spacings%numbers)) &
+            & to_text(n - 1)//", got "//to_text(size(deck%value(vehicle_spacings)%numbers)) &
             & //"; give the distances between axles"
-      else if (.not. (deck%vehicle%position%given .or. worst &
-         & .or. deck%searched%key == key_index("vehicle", "position"))) then
+      else if (.not. (deck%value(vehicle_position)%given .or. worst &
+         & .or. deck%searched%key == vehicle_position)) then
          problem = "&vehicle needs a position, got none; give it, or worst = .true."
-      else if (worst .and. deck%vehicle%position%given) then
+      else if (worst .and. deck%value(vehicle_position)%given) then
          problem = "vehicle%worst needs no position, got one; remove one of the two"
-         place = place_of(deck, key_index("vehicle", "position"))
-      else if (deck%analysis%mode%word == "limerick") then
+         place = place_of(deck, vehicle_position)
+      else if (deck%value(analysis_mode)%text == "limerick") then
          problem = "&vehicle needs another mode than 'limerick', whose loads are those of "// &
             & "its files; remove one of the two"
-      else if (worst .and. (deck%searched%key /= key_index("load", "load_factor") &
-         & .or. deck%analysis%mode%word /= "static" &
-         & .or. deck%analysis%geometry%word /= "reference")) then
+      else if (worst .and. (deck%searched%key /= load_load_factor &
+         & .or. deck%value(analysis_mode)%text /= "static" &
+         & .or. deck%value(analysis_geometry)%text /= "reference")) then
          problem = "vehicle%worst needs a search for load_factor in static reference "// &
             & "geometry, got none; add &search parameter = 'load_factor'"
-         place = place_of(deck, key_index("vehicle", "worst"))
+         place = place_of(deck, vehicle_worst)
       else if (group_of(deck) == "arch") then
          problem = "&vehicle needs an arch that keeps its shape, but the search changes it; "// &
             & "sweep the shape"
-         place = place_of(deck, key_index("search", "parameter"))
+         place = place_of(deck, search_parameter)
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_vehicle
@@ -322,8 +326,8 @@ contains
    pure logical function has_forces(deck)
       type(deck_t), intent(in) :: deck
 
-      has_forces = any(abs(deck%live%fx%numbers) > 0.0_wp) &
-         & .or. any(abs(deck%live%fy%numbers) > 0.0_wp)
+      has_forces = any(abs(deck%value(live_fx)%numbers) > 0.0_wp) &
+         & .or. any(abs(deck%value(live_fy)%numbers) > 0.0_wp)
    end function has_forces
 
    !> Check that limit analysis decides blocks that may be crushed: nothing else knows it
@@ -333,32 +337,30 @@ contains
       character(len=*), parameter :: needs = "material%compressive_strength needs "
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
-      integer :: own
 
-      own = key_index("material", "compressive_strength")
-      if (deck%material%compressive_strength%given) then
-         place = place_of(deck, own)
-      else if (deck%searched%key == own) then
-         place = place_of(deck, key_index("search", "parameter"))
+      if (deck%value(material_compressive_strength)%given) then
+         place = place_of(deck, material_compressive_strength)
+      else if (deck%searched%key == material_compressive_strength) then
+         place = place_of(deck, search_parameter)
       else if (any(deck%plan%materials%given(5))) then
-         place = place_of(deck, key_index("scene", "geometry"))
+         place = place_of(deck, scene_geometry)
       else
          return
       end if
       problem = ""
-      if (deck%scene%kind%word == "lines") then
+      if (deck%value(scene_kind)%text == "lines") then
          problem = needs//"an arch or a file of blocks, got lines; remove it"
-      else if (deck%analysis%mode%word /= "static" &
-         & .or. deck%analysis%geometry%word /= "reference") then
+      else if (deck%value(analysis_mode)%text /= "static" &
+         & .or. deck%value(analysis_geometry)%text /= "reference") then
          problem = needs//"mode = 'static' and geometry = 'reference', got others: corners of "// &
             & "blocks that move have no strip to crush; make the arch thinner, or remove it"
-      else if (deck%analysis%collapse_displacement%given .or. has_bond(deck)) then
+      else if (deck%value(analysis_collapse_displacement)%given .or. has_bond(deck)) then
          problem = needs//"joints without cohesion and tension, and no collapse_displacement, "// &
             & "got one; remove one of the two"
-      else if (deck%searched%key == key_index("load", "gravity_direction_deg")) then
+      else if (deck%searched%key == load_gravity_direction_deg) then
          problem = "search%parameter: expected another key beside compressive_strength, got "// &
             & "gravity_direction_deg; search horizontal_coefficient"
-         place = place_of(deck, key_index("search", "parameter"))
+         place = place_of(deck, search_parameter)
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_strength
@@ -368,8 +370,9 @@ contains
       type(deck_t), intent(in) :: deck
       integer :: i
 
-      has_bond = deck%joint%cohesion%number > 0.0_wp .or. deck%joint%tension%number > 0.0_wp &
-         & .or. deck%joint%residual_deg%given
+      has_bond = deck%value(joint_cohesion)%number > 0.0_wp &
+         & .or. deck%value(joint_tension)%number > 0.0_wp &
+         & .or. deck%value(joint_residual_deg)%given
       do i = 1, size(deck%plan%laws)
          associate (law => deck%plan%laws(i))
             has_bond = has_bond .or. any(law%given(2:3) .and. law%value(2:3) > 0.0_wp) &

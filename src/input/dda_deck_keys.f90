@@ -3,14 +3,14 @@
 !> A new key is one entry here and its paragraph in docs/input.md. Reading, range checks, --set,
 !> sweeps, searches and the printed help follow from the entry.
 module dda_deck_keys
-   use dda_arch_keys, only : arch_keys, fill_keys, shape_keys, tie_keys
+   use dda_arch_keys, only : arch_keys, fill_keys, tie_keys
    use dda_deck_key, only : group_t, key_kind, key_t
+   use dda_key_names, only : search_high, search_low
    use dda_kinds, only : wp
    implicit none
    private
 
    public :: deck_key, deck_group, key_index, group_index, joint_keys, material_keys
-   public :: first_shape_key, last_shape_key
 
    !> All groups, in the order of the contract
    type(group_t), parameter :: deck_group(*) = [ &
@@ -330,9 +330,6 @@ module dda_deck_keys
       size(joint_keys), size(load_keys), size(live_keys), size(vehicle_keys), size(fill_keys), &
       size(tie_keys), size(ground_keys), size(analysis_keys), size(limerick_keys), &
       size(search_keys), size(sweep_keys), size(output_keys)]
-   !> Keys of &arch that make more of it than a circular ring of voussoirs; the first is its shape
-   integer, parameter :: first_shape_key = size(scene_keys) + size(arch_keys) &
-      + 1 - size(shape_keys), last_shape_key = size(scene_keys) + size(arch_keys)
 
 contains
 

@@ -1,14 +1,14 @@
 !> Put values into a deck: each one is checked against the registry first
 module dda_deck_set
+   use dda_key_names, only : arch_half_angle_deg, arch_joints_deg, arch_voussoirs
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
    use dda_deck_key, only : in_range, key_t, key_kind
-   use dda_deck_keys, only : deck_key, key_index
+   use dda_deck_keys, only : deck_key
    use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
    use dda_deck_token, only : shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
-   use dda_deck_values, only : name_values
    implicit none
    private
 
@@ -29,10 +29,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       integer :: n
-      logical :: stays
 
       associate (held => deck%value(parameter%key))
-         stays = held%given .and. parameter%item == 0 .and. .not. abs(held%number - value) > 0.0_wp
          n = 0
          if (allocated(held%numbers)) n = size(held%numbers)
          if (parameter%item > n) then
@@ -54,12 +52,7 @@ contains
          held%given = .true.
          held%place = place
       end associate
-      if (parameter%item > 0) then
-         call follow_joints(deck)
-         call name_values(deck)
-      else if (.not. stays) then
-         call name_values(deck, only=parameter%key)
-      end if
+      if (parameter%item > 0) call follow_joints(deck)
    end subroutine put_number
 
    !> Put a list of numbers into a key
@@ -82,7 +75,6 @@ contains
       deck%value(key)%given = .true.
       deck%value(key)%place = place
       call follow_joints(deck)
-      call name_values(deck)
    end subroutine put_numbers
 
    !> Put a text, a word or the text of a flag into a key
@@ -114,7 +106,6 @@ contains
          held%given = .true.
          held%place = place
       end associate
-      call name_values(deck, only=parameter%key)
    end subroutine put_text
 
    !> Why a number cannot be the value of a key
@@ -203,9 +194,9 @@ contains
       type(deck_t), intent(inout) :: deck
       integer :: n
 
-      associate (joints => deck%value(key_index("arch", "joints_deg")), &
-         angle => deck%value(key_index("arch", "half_angle_deg")), &
-         voussoirs => deck%value(key_index("arch", "voussoirs")))
+      associate (joints => deck%value(arch_joints_deg), &
+         angle => deck%value(arch_half_angle_deg), &
+         voussoirs => deck%value(arch_voussoirs))
          n = size(joints%numbers)
          if (n == 0) return
          if (.not. angle%given) angle%number = joints%numbers(n)

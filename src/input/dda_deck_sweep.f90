@@ -2,12 +2,13 @@
 module dda_deck_sweep
    use dda_deck, only : deck_error, deck_place_t, deck_sweep_t, deck_t, deck_value_t, key_error
    use dda_deck_key, only : key_kind, word_length
-   use dda_deck_keys, only : deck_key, key_index
+   use dda_deck_keys, only : deck_key
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_set, only : is_numeric, number_problem, put_number, put_text, text_problem
-   use dda_deck_values, only : name_values
    use dda_deck_words, only : full_name, wanted
    use dda_error, only : error_t
+   use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, &
+      & sweep_parameter, sweep_texts, sweep_values
    use dda_kinds, only : wp
    use dda_text, only : lower_case, to_text
    implicit none
@@ -36,7 +37,6 @@ contains
       character(len=:), allocatable :: problem
       integer :: i
 
-      call name_values(deck)
       sweep%place = place
       if (size(deck%sweeps) == max_sweeps) then
          call deck_error(error, "expected at most "//to_text(max_sweeps)//" &sweep groups, got "// &
@@ -44,18 +44,18 @@ contains
             deck, place)
          return
       end if
-      if (.not. deck%sweep%parameter%given) then
+      if (.not. deck%value(sweep_parameter)%given) then
          call deck_error(error, "expected sweep%parameter, the name of a key, got none; "// &
             "give it, such as parameter = 'voussoirs'", deck, place)
          return
       end if
-      call find_parameter(deck%sweep%parameter%text, sweep%parameter, problem)
+      call find_parameter(deck%value(sweep_parameter)%text, sweep%parameter, problem)
       if (len(problem) > 0) then
-         call key_error(error, "sweep%parameter: "//problem, deck, "sweep", "parameter")
+         call key_error(error, "sweep%parameter: "//problem, deck, sweep_parameter)
          return
       end if
       sweep%name = parameter_name(sweep%parameter)
-      sweep%linked = deck%sweep%linked%flag
+      sweep%linked = deck%value(sweep_linked)%flag
       call take_values(deck, sweep, error)
       if (.not. allocated(error)) call check_values(deck, sweep, error)
       if (allocated(error)) return
@@ -98,10 +98,12 @@ contains
       character(len=26) :: found
       integer :: i, s
 
-      has_values = deck%sweep%values%given
-      has_texts = deck%sweep%texts%given
-      has_any = deck%sweep%first%given .or. deck%sweep%last%given .or. deck%sweep%count%given
-      has_all = deck%sweep%first%given .and. deck%sweep%last%given .and. deck%sweep%count%given
+      has_values = deck%value(sweep_values)%given
+      has_texts = deck%value(sweep_texts)%given
+      has_any = deck%value(sweep_first)%given .or. deck%value(sweep_last)%given &
+         & .or. deck%value(sweep_count)%given
+      has_all = deck%value(sweep_first)%given .and. deck%value(sweep_last)%given &
+         & .and. deck%value(sweep_count)%given
       if (count([has_values, has_texts, has_any]) /= 1 .or. (has_any .neqv. has_all)) then
          found = "more than one"
          if (has_any .and. .not. has_all) found = "one of these three missing"
@@ -112,17 +114,17 @@ contains
       end if
       allocate (sweep%numbers(0), sweep%texts(0))
       if (has_values) then
-         i = key_index("sweep", "values")
+         i = sweep_values
          sweep%numbers = deck%value(i)%numbers
       else if (has_texts) then
-         i = key_index("sweep", "texts")
+         i = sweep_texts
          sweep%texts = deck%value(i)%texts
          do s = 1, size(sweep%texts)
             if (deck_key(sweep%parameter%key)%kind /= key_kind%text) &
                sweep%texts(s) = lower_case(sweep%texts(s))
          end do
       else
-         i = key_index("sweep", "first")
+         i = sweep_first
          call space_evenly(deck, sweep, error)
       end if
       sweep%place = deck%value(i)%place
@@ -136,13 +138,13 @@ contains
       real(wp) :: first, last
       integer :: n, i
 
-      first = deck%sweep%first%number
-      last = deck%sweep%last%number
-      n = deck%sweep%count%whole
+      first = deck%value(sweep_first)%number
+      last = deck%value(sweep_last)%number
+      n = nint(deck%value(sweep_count)%number)
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
          call key_error(error, "sweep%count = 1 needs the same first and last, got "// &
             to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
-            & "sweep", "count")
+            & sweep_count)
       else
          sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), i=1, n)]
          sweep%numbers(n) = last

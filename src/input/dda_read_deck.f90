@@ -1,15 +1,17 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
-   use dda_deck, only : add_file_mark, deck_place_t, deck_t, file_beside, parameter_t
+   use dda_deck, only : add_file_mark, deck_place_t, deck_t, file_beside, has_group, new_deck, &
+      & parameter_t
    use dda_deck_check_loads, only : check_block_file
    use dda_deck_keys, only : group_index, key_index
    use dda_deck_parameter, only : find_parameter
    use dda_deck_scan, only : scan_deck
    use dda_deck_sweep, only : few_cases, n_cases
    use dda_deck_token, only : deck_scan_t
-   use dda_deck_values, only : name_values, new_deck
    use dda_error, only : error_t
    use dda_file_mark, only : file_mark, text_mark
+   use dda_key_names, only : analysis_mode, analysis_restart, output_blocks, output_joints, &
+      & output_proof, output_reactions, scene_geometry, scene_kind, search_group, search_parameter
    use dda_read_blocks, only : parse_blocks
    use dda_text_file, only : read_text_file
    use dda_watch, only : watch_t
@@ -18,8 +20,6 @@ module dda_read_deck
 
    public :: read_deck, parse_deck, geometry_file, check_deck
 
-   !> Their keys in &output
-   character(len=*), parameter :: many_case_tables(*) = ["joints", "blocks"]
    !> What --tight sets in a search
    character(len=*), parameter :: tightest = "search%tolerance=1e-11"
 
@@ -43,7 +43,7 @@ module dda_read_deck
       !> more
       pure module subroutine name_key(deck, key, error)
          type(deck_t), intent(in) :: deck
-         character(len=*), intent(in) :: key  !! The key of &scene that names the file
+         integer, intent(in) :: key  !! Place of the key that names the file in the registry
          type(error_t), allocatable, intent(inout) :: error
       end subroutine name_key
 
@@ -98,13 +98,13 @@ contains
       if (.not. allocated(error)) call read_lines(deck, error)
       if (.not. allocated(error)) call read_ground_records(deck, error)
       if (allocated(error)) return
-      if (deck%analysis%restart%given) call add_file_mark(file_mark( &
-         & file_beside(deck, deck%analysis%restart%text)), deck)
-      if (deck%scene%kind%word /= "blocks") return
+      if (deck%value(analysis_restart)%given) call add_file_mark(file_mark( &
+         & file_beside(deck, deck%value(analysis_restart)%text)), deck)
+      if (deck%value(scene_kind)%text /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
       if (allocated(error)) then
-         call name_key(deck, "geometry", error)
+         call name_key(deck, scene_geometry, error)
          return
       end if
       call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
@@ -118,7 +118,7 @@ contains
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: path
 
-      path = file_beside(deck, deck%scene%geometry%text)
+      path = file_beside(deck, deck%value(scene_geometry)%text)
    end function geometry_file
 
    !> Read and check a deck from its text
@@ -146,29 +146,30 @@ contains
          call apply_setting(trim(settings(i)), deck_place_t(i, .true.), deck, error)
       end do
       if (present(tight) .and. .not. allocated(error)) then
-         if (tight .and. deck%group(group_index("search"))%line > 0) call apply_setting( &
+         if (tight .and. has_group(deck, search_group)) call apply_setting( &
             & tightest, deck_place_t(0, .true.), deck, error)
       end if
-      call name_values(deck)
-      if (deck%search%given) call find_parameter(deck%search%parameter%text, deck%searched, problem)
+      if (has_group(deck, search_group)) call find_parameter(deck%value(search_parameter)%text, &
+         & deck%searched, problem)
       checked = ""
       if (present(cases)) checked = cases
       if (.not. allocated(error)) call check_deck(deck, checked, error)
-      do i = 1, size(many_case_tables)
-         if (allocated(error)) return
-         associate (wanted => deck%value(key_index("output", many_case_tables(i))))
-            if (.not. wanted%given) wanted%flag = n_cases(deck) <= few_cases
-         end associate
-      end do
-      call name_values(deck)
-      associate (proof => deck%value(key_index("output", "proof")))
-         if (.not. proof%given) proof%flag = n_cases(deck) <= few_cases &
-            & .and. deck%output%joints%flag
-      end associate
-      associate (reactions => deck%value(key_index("output", "reactions")))
-         if (.not. reactions%given) reactions%flag = deck%output%joints%flag &
-            & .and. deck%analysis%mode%word == "static"
-      end associate
-      call name_values(deck)
+      if (.not. allocated(error)) call choose_tables(deck)
    end subroutine parse_deck
+
+   !> Write the tables of which the deck says nothing if there are few cases, reactions with joints
+   pure subroutine choose_tables(deck)
+      type(deck_t), intent(inout) :: deck
+      logical :: few
+
+      few = n_cases(deck) <= few_cases
+      associate (joints => deck%value(output_joints), blocks => deck%value(output_blocks), &
+         & proof => deck%value(output_proof), reactions => deck%value(output_reactions))
+         if (.not. joints%given) joints%flag = few
+         if (.not. blocks%given) blocks%flag = few
+         if (.not. proof%given) proof%flag = few .and. joints%flag
+         if (.not. reactions%given) &
+            & reactions%flag = joints%flag .and. deck%value(analysis_mode)%text == "static"
+      end associate
+   end subroutine choose_tables
 end module dda_read_deck

@@ -3,9 +3,12 @@
 module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
-   use dda_deck, only : deck_error, deck_t
-   use dda_deck_keys, only : key_index
+   use dda_deck, only : deck_error, deck_t, has_group
    use dda_error, only : error_t
+   use dda_key_names, only : analysis_collapse_displacement, analysis_mode, arch_abutment_size, &
+      & arch_springing, joint_cohesion, joint_friction_deg, joint_tension, live_group, &
+      & load_gravity_direction_deg, load_horizontal_coefficient, material_density, &
+      & material_plane, material_poisson, material_young, vehicle_group
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
       & limerick_joint_t, analysis_material_t
@@ -51,7 +54,7 @@ contains
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
          call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
             & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
-            & deck%value(key_index("arch", "abutment_size"))%place)
+            & deck%value(arch_abutment_size)%place)
          return
       end if
       call new_line_model(model)
@@ -165,7 +168,7 @@ contains
       type(deck_t), intent(in) :: deck
 
       face_material = 1
-      if (deck%arch%springing%word == "no-slip") face_material = 2
+      if (deck%value(arch_springing)%text == "no-slip") face_material = 2
    end function face_material
 
    !> An edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less where
@@ -196,21 +199,21 @@ contains
 
       analysis%file = deck%file
       call set_constants(deck, analysis%limerick_constants_t)
-      analysis%dynamic = analysis%dynamic .or. deck%analysis%mode%word == "dynamic"
-      if (deck%analysis%mode%word /= "limerick") then
+      analysis%dynamic = analysis%dynamic .or. deck%value(analysis_mode)%text == "dynamic"
+      if (deck%value(analysis_mode)%text /= "limerick") then
          ! in the other modes these keys mean something else
          analysis%auto_time_step = usual%auto_time_step
          analysis%penalty_factor = usual%penalty_factor
       end if
-      analysis%plane_strain = deck%material%plane%word == "strain"
-      stone%density = deck%material%density%number
+      analysis%plane_strain = deck%value(material_plane)%text == "strain"
+      stone%density = deck%value(material_density)%number
       stone%unit_weight = unit_weight(deck)
-      stone%young = deck%material%young%number
-      stone%poisson = deck%material%poisson%number
+      stone%young = deck%value(material_young)%number
+      stone%poisson = deck%value(material_poisson)%number
       analysis%gravity = stone%unit_weight/stone%density
-      joint%friction_deg = min(deck%joint%friction_deg%number, no_slip_deg)
-      joint%cohesion = deck%joint%cohesion%number
-      joint%tension = deck%joint%tension%number
+      joint%friction_deg = min(deck%value(joint_friction_deg)%number, no_slip_deg)
+      joint%cohesion = deck%value(joint_cohesion)%number
+      joint%tension = deck%value(joint_tension)%number
       allocate (analysis%material(1), analysis%load(0))
       analysis%material(1) = stone
       allocate (analysis%joint(face_material(deck)))
@@ -224,13 +227,14 @@ contains
       character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
 
       text = ""
-      if (abs(deck%load%gravity_direction_deg%number + 90.0_wp) > 0.0_wp) &
+      if (abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp) &
          & text = text//", load%gravity_direction_deg"
-      if (abs(deck%load%horizontal_coefficient%number) > 0.0_wp) &
+      if (abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp) &
          & text = text//", load%horizontal_coefficient"
-      if (deck%live%given) text = text//", &live"
-      if (deck%vehicle%given) text = text//", &vehicle"
-      if (deck%analysis%collapse_displacement%given) text = text//", analysis%collapse_displacement"
+      if (has_group(deck, live_group)) text = text//", &live"
+      if (has_group(deck, vehicle_group)) text = text//", &vehicle"
+      if (deck%value(analysis_collapse_displacement)%given) text = text &
+         & //", analysis%collapse_displacement"
       if (len(text) > 0) text = text(3:)
    end function what_is_lost
 end module dda_arch_lines

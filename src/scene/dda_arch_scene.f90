@@ -4,7 +4,18 @@ module dda_arch_scene
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
    use dda_arch_chain, only : arch_numbers_t
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, has_group
+   use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
+      & analysis_collapse_rotation_deg, analysis_damping, analysis_duration, analysis_flow, &
+      & analysis_max_displacement_ratio, analysis_open_close_limit, analysis_penalty_ratio, &
+      & analysis_restitution, analysis_start, analysis_steps, analysis_time_step, &
+      & arch_facet_deg, arch_half_angle_deg, arch_joints_deg, arch_radius, arch_springing, &
+      & arch_thickness_ratio, arch_voussoirs, joint_cohesion, joint_friction_deg, &
+      & joint_residual_deg, joint_slip_length, joint_tension, live_group, load_gravity, &
+      & load_gravity_direction_deg, load_horizontal_coefficient, load_live_horizontal, &
+      & load_load_factor, material_compressive_strength, material_density, material_plane, &
+      & material_poisson, material_unit_weight, material_young, output_condition, search_group, &
+      & search_tolerance, vehicle_group
    use dda_kinds, only : degree, pi, wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
@@ -36,16 +47,16 @@ contains
       integer, allocatable :: edge_pair(:, :)
       integer :: n
 
-      call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
+      call arch_blocks(shape_of(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
-      scene%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
+      scene%settings = settings_of(deck, plan, degree*deck%value(arch_half_angle_deg)%number, &
          & size(half_joints_deg(deck)))
       scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, &
-         & weight_rounding(degree*deck%arch%half_angle_deg%number, &
-         & deck%arch%thickness_ratio%number))
+         & weight_rounding(degree*deck%value(arch_half_angle_deg)%number, &
+         & deck%value(arch_thickness_ratio)%number))
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
-      if (deck%arch%springing%word == "no-slip") law([1, n])%no_slip = .true.
+      if (deck%value(arch_springing)%text == "no-slip") law([1, n])%no_slip = .true.
       call find_contacts(scene%system, edge_pair, law, scene%contacts)
       allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine arch_scene
@@ -54,12 +65,12 @@ contains
    pure type(arch_numbers_t) function arch_numbers(deck) result(numbers)
       type(deck_t), intent(in) :: deck
 
-      numbers%shape = arch_shape(deck)
-      numbers%density = deck%material%density%number
-      numbers%young = deck%material%young%number
-      numbers%penalty_ratio = deck%analysis%penalty_ratio%number
+      numbers%shape = shape_of(deck)
+      numbers%density = deck%value(material_density)%number
+      numbers%young = deck%value(material_young)%number
+      numbers%penalty_ratio = deck%value(analysis_penalty_ratio)%number
       numbers%law = joint_law(deck)
-      numbers%no_slip_springing = deck%arch%springing%word == "no-slip"
+      numbers%no_slip_springing = deck%value(arch_springing)%text == "no-slip"
    end function arch_numbers
 
    !> Angles of all joints from the crown, positive to the right
@@ -81,12 +92,12 @@ contains
    pure type(material_t) function material_of(deck) result(material)
       type(deck_t), intent(in) :: deck
 
-      material%density = deck%material%density%number
-      material%young = deck%material%young%number
-      material%poisson = deck%material%poisson%number
-      if (deck%material%compressive_strength%given) &
-         & material%strength = deck%material%compressive_strength%number
-      material%plane_strain = deck%material%plane%word == "strain"
+      material%density = deck%value(material_density)%number
+      material%young = deck%value(material_young)%number
+      material%poisson = deck%value(material_poisson)%number
+      if (deck%value(material_compressive_strength)%given) &
+         & material%strength = deck%value(material_compressive_strength)%number
+      material%plane_strain = deck%value(material_plane)%text == "strain"
    end function material_of
 
    !> The law of the joints
@@ -94,14 +105,14 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: friction_deg
 
-      friction_deg = deck%joint%friction_deg%number
+      friction_deg = deck%value(joint_friction_deg)%number
       law%no_slip = friction_deg >= no_slip_deg
       if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
-      law%cohesion = deck%joint%cohesion%number
-      law%tension = deck%joint%tension%number
-      if (deck%joint%residual_deg%given) law%residual = friction_coefficient( &
-         & min(deck%joint%residual_deg%number, no_slip_deg))
-      law%slip_length = deck%joint%slip_length%number
+      law%cohesion = deck%value(joint_cohesion)%number
+      law%tension = deck%value(joint_tension)%number
+      if (deck%value(joint_residual_deg)%given) law%residual = friction_coefficient( &
+         & min(deck%value(joint_residual_deg)%number, no_slip_deg))
+      law%slip_length = deck%value(joint_slip_length)%number
    end function joint_law
 
    !> Joints of one half of the arch, from the crown
@@ -109,39 +120,41 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp), allocatable :: joints(:)  !! Angles from the crown: (n) [deg]
 
-      if (deck%arch%joints_deg%given) then
-         joints = deck%arch%joints_deg%numbers
+      if (deck%value(arch_joints_deg)%given) then
+         joints = deck%value(arch_joints_deg)%numbers
       else
-         joints = equal_joints(deck%arch%voussoirs%whole, deck%arch%half_angle_deg%number)
+         joints = equal_joints(nint(deck%value(arch_voussoirs)%number), &
+            & deck%value(arch_half_angle_deg)%number)
       end if
    end function half_joints_deg
 
    !> The shape of the arch
-   pure type(arch_shape_t) function arch_shape(deck) result(shape)
+   pure type(arch_shape_t) function shape_of(deck) result(shape)
       type(deck_t), intent(in) :: deck
       real(wp), allocatable :: joints(:), span(:)
       real(wp) :: facet
       integer :: crown
 
       allocate (joints, source=half_joints_deg(deck))
-      shape%radius = deck%arch%radius%number
-      shape%thickness_ratio = deck%arch%thickness_ratio%number
+      shape%radius = deck%value(arch_radius)%number
+      shape%thickness_ratio = deck%value(arch_thickness_ratio)%number
       allocate (shape%joint_angle, source=joints*degree)
       facet = 0.0_wp
-      if (deck%arch%facet_deg%given) facet = deck%arch%facet_deg%number
+      if (deck%value(arch_facet_deg)%given) facet = deck%value(arch_facet_deg)%number
       crown = merge(1, 0, joints(1) > 0.0_wp)
       allocate (span(size(joints) - 1 + crown))
       span(1) = 2.0_wp*joints(1)
       span(1 + crown:) = joints(2:) - joints(:size(joints) - 1)
       allocate (shape%facets, source=facet_count(span, facet))
-   end function arch_shape
+   end function shape_of
 
    !> Weight per volume [N/m3]
    pure real(wp) function unit_weight(deck)
       type(deck_t), intent(in) :: deck
 
-      unit_weight = deck%material%density%number*deck%load%gravity%number
-      if (deck%material%unit_weight%given) unit_weight = deck%material%unit_weight%number
+      unit_weight = deck%value(material_density)%number*deck%value(load_gravity)%number
+      if (deck%value(material_unit_weight)%given) unit_weight = &
+         & deck%value(material_unit_weight)%number
    end function unit_weight
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
@@ -158,36 +171,39 @@ contains
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns
-      settings%tells_condition = deck%output%condition%flag
-      settings%penalty_ratio = deck%analysis%penalty_ratio%number
-      settings%max_steps = deck%analysis%steps%whole
-      settings%max_changes = deck%analysis%open_close_limit%whole
-      if (deck%analysis%time_step%given) settings%time_step = deck%analysis%time_step%number
-      if (deck%analysis%collapse_displacement%given) &
-         & settings%collapse_displacement = deck%analysis%collapse_displacement%number
-      if (deck%analysis%duration%given) settings%duration = deck%analysis%duration%number
-      if (.not. deck%analysis%steps%given .and. deck%analysis%duration%given &
-         & .and. deck%analysis%time_step%given) settings%max_steps = int(min(1.0e9_wp, &
+      settings%tells_condition = deck%value(output_condition)%flag
+      settings%penalty_ratio = deck%value(analysis_penalty_ratio)%number
+      settings%max_steps = nint(deck%value(analysis_steps)%number)
+      settings%max_changes = nint(deck%value(analysis_open_close_limit)%number)
+      if (deck%value(analysis_time_step)%given) settings%time_step = &
+         & deck%value(analysis_time_step)%number
+      if (deck%value(analysis_collapse_displacement)%given) &
+         & settings%collapse_displacement = deck%value(analysis_collapse_displacement)%number
+      if (deck%value(analysis_duration)%given) settings%duration = &
+         & deck%value(analysis_duration)%number
+      if (.not. deck%value(analysis_steps)%given .and. deck%value(analysis_duration)%given &
+         & .and. deck%value(analysis_time_step)%given) settings%max_steps = int(min(1.0e9_wp, &
          & max(real(settings%max_steps, wp), cut_steps*settings%duration/settings%time_step)))
-      if (deck%analysis%collapse_rotation_deg%given) then
-         settings%collapse_rotation = degree*deck%analysis%collapse_rotation_deg%number
-      else if (deck%search%given .and. .not. settings%collapse_displacement > 0.0_wp) then
+      if (deck%value(analysis_collapse_rotation_deg)%given) then
+         settings%collapse_rotation = degree*deck%value(analysis_collapse_rotation_deg)%number
+      else if (has_group(deck, search_group) .and. .not. settings%collapse_displacement &
+         & > 0.0_wp) then
          settings%collapse_rotation = overturned
       end if
-      settings%collapse_point = deck%analysis%collapse_point%whole
-      settings%restitution = deck%analysis%restitution%number
-      settings%damping = deck%analysis%damping%number
-      settings%settles = deck%analysis%start%word == "static"
-      settings%max_displacement_ratio = deck%analysis%max_displacement_ratio%number
+      settings%collapse_point = nint(deck%value(analysis_collapse_point)%number)
+      settings%restitution = deck%value(analysis_restitution)%number
+      settings%damping = deck%value(analysis_damping)%number
+      settings%settles = deck%value(analysis_start)%text == "static"
+      settings%max_displacement_ratio = deck%value(analysis_max_displacement_ratio)%number
       settings%verdict_flow = merge(flow_rule%associated, flow_rule%coulomb, &
-         & deck%analysis%flow%word == "associated")
-      settings%tilt = degree*modulo(deck%load%gravity_direction_deg%number + 270.0_wp, &
+         & deck%value(analysis_flow)%text == "associated")
+      settings%tilt = degree*modulo(deck%value(load_gravity_direction_deg)%number + 270.0_wp, &
          & 360.0_wp) - pi
-      settings%push = deck%load%horizontal_coefficient%number
-      settings%live_push = deck%load%live_horizontal%flag
-      settings%load_factor = deck%load%load_factor%number
+      settings%push = deck%value(load_horizontal_coefficient)%number
+      settings%live_push = deck%value(load_live_horizontal)%flag
+      settings%load_factor = deck%value(load_load_factor)%number
       rise = min(1.0_wp, half_angle**2/2.0_wp)
-      settings%rest_tolerance = 1.0e-3_wp*rise*deck%search%tolerance%number
+      settings%rest_tolerance = 1.0e-3_wp*rise*deck%value(search_tolerance)%number
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
@@ -215,18 +231,18 @@ contains
 
       eta = 0.0_wp
       own_weight = unit_weight(deck) > 0.0_wp &
-         & .and. .not. abs(deck%load%gravity_direction_deg%number + 90.0_wp) > 0.0_wp &
-         & .and. .not. abs(deck%load%horizontal_coefficient%number) > 0.0_wp &
-         & .and. .not. (deck%live%given .or. deck%vehicle%given)
-      no_strength = .not. (deck%joint%cohesion%number > 0.0_wp &
-         & .or. deck%joint%tension%number > 0.0_wp)
+         & .and. .not. abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp &
+         & .and. .not. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp &
+         & .and. .not. (has_group(deck, live_group) .or. has_group(deck, vehicle_group))
+      no_strength = .not. (deck%value(joint_cohesion)%number > 0.0_wp &
+         & .or. deck%value(joint_tension)%number > 0.0_wp)
       known = own_weight .and. no_strength
       if (.not. known) return
-      friction = deck%joint%friction_deg%number
+      friction = deck%value(joint_friction_deg)%number
       friction = merge(pi, friction*degree, friction >= no_slip_deg)
-      shape = arch_shape(deck)
+      shape = shape_of(deck)
       call discrete_critical(shape%joint_angle, shape%facets, friction, &
-         & deck%arch%springing%word == "no-slip", solution)
+         & deck%value(arch_springing)%text == "no-slip", solution)
       known = solution%status == discrete_status%found
       if (known) eta = solution%eta
    end subroutine exact_thickness
@@ -237,7 +253,7 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
-      square = (degree*deck%arch%half_angle_deg%number)**2
+      square = (degree*deck%value(arch_half_angle_deg)%number)**2
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
@@ -249,8 +265,9 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
-      square = (degree*deck%arch%half_angle_deg%number)**2
-      arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp)/deck%arch%thickness_ratio%number**2
+      square = (degree*deck%value(arch_half_angle_deg)%number)**2
+      arch_resolution = &
+         & 8.0_wp*square/8.0_wp*epsilon(1.0_wp)/deck%value(arch_thickness_ratio)%number**2
    end function arch_resolution
 
    !> The same for a chain, whose voussoirs are seen from their own joints: masses are wrong by some
@@ -261,7 +278,7 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: angle
 
-      angle = degree*deck%arch%half_angle_deg%number
+      angle = degree*deck%value(arch_half_angle_deg)%number
       chain_resolution = 100.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp) &
          & /min(angle**2, angle**3)
    end function chain_resolution

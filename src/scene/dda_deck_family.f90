@@ -5,9 +5,10 @@ submodule (dda_deck_scene) dda_deck_family
    use dda_arch_form, only : form_problem_t
    use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, settings_of, &
       & unit_weight
-   use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : fatal_error
+   use dda_key_names, only : arch_half_angle_deg, arch_thickness_ratio, &
+      & load_gravity_direction_deg, load_horizontal_coefficient, load_load_factor
    use dda_kinds, only : degree
    use dda_live_loads, only : check_live_points
    use dda_scene, only : searched_load
@@ -21,17 +22,15 @@ contains
    !> Make a deck a family, its numbers read
    module procedure new_family
       family%parameter = parameter
-      if (parameter%key == key_index("load", "horizontal_coefficient")) &
-         & family%load = searched_load%push
-      if (parameter%key == key_index("load", "gravity_direction_deg")) &
-         & family%load = searched_load%tilt
-      if (parameter%key == key_index("load", "load_factor")) family%load = searched_load%factor
+      if (parameter%key == load_horizontal_coefficient) family%load = searched_load%push
+      if (parameter%key == load_gravity_direction_deg) family%load = searched_load%tilt
+      if (parameter%key == load_load_factor) family%load = searched_load%factor
       family%plan = plan
-      family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
+      family%chains = plan%row .and. parameter%key == arch_thickness_ratio
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
       associate (deck => family%deck)
-         family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
+         family%settings = settings_of(deck, plan, degree*deck%value(arch_half_angle_deg)%number, &
             & size(half_joints_deg(deck)))
          family%numbers = arch_numbers(deck)
          family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
@@ -63,7 +62,7 @@ contains
       deck = family%deck
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (allocated(error)) return
-      if (scene_kind(deck) == "shape") call shape_assembly(deck, assembly, problem)
+      if (source_of(deck) == "shape") call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) then
          call fatal_error(error, "the searched parameter makes no arch of this value")
          return

@@ -5,10 +5,12 @@ module dda_deck_scene
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : history_t
    use dda_chain, only : chain_t
-   use dda_deck, only : deck_t, parameter_t, scene_kind
+   use dda_deck, only : deck_t, parameter_t, source_of
    use dda_error, only : error_t
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
+   use dda_key_names, only : ground_amplitude, ground_direction_deg, ground_duration, &
+      & ground_frequency, ground_pulse, ground_quantity, ground_record, ground_scale, ground_unit
    use dda_kinds, only : degree, pi, wp
    use dda_line_scene, only : line_scene
    use dda_live_loads, only : add_live_loads
@@ -111,7 +113,7 @@ contains
       type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
 
-      select case (scene_kind(deck))
+      select case (source_of(deck))
       case ("arch")
          call arch_scene(deck, plan, scene)
       case ("lines")
@@ -122,7 +124,7 @@ contains
          call shape_scene(deck, plan, scene)
       end select
       call move_ground(deck, scene%settings%boundary%base_acceleration)
-      if (scene_kind(deck) /= "shape") call add_live_loads(deck, scene)
+      if (source_of(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
 
    !> Give the ground of a scene the motion that &ground asks for
@@ -131,13 +133,13 @@ contains
       !> Acceleration of the ground: that of the file of blocks in, that of the case out
       type(history_t), intent(inout) :: acceleration
 
-      if (deck%ground%pulse%given) then
+      if (deck%value(ground_pulse)%given) then
          acceleration = pulse_of(deck)
-      else if (deck%ground%record%given) then
+      else if (deck%value(ground_record)%given) then
          acceleration = record_of(deck)
       end if
       if (allocated(acceleration%value)) &
-         & acceleration%value = deck%ground%scale%number*acceleration%value
+         & acceleration%value = deck%value(ground_scale)%number*acceleration%value
    end subroutine move_ground
 
    !> A pulse. What is constant before its beginning and after its end is no time of the run, and
@@ -147,11 +149,11 @@ contains
       real(wp) :: duration, frequency, along(2)
       integer :: i, n
 
-      along = deck%ground%amplitude%number*direction_of(deck)
-      duration = deck%ground%duration%number
-      frequency = deck%ground%frequency%number
-      if (deck%ground%pulse%word == "sine") then
-         if (.not. deck%ground%duration%given) duration = 1.0_wp/frequency
+      along = deck%value(ground_amplitude)%number*direction_of(deck)
+      duration = deck%value(ground_duration)%number
+      frequency = deck%value(ground_frequency)%number
+      if (deck%value(ground_pulse)%text == "sine") then
+         if (.not. deck%value(ground_duration)%given) duration = 1.0_wp/frequency
          n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
          allocate (pulse%time(n + 2), pulse%value(2, n + 2))
          do i = 0, n
@@ -181,7 +183,7 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: direction(2)  !! Components along x and y: (2)
 
-      direction = degree*deck%ground%direction_deg%number
+      direction = degree*deck%value(ground_direction_deg)%number
       direction = [cos(direction(1)), sin(direction(1))]
       where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
    end function direction_of
@@ -195,13 +197,13 @@ contains
       integer :: i
 
       do i = 1, size(deck%ground_record)
-         if (deck%ground_record(i)%name == deck%ground%record%text) &
+         if (deck%ground_record(i)%name == deck%value(ground_record)%text) &
             & motion = deck%ground_record(i)%motion
       end do
       turn(:, 1) = direction_of(deck)
       turn(:, 2) = [-turn(2, 1), turn(1, 1)]
-      motion%value = deck%ground%unit%number*matmul(turn, motion%value)
-      select case (deck%ground%quantity%word)
+      motion%value = deck%value(ground_unit)%number*matmul(turn, motion%value)
+      select case (deck%value(ground_quantity)%text)
       case ("velocity")
          acceleration = acceleration_of_velocity(motion)
       case ("displacement")
@@ -209,9 +211,9 @@ contains
       case default
          acceleration = acceleration_of_record(motion)
       end select
-      if (.not. deck%ground%amplitude%given) return
+      if (.not. deck%value(ground_amplitude)%given) return
       largest = maxval(norm2(acceleration%value, dim=1))
-      if (largest > 0.0_wp) acceleration%value = deck%ground%amplitude%number/largest &
+      if (largest > 0.0_wp) acceleration%value = deck%value(ground_amplitude)%number/largest &
          & *acceleration%value
    end function record_of
 end module dda_deck_scene

@@ -5,6 +5,11 @@ module dda_fill_loads
    use dda_bar, only : bar_state_t, bar_t
    use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
    use dda_deck, only : deck_t
+   use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
+      & fill_backing_height, fill_backing_unit_weight, fill_friction_deg, fill_height, &
+      & fill_passive_coefficient, fill_passive_share, fill_passive_stiffness, fill_spread, &
+      & fill_unit_weight, joint_cohesion, joint_tension, load_gravity, material_density, &
+      & material_unit_weight
    use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
@@ -47,18 +52,20 @@ contains
    pure logical function fill_leans(deck)
       type(deck_t), intent(in) :: deck
 
-      fill_leans = deck%fill%passive_coefficient%number > 0.0_wp &
-         & .or. deck%fill%passive_share%number > 0.0_wp .or. deck%fill%backing_height%given
+      fill_leans = deck%value(fill_passive_coefficient)%number > 0.0_wp &
+         & .or. deck%value(fill_passive_share)%number > 0.0_wp &
+         & .or. deck%value(fill_backing_height)%given
    end function fill_leans
 
    !> Whether it does so where blocks move, or joints have strength: else limit analysis decides
    pure logical function fill_yields(deck)
       type(deck_t), intent(in) :: deck
 
-      fill_yields = fill_leans(deck) .and. (deck%analysis%mode%word /= "static" &
-         & .or. deck%analysis%geometry%word /= "reference" &
-         & .or. deck%analysis%collapse_displacement%given &
-         & .or. deck%joint%cohesion%number > 0.0_wp .or. deck%joint%tension%number > 0.0_wp)
+      fill_yields = fill_leans(deck) .and. (deck%value(analysis_mode)%text /= "static" &
+         & .or. deck%value(analysis_geometry)%text /= "reference" &
+         & .or. deck%value(analysis_collapse_displacement)%given &
+         & .or. deck%value(joint_cohesion)%number > 0.0_wp &
+         & .or. deck%value(joint_tension)%number > 0.0_wp)
    end function fill_yields
 
    !> The fill of a deck
@@ -74,20 +81,22 @@ contains
       do i = 1, size(fill%chord)
          fill%surface = max(fill%surface, fill%chord(i)%left(2), fill%chord(i)%right(2))
       end do
-      fill%surface = fill%surface + deck%fill%height%number
-      fill%unit_weight = deck%fill%unit_weight%number
-      fill%unit_weight(2) = deck%material%density%number*deck%load%gravity%number
-      if (deck%material%unit_weight%given) fill%unit_weight(2) = deck%material%unit_weight%number
-      if (deck%fill%backing_unit_weight%given) &
-         & fill%unit_weight(2) = deck%fill%backing_unit_weight%number
-      if (deck%fill%backing_height%given) fill%backing = assembly%springing_y &
-         & + deck%fill%backing_height%number
-      fill%spread = deck%fill%spread%number
+      fill%surface = fill%surface + deck%value(fill_height)%number
+      fill%unit_weight = deck%value(fill_unit_weight)%number
+      fill%unit_weight(2) = deck%value(material_density)%number*deck%value(load_gravity)%number
+      if (deck%value(material_unit_weight)%given) fill%unit_weight(2) = &
+         & deck%value(material_unit_weight)%number
+      if (deck%value(fill_backing_unit_weight)%given) &
+         & fill%unit_weight(2) = deck%value(fill_backing_unit_weight)%number
+      if (deck%value(fill_backing_height)%given) fill%backing = assembly%springing_y &
+         & + deck%value(fill_backing_height)%number
+      fill%spread = deck%value(fill_spread)%number
       fill%yields = fill_yields(deck)
-      fill%stiffness = deck%fill%passive_stiffness%number
-      fill%passive = deck%fill%passive_coefficient%number
-      if (deck%fill%passive_share%given) fill%passive = deck%fill%passive_share%number &
-         & *tan(degree*(45.0_wp + 0.5_wp*deck%fill%friction_deg%number))**2
+      fill%stiffness = deck%value(fill_passive_stiffness)%number
+      fill%passive = deck%value(fill_passive_coefficient)%number
+      if (deck%value(fill_passive_share)%given) fill%passive = &
+         & deck%value(fill_passive_share)%number &
+         & *tan(degree*(45.0_wp + 0.5_wp*deck%value(fill_friction_deg)%number))**2
    end function fill_of
 
    !> Where the extrados of a span turns from rising to falling, between the middles of two chords

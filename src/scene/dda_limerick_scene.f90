@@ -1,8 +1,13 @@
 !> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
    use dda_boundary, only : boundary_t, measured_point_t
-   use dda_deck, only : deck_t
-   use dda_input, only : input_value_t
+   use dda_deck, only : deck_t, deck_value_t
+   use dda_key_names, only : analysis_collapse_displacement, analysis_max_displacement_ratio, &
+      & analysis_penalty_ratio, analysis_steps, analysis_time_step, arch_abutment_overhang, &
+      & arch_abutment_size, arch_radius, limerick_auto_penalty, limerick_close_ratio, &
+      & limerick_contact_damping, limerick_dynamic, limerick_gravity_steps, limerick_open_ratio, &
+      & limerick_overlap_deg, limerick_penetration_ratio, limerick_rotation, &
+      & limerick_stiffness_ratio, scene_kind
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_blocks, only : blocks_model, inner_points
@@ -32,10 +37,10 @@ contains
       real(wp) :: acceleration
 
       if (allocated(deck%file_analysis)) model%constants = deck%file_analysis%limerick_constants_t
-      select case (deck%scene%kind%word)
+      select case (deck%value(scene_kind)%text)
       case ("arch")
          call arch_model(deck, scene, model)
-         model%constants%collapse_displacement = usual_collapse*deck%arch%radius%number
+         model%constants%collapse_displacement = usual_collapse*deck%value(arch_radius)%number
       case ("lines")
          call lines_model(deck, scene, model)
          model%constants%collapse_displacement = usual_collapse*half_size(model)
@@ -90,10 +95,11 @@ contains
       real(wp), intent(out) :: depth     !! Depth, away from the springing joint [m]
       real(wp), intent(out) :: overhang  !! How far they reach beyond the joint at either end [m]
 
-      depth = usual_depth*deck%arch%radius%number
-      if (deck%arch%abutment_size%given) depth = deck%arch%abutment_size%number
+      depth = usual_depth*deck%value(arch_radius)%number
+      if (deck%value(arch_abutment_size)%given) depth = deck%value(arch_abutment_size)%number
       overhang = depth
-      if (deck%arch%abutment_overhang%given) overhang = deck%arch%abutment_overhang%number
+      if (deck%value(arch_abutment_overhang)%given) overhang = &
+         & deck%value(arch_abutment_overhang)%number
    end subroutine abutment_sides
 
    !> Make an abutment as large as the deck says
@@ -135,29 +141,31 @@ contains
       !> The constants; those that the deck does not give are left as they are
       type(limerick_constants_t), intent(inout) :: constants
 
-      call take(deck%limerick%close_ratio, constants%close_ratio)
-      call take(deck%limerick%open_ratio, constants%open_ratio)
-      call take(deck%limerick%penetration_ratio, constants%penetration_ratio)
-      call take(deck%limerick%overlap_deg, constants%overlap_deg)
-      call take(deck%limerick%stiffness_ratio, constants%stiffness_ratio)
-      call take(deck%limerick%contact_damping, constants%contact_damping)
-      call take(deck%analysis%penalty_ratio, constants%penalty_factor)
-      call take(deck%analysis%max_displacement_ratio, constants%max_displacement_ratio)
-      call take(deck%analysis%collapse_displacement, constants%collapse_displacement)
-      call take(deck%analysis%time_step, constants%time_step)
-      if (deck%analysis%time_step%given) constants%auto_time_step = .false.
-      if (deck%analysis%steps%given) constants%max_steps = deck%analysis%steps%whole
-      if (deck%limerick%gravity_steps%given) &
-         & constants%gravity_steps = deck%limerick%gravity_steps%whole
-      if (deck%limerick%auto_penalty%given) constants%auto_penalty = deck%limerick%auto_penalty%flag
-      if (deck%limerick%dynamic%given) constants%dynamic = deck%limerick%dynamic%flag
-      if (deck%limerick%rotation%given) &
-         & constants%exact_rotation = deck%limerick%rotation%word == "exact"
+      call take(deck%value(limerick_close_ratio), constants%close_ratio)
+      call take(deck%value(limerick_open_ratio), constants%open_ratio)
+      call take(deck%value(limerick_penetration_ratio), constants%penetration_ratio)
+      call take(deck%value(limerick_overlap_deg), constants%overlap_deg)
+      call take(deck%value(limerick_stiffness_ratio), constants%stiffness_ratio)
+      call take(deck%value(limerick_contact_damping), constants%contact_damping)
+      call take(deck%value(analysis_penalty_ratio), constants%penalty_factor)
+      call take(deck%value(analysis_max_displacement_ratio), constants%max_displacement_ratio)
+      call take(deck%value(analysis_collapse_displacement), constants%collapse_displacement)
+      call take(deck%value(analysis_time_step), constants%time_step)
+      if (deck%value(analysis_time_step)%given) constants%auto_time_step = .false.
+      if (deck%value(analysis_steps)%given) constants%max_steps = &
+         & nint(deck%value(analysis_steps)%number)
+      if (deck%value(limerick_gravity_steps)%given) &
+         & constants%gravity_steps = nint(deck%value(limerick_gravity_steps)%number)
+      if (deck%value(limerick_auto_penalty)%given) constants%auto_penalty = &
+         & deck%value(limerick_auto_penalty)%flag
+      if (deck%value(limerick_dynamic)%given) constants%dynamic = deck%value(limerick_dynamic)%flag
+      if (deck%value(limerick_rotation)%given) &
+         & constants%exact_rotation = deck%value(limerick_rotation)%text == "exact"
    end subroutine set_constants
 
    !> Take a number that the deck gives
    pure subroutine take(value, number)
-      type(input_value_t), intent(in) :: value
+      type(deck_value_t), intent(in) :: value
       real(wp), intent(inout) :: number  !! The number; left as it is if the deck does not give it
 
       if (value%given) number = value%number

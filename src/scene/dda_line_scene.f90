@@ -8,8 +8,10 @@ module dda_line_scene
    use dda_cut_model, only : cut_model_t, point_kind, split_edges
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
-   use dda_deck_keys, only : key_index
    use dda_error, only : error_t
+   use dda_key_names, only : analysis_mode, joint_cohesion, joint_friction_deg, joint_tension, &
+      & load_gravity, material_density, material_plane, material_poisson, material_unit_weight, &
+      & material_young, scene_geometry
    use dda_kinds, only : pi, wp
    use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
@@ -162,12 +164,12 @@ contains
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
          problem = "expected coincident edges of blocks, got none: this version finds no other " &
             & //"contacts; choose mode = 'limerick'"
-      else if (deck%analysis%mode%word == "static" &
+      else if (deck%value(analysis_mode)%text == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
          problem = "a static analysis needs a weight on blocks that move, got none; give one"
       end if
       if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
-         & deck%value(key_index("scene", "geometry"))%place)
+         & deck%value(scene_geometry)%place)
    end subroutine check_line_scene
 
    !> The blocks with their materials, weights and states at the beginning
@@ -202,8 +204,8 @@ contains
    pure logical function weight_is_given(deck)
       type(deck_t), intent(in) :: deck
 
-      weight_is_given = deck%material%unit_weight%given &
-         & .or. deck%material%density%given .or. deck%load%gravity%given
+      weight_is_given = deck%value(material_unit_weight)%given &
+         & .or. deck%value(material_density)%given .or. deck%value(load_gravity)%given
    end function weight_is_given
 
    !> A material of the analysis file; keys that the deck gives go before
@@ -212,10 +214,11 @@ contains
       type(analysis_material_t), intent(in) :: listed
 
       material = material_of(deck)
-      if (.not. deck%material%density%given) material%density = listed%density
-      if (.not. deck%material%young%given) material%young = listed%young
-      if (.not. deck%material%poisson%given) material%poisson = listed%poisson
-      if (.not. deck%material%plane%given) material%plane_strain = deck%file_analysis%plane_strain
+      if (.not. deck%value(material_density)%given) material%density = listed%density
+      if (.not. deck%value(material_young)%given) material%young = listed%young
+      if (.not. deck%value(material_poisson)%given) material%poisson = listed%poisson
+      if (.not. deck%value(material_plane)%given) material%plane_strain = &
+         & deck%file_analysis%plane_strain
    end function file_material
 
    !> The law of a joint; keys that the deck gives go before the analysis file
@@ -227,13 +230,13 @@ contains
       law = joint_law(deck)
       if (.not. allocated(deck%file_analysis)) return
       listed = deck%file_analysis%joint(number)
-      if (.not. deck%joint%friction_deg%given) then
+      if (.not. deck%value(joint_friction_deg)%given) then
          law%no_slip = listed%friction_deg >= no_slip_deg
          law%friction = 0.0_wp
          if (.not. law%no_slip) law%friction = friction_coefficient(listed%friction_deg)
       end if
-      if (.not. deck%joint%cohesion%given) law%cohesion = listed%cohesion
-      if (.not. deck%joint%tension%given) law%tension = listed%tension
+      if (.not. deck%value(joint_cohesion)%given) law%cohesion = listed%cohesion
+      if (.not. deck%value(joint_tension)%given) law%tension = listed%tension
    end function law_of_joint
 
    !> Blocks that cannot move: those with two fixed points apart from one another

@@ -2,9 +2,10 @@
 module dda_line_text
    use dda_block_system, only : block_system_t
    use dda_cut_model, only : cut_model_t, point_kind
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
    use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
+   use dda_key_names, only : live_group, vehicle_group
    use dda_kinds, only : degree, wp
    use dda_limerick_analysis, only : load_history_t
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
@@ -179,7 +180,8 @@ contains
       if (allocated(deck%file_analysis)) then
          if (deck%file_analysis%plane_strain) text = ", plane strain (material%plane)"
       end if
-      if (deck%live%given .or. deck%vehicle%given) text = text//", &live, &vehicle"
+      if (has_group(deck, live_group) .or. has_group(deck, vehicle_group)) text = text &
+         & //", &live, &vehicle"
       if (len(text) > 0) text = text(3:)
    end function line_losses
 end module dda_line_text

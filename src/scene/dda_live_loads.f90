@@ -2,9 +2,12 @@
 module dda_live_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
-   use dda_deck, only : deck_t, key_error
+   use dda_deck, only : deck_t, has_group, key_error
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_t
+   use dda_key_names, only : live_fx, live_fy, live_group, live_x, live_y, &
+      & load_horizontal_coefficient, load_live_horizontal, vehicle_group, vehicle_position, &
+      & vehicle_worst
    use dda_kinds, only : wp
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
@@ -30,11 +33,11 @@ contains
       type(fill_t), intent(in), optional :: fill
       type(loaded_point_t), allocatable :: live(:)
 
-      if (deck%live%given) then
+      if (has_group(deck, live_group)) then
          live = loads_of_live(deck, scene)
          call add_loads(live, scene)
       end if
-      if (deck%vehicle%given) then
+      if (has_group(deck, vehicle_group)) then
          live = axle_loads(vehicle_of(deck, fill), road_of(scene%system), scene%origin)
          call add_loads(live, scene)
       end if
@@ -76,13 +79,13 @@ contains
       real(wp), allocatable, intent(out) :: force(:, :)
       integer :: n
 
-      n = size(deck%live%x%numbers)
+      n = size(deck%value(live_x)%numbers)
       allocate (point(2, n))
       allocate (force(2, n), source=0.0_wp)
-      point(1, :) = deck%live%x%numbers - origin(1)
-      point(2, :) = deck%live%y%numbers - origin(2)
-      if (deck%live%fx%given) force(1, :) = deck%live%fx%numbers
-      if (deck%live%fy%given) force(2, :) = deck%live%fy%numbers
+      point(1, :) = deck%value(live_x)%numbers - origin(1)
+      point(2, :) = deck%value(live_y)%numbers - origin(2)
+      if (deck%value(live_fx)%given) force(1, :) = deck%value(live_fx)%numbers
+      if (deck%value(live_fy)%given) force(2, :) = deck%value(live_fy)%numbers
    end subroutine live_lists
 
    !> Block that moves and holds a point most deeply or has it on its outline, else one that is
@@ -133,28 +136,28 @@ contains
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i
 
-      if (deck%vehicle%given .and. .not. deck%vehicle%worst%flag) then
+      if (has_group(deck, vehicle_group) .and. .not. deck%value(vehicle_worst)%flag) then
          ! a function's result in an expression is not freed in all its parts
          axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
          if (size(axle) == 0) then
             call key_error(error, "&vehicle needs an axle above a block that moves, got "// &
-               & "none at position "//to_text(deck%vehicle%position%number)//"; move it", &
-               & deck, "vehicle", "position")
+               & "none at position "//to_text(deck%value(vehicle_position)%number)//"; move it", &
+               & deck, vehicle_position)
             return
          end if
       end if
-      if (.not. deck%live%given) return
+      if (.not. has_group(deck, live_group)) return
       call live_lists(deck, scene%origin, point, force)
       do i = 1, size(point, 2)
          b = block_at(scene%system, point(:, i))
          text = "&live needs points of blocks that move, got ("//to_text(point(1, i) &
             & + scene%origin(1))//", "//to_text(point(2, i) + scene%origin(2))//"), which lies in "
          if (b == 0) then
-            call key_error(error, text//"none; move point "//to_text(i), deck, "live", "x")
+            call key_error(error, text//"none; move point "//to_text(i), deck, live_x)
             return
          else if (scene%system%equation(b) == 0) then
             call key_error(error, text//"block "//to_text(b)//", which is fixed; move point " &
-               & //to_text(i), deck, "live", "x")
+               & //to_text(i), deck, live_x)
             return
          end if
       end do
@@ -164,8 +167,9 @@ contains
    pure logical function bears_live(deck)
       type(deck_t), intent(in) :: deck
 
-      bears_live = deck%live%given .or. deck%vehicle%given .or. deck%load%live_horizontal%flag &
-         & .and. abs(deck%load%horizontal_coefficient%number) > 0.0_wp
+      bears_live = has_group(deck, live_group) .or. has_group(deck, vehicle_group) &
+         & .or. deck%value(load_live_horizontal)%flag &
+         & .and. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
       if (allocated(deck%plan%boundary%loaded)) bears_live = bears_live &
          & .or. any(deck%plan%boundary%loaded%live)
    end function bears_live

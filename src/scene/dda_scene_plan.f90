@@ -5,7 +5,11 @@
 !> other, and where a displacement means collapse; and it shares out the joint forces at rest.
 module dda_scene_plan
    use dda_block_system, only : n_unknown
-   use dda_deck, only : deck_t, scene_kind
+   use dda_deck, only : deck_t, has_group, source_of
+   use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
+      & analysis_unknowns, arch_half_angle_deg, joint_cohesion, joint_residual_deg, &
+      & joint_tension, live_group, load_gravity_direction_deg, load_horizontal_coefficient, &
+      & output_condition, output_joints, search_group, vehicle_group
    use dda_kinds, only : wp
    implicit none
    private
@@ -71,24 +75,25 @@ contains
    pure type(scene_plan_t) function plan_scene(deck) result(plan)
       type(deck_t), intent(in) :: deck
 
-      plan%velocities = deck%analysis%mode%word == "dynamic"
-      plan%moving = deck%analysis%geometry%word == "current"
-      plan%strength = deck%joint%cohesion%number > 0.0 .or. deck%joint%tension%number > 0.0 &
-         & .or. deck%joint%residual_deg%given
-      if (deck%analysis%unknowns%given) then
+      plan%velocities = deck%value(analysis_mode)%text == "dynamic"
+      plan%moving = deck%value(analysis_geometry)%text == "current"
+      plan%strength = deck%value(joint_cohesion)%number > 0.0 &
+         & .or. deck%value(joint_tension)%number > 0.0 .or. deck%value(joint_residual_deg)%given
+      if (deck%value(analysis_unknowns)%given) then
          plan%reason = strain_reason%forced
-         plan%unknowns = deck%analysis%unknowns%whole
+         plan%unknowns = nint(deck%value(analysis_unknowns)%number)
          call see_chain(deck, plan)
          return
       end if
       plan%reason = strain_reason%none
-      if (deck%output%joints%flag .and. .not. deck%search%given) plan%reason = strain_reason%forces
-      if (deck%analysis%collapse_displacement%given) plan%reason = strain_reason%displacement
+      if (deck%value(output_joints)%flag .and. .not. has_group(deck, search_group)) plan%reason = &
+         & strain_reason%forces
+      if (deck%value(analysis_collapse_displacement)%given) plan%reason = strain_reason%displacement
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
-      if (scene_kind(deck) /= "arch") plan%reason = strain_reason%files
-      if (deck%analysis%mode%word == "limerick") plan%reason = strain_reason%original
+      if (source_of(deck) /= "arch") plan%reason = strain_reason%files
+      if (deck%value(analysis_mode)%text == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) plan%unknowns = n_rigid
       call see_chain(deck, plan)
    end function plan_scene
@@ -99,12 +104,15 @@ contains
       type(deck_t), intent(in) :: deck
       type(scene_plan_t), intent(inout) :: plan
 
-      plan%row = scene_kind(deck) == "arch" .and. deck%analysis%mode%word == "static" &
-         & .and. .not. (plan%moving .or. plan%strength .or. deck%live%given .or. deck%vehicle%given)
-      if (plan%row) plan%row = deck%arch%half_angle_deg%number >= shallow_deg
-      plan%chain = plan%row .and. plan%unknowns == n_rigid .and. .not. (deck%output%condition%flag &
-         & .or. deck%analysis%collapse_displacement%given)
-      plan%halved = plan%chain .and. .not. abs(deck%load%gravity_direction_deg%number + 90.0_wp) &
-         & > 0.0_wp .and. .not. abs(deck%load%horizontal_coefficient%number) > 0.0_wp
+      plan%row = source_of(deck) == "arch" .and. deck%value(analysis_mode)%text == "static" &
+         & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, live_group) &
+         & .or. has_group(deck, vehicle_group))
+      if (plan%row) plan%row = deck%value(arch_half_angle_deg)%number >= shallow_deg
+      plan%chain = plan%row .and. plan%unknowns == n_rigid &
+         & .and. .not. (deck%value(output_condition)%flag &
+         & .or. deck%value(analysis_collapse_displacement)%given)
+      plan%halved = plan%chain &
+         & .and. .not. abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp &
+         & .and. .not. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
    end subroutine see_chain
 end module dda_scene_plan

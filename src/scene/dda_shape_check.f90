@@ -2,13 +2,20 @@
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of, scene_kind
-   use dda_deck_key, only : name_length
+   use dda_deck, only : deck_t, has_group, key_error, place_of, source_of
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_set, only : put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_deck_words, only : full_name
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_yields
+   use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
+      & arch_crown_thickness, arch_lune_deg, arch_shape, arch_thickness, arch_thickness_ratio, &
+      & fill_backing_height, fill_backing_unit_weight, fill_friction_deg, fill_group, &
+      & fill_height, fill_passive_coefficient, fill_passive_share, fill_passive_stiffness, &
+      & fill_unit_weight, joint_cohesion, joint_tension, load_gravity_direction_deg, &
+      & load_horizontal_coefficient, load_live_horizontal, search_group, search_high, &
+      & search_low, search_parameter, tie_group
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : to_text
@@ -30,10 +37,10 @@ contains
 
       n = n_cases(deck)
       ! which keys are given is the same for all cases
-      one_kind = .not. any(deck%sweeps%parameter%key == key_index("arch", "shape"))
+      one_kind = .not. any(deck%sweeps%parameter%key == arch_shape)
       do number = 1, n
          call turn_to_case(deck, number, work, error)
-         if (scene_kind(work) == "shape") then
+         if (source_of(work) == "shape") then
             if (.not. allocated(error)) call check_one(work, error)
          else if (one_kind) then
             return
@@ -48,27 +55,25 @@ contains
    pure subroutine check_one(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=4), parameter :: ends(2) = ["low ", "high"]
       type(deck_t) :: trial
-      integer :: i, key
+      integer :: key
 
       call check_models(deck, error)
       if (allocated(error)) return
-      if (deck%tie%given) call check_ties(deck, error)
+      if (has_group(deck, tie_group)) call check_ties(deck, error)
       if (allocated(error)) return
       if (deck%searched%key == 0 .or. all(deck_key(max(1, deck%searched%key))%group &
          & /= ["arch", "fill"])) then
          call check_form(deck, error)
          return
       end if
-      do i = 1, 2
-         key = key_index("search", trim(ends(i)))
+      do key = search_low, search_high
          if (.not. deck%value(key)%given) cycle
          trial = deck
          call put_number(trial, deck%searched, deck%value(key)%number, place_of(deck, key), error)
          if (.not. allocated(error)) call check_form(trial, error)
          if (.not. allocated(error)) cycle
-         error%message = "search%"//trim(ends(i))//": "//error%message
+         error%message = full_name(deck_key(key))//": "//error%message
          return
       end do
    end subroutine check_one
@@ -79,75 +84,77 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! What makes none
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
-      type(deck_place_t) :: place
-      character(len=name_length) :: key
+      integer :: key
 
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) == 0) return
-      key = problem%key
-      if (key == "thickness" .and. .not. deck%arch%thickness%given) then
-         if (deck%arch%crown_thickness%given) key = "crown_thickness"
-         if (deck%arch%thickness_ratio%given) key = "thickness_ratio"
+      key = key_index("arch", trim(problem%key))
+      if (key == arch_thickness .and. .not. deck%value(arch_thickness)%given) then
+         if (deck%value(arch_crown_thickness)%given) key = arch_crown_thickness
+         if (deck%value(arch_thickness_ratio)%given) key = arch_thickness_ratio
       end if
-      place = place_of(deck, key_index("arch", trim(key)))
-      call deck_error(error, "arch%"//trim(key)//": "//trim(problem%text), deck, place)
+      call key_error(error, full_name(deck_key(key))//": "//trim(problem%text), deck, key)
    end subroutine check_form
 
    !> Check that what is asked of such an arch can be computed
    pure subroutine check_models(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: group, key, problem
+      character(len=:), allocatable :: problem
+      integer :: key
       logical :: at_rest
 
-      at_rest = deck%analysis%mode%word == "static" .and. deck%analysis%geometry%word &
-         & == "reference" .and. .not. deck%analysis%collapse_displacement%given &
-         & .and. .not. deck%joint%cohesion%number > 0.0_wp .and. .not. deck%joint%tension%number &
-         & > 0.0_wp
-      group = "fill"
-      key = "height"
+      at_rest = deck%value(analysis_mode)%text == "static" &
+         & .and. deck%value(analysis_geometry)%text == "reference" &
+         & .and. .not. deck%value(analysis_collapse_displacement)%given &
+         & .and. .not. deck%value(joint_cohesion)%number > 0.0_wp &
+         & .and. .not. deck%value(joint_tension)%number > 0.0_wp
+      key = fill_height
       problem = ""
-      if (deck%fill%given .and. .not. (deck%fill%height%given &
-         & .and. deck%fill%unit_weight%given)) then
+      if (has_group(deck, fill_group) .and. .not. (deck%value(fill_height)%given &
+         & .and. deck%value(fill_unit_weight)%given)) then
          problem = "expected height and unit_weight of the fill, got one or none; give both"
-      else if (deck%fill%passive_share%given .and. deck%fill%passive_coefficient%given) then
-         key = "passive_share"
+      else if (deck%value(fill_passive_share)%given &
+         & .and. deck%value(fill_passive_coefficient)%given) then
+         key = fill_passive_share
          problem = "expected passive_share or passive_coefficient, got both; remove one"
-      else if (deck%fill%passive_share%given .and. .not. deck%fill%friction_deg%given) then
-         key = "passive_share"
+      else if (deck%value(fill_passive_share)%given &
+         & .and. .not. deck%value(fill_friction_deg)%given) then
+         key = fill_passive_share
          problem = "expected friction_deg of the fill beside it, got none; give it"
-      else if (deck%fill%backing_unit_weight%given .and. .not. deck%fill%backing_height%given) then
-         key = "backing_unit_weight"
+      else if (deck%value(fill_backing_unit_weight)%given &
+         & .and. .not. deck%value(fill_backing_height)%given) then
+         key = fill_backing_unit_weight
          problem = "expected backing_height beside it, got none; give it"
-      else if (fill_yields(deck) .and. .not. deck%fill%passive_stiffness%given) then
-         key = "passive_coefficient"
-         if (deck%fill%passive_share%given) key = "passive_share"
-         if (deck%fill%backing_height%given) key = "backing_height"
+      else if (fill_yields(deck) .and. .not. deck%value(fill_passive_stiffness)%given) then
+         key = fill_passive_coefficient
+         if (deck%value(fill_passive_share)%given) key = fill_passive_share
+         if (deck%value(fill_backing_height)%given) key = fill_backing_height
          problem = "expected passive_stiffness beside it where blocks move or joints have "// &
             & "strength, got none; give it"
-      else if (deck%arch%lune_deg%given) then
-         group = "arch"
-         key = "lune_deg"
+      else if (deck%value(arch_lune_deg)%given) then
+         key = arch_lune_deg
          if (.not. at_rest) problem = "expected a static run in reference geometry, without "// &
             & "cohesion, tension and collapse_displacement, for a lune has the mass of no "// &
             & "plane block; change the run"
-         if (deck%fill%given) problem = "expected a lune without fill, got some; "// &
+         if (has_group(deck, fill_group)) problem = "expected a lune without fill, got some; "// &
             & "remove one of the two"
          if (changes_weight(deck)) problem = "expected weight that acts downwards alone, got "// &
             & "horizontal_coefficient or gravity_direction_deg; remove one of the two"
       end if
-      if (len(problem) > 0) call deck_error(error, group//"%"//key//": "//problem, deck, &
-         & place_of(deck, key_index(group, key)))
+      if (len(problem) > 0) &
+         & call key_error(error, full_name(deck_key(key))//": "//problem, deck, key)
    end subroutine check_models
 
    !> Whether weight acts otherwise than downwards
    pure logical function changes_weight(deck)
       type(deck_t), intent(in) :: deck
 
-      changes_weight = deck%load%gravity_direction_deg%given &
-         & .or. deck%load%horizontal_coefficient%given .or. deck%load%live_horizontal%flag
-      if (deck%search%given) changes_weight = changes_weight &
-         & .or. index(deck%search%parameter%text, "horizontal_coefficient") > 0 &
-         & .or. index(deck%search%parameter%text, "gravity_direction_deg") > 0
+      changes_weight = deck%value(load_gravity_direction_deg)%given &
+         & .or. deck%value(load_horizontal_coefficient)%given &
+         & .or. deck%value(load_live_horizontal)%flag
+      if (has_group(deck, search_group)) changes_weight = changes_weight &
+         & .or. index(deck%value(search_parameter)%text, "horizontal_coefficient") > 0 &
+         & .or. index(deck%value(search_parameter)%text, "gravity_direction_deg") > 0
    end function changes_weight
 end module dda_shape_check

@@ -5,6 +5,12 @@ module dda_shape_scene
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_deck, only : deck_t
+   use dda_key_names, only : arch_abutment_overhang, arch_abutment_size, arch_buttress_height, &
+      & arch_buttress_width, arch_crown_thickness, arch_facet_deg, arch_half_angle_deg, &
+      & arch_joint_direction, arch_joints_deg, arch_lune_deg, arch_pier_courses, &
+      & arch_pier_height, arch_pier_width, arch_radius, arch_right_rise, arch_rings, arch_rise, &
+      & arch_shape, arch_span, arch_spans, arch_springing, arch_springing_thickness, &
+      & arch_thickness, arch_thickness_ratio, arch_voussoirs
    use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_vector, only : area_moments, area_moments_t
@@ -24,27 +30,29 @@ contains
       type(arch_form_t), intent(out) :: form
       type(form_problem_t), intent(out) :: problem  !! Keys that do not go together
 
-      form%shape = deck%arch%shape%word(:len(form%shape))
+      form%shape = deck%value(arch_shape)%text
       form%by_radius = (form%shape == "circular" .or. form%shape == "segmental") &
-         & .and. .not. (deck%arch%span%given .or. deck%arch%rise%given)
-      form%radius = deck%arch%radius%number
-      form%half_angle_deg = deck%arch%half_angle_deg%number
-      if (form%shape == "flat" .and. .not. deck%arch%half_angle_deg%given) &
+         & .and. .not. (deck%value(arch_span)%given .or. deck%value(arch_rise)%given)
+      form%radius = deck%value(arch_radius)%number
+      form%half_angle_deg = deck%value(arch_half_angle_deg)%number
+      if (form%shape == "flat" .and. .not. deck%value(arch_half_angle_deg)%given) &
          & form%half_angle_deg = usual_skewback_deg
-      form%span = deck%arch%span%number
-      form%rise = deck%arch%rise%number
-      if (deck%arch%right_rise%given) form%rise(2) = deck%arch%right_rise%number
+      form%span = deck%value(arch_span)%number
+      form%rise = deck%value(arch_rise)%number
+      if (deck%value(arch_right_rise)%given) form%rise(2) = deck%value(arch_right_rise)%number
       form%radial = form%shape == "flat"
-      if (deck%arch%joint_direction%given) form%radial = deck%arch%joint_direction%word == "radial"
-      form%voussoirs = deck%arch%voussoirs%whole
-      if (deck%arch%facet_deg%given) form%facet_deg = deck%arch%facet_deg%number
-      form%rings = deck%arch%rings%whole
-      form%spans = deck%arch%spans%whole
-      form%pier = [deck%arch%pier_width%number, deck%arch%pier_height%number]
-      form%courses = deck%arch%pier_courses%whole
-      form%buttress = [deck%arch%buttress_width%number, form%pier(2)]
-      if (deck%arch%buttress_height%given) form%buttress(2) = deck%arch%buttress_height%number
-      form%no_slip = deck%arch%springing%word == "no-slip"
+      if (deck%value(arch_joint_direction)%given) form%radial = &
+         & deck%value(arch_joint_direction)%text == "radial"
+      form%voussoirs = nint(deck%value(arch_voussoirs)%number)
+      if (deck%value(arch_facet_deg)%given) form%facet_deg = deck%value(arch_facet_deg)%number
+      form%rings = nint(deck%value(arch_rings)%number)
+      form%spans = nint(deck%value(arch_spans)%number)
+      form%pier = [deck%value(arch_pier_width)%number, deck%value(arch_pier_height)%number]
+      form%courses = nint(deck%value(arch_pier_courses)%number)
+      form%buttress = [deck%value(arch_buttress_width)%number, form%pier(2)]
+      if (deck%value(arch_buttress_height)%given) form%buttress(2) = &
+         & deck%value(arch_buttress_height)%number
+      form%no_slip = deck%value(arch_springing)%text == "no-slip"
       call check_lines(deck, form, problem)
       if (len_trim(problem%text) == 0) call check_supports(deck, form, problem)
       if (len_trim(problem%text) == 0) call take_thickness(deck, form, problem)
@@ -58,28 +66,29 @@ contains
       logical :: flat
 
       flat = form%shape == "flat"
-      if (deck%arch%joints_deg%given) then
+      if (deck%value(arch_joints_deg)%given) then
          problem = form_problem_t("expected voussoirs, got joints_deg, which is for circular "// &
             & "arches of one ring alone; remove it", "joints_deg")
-      else if (.not. form%by_radius .and. deck%arch%radius%given) then
+      else if (.not. form%by_radius .and. deck%value(arch_radius)%given) then
          problem = form_problem_t("expected span and rise alone, got a radius beside them; "// &
             & "remove one of the two", "radius")
-      else if (.not. (form%by_radius .or. flat) .and. deck%arch%half_angle_deg%given) then
+      else if (.not. (form%by_radius .or. flat) .and. deck%value(arch_half_angle_deg)%given) then
          problem = form_problem_t("expected span and rise alone, got half_angle_deg beside "// &
             & "them; remove one of the two", "half_angle_deg")
-      else if (.not. form%by_radius .and. .not. deck%arch%span%given) then
+      else if (.not. form%by_radius .and. .not. deck%value(arch_span)%given) then
          problem = form_problem_t("expected a span, got none; give it", "span")
-      else if (.not. (form%by_radius .or. flat .or. deck%arch%rise%given)) then
+      else if (.not. (form%by_radius .or. flat .or. deck%value(arch_rise)%given)) then
          problem = form_problem_t("expected a rise, got none; give it", "rise")
-      else if (flat .and. deck%arch%rise%given) then
+      else if (flat .and. deck%value(arch_rise)%given) then
          problem = form_problem_t("expected no rise of a flat arch, got one; remove it", "rise")
-      else if ((form%by_radius .or. flat) .and. deck%arch%right_rise%given) then
+      else if ((form%by_radius .or. flat) .and. deck%value(arch_right_rise)%given) then
          problem = form_problem_t("expected span and rise beside right_rise, got none; give "// &
             & "them, or remove it", "right_rise")
       else if (flat .and. form%half_angle_deg >= 90.0_wp) then
          problem = form_problem_t("expected skewbacks of a flat arch of less than 90 from "// &
             & "upright, got more; lower it", "half_angle_deg")
-      else if (deck%arch%abutment_size%given .or. deck%arch%abutment_overhang%given) then
+      else if (deck%value(arch_abutment_size)%given &
+         & .or. deck%value(arch_abutment_overhang)%given) then
          problem = form_problem_t("expected no abutment_size and abutment_overhang, which are "// &
             & "for mode = 'limerick' alone, got one; remove it", "abutment_size")
       else if (form%by_radius .and. 2.0_wp*form%half_angle_deg &
@@ -96,28 +105,28 @@ contains
       type(form_problem_t), intent(inout) :: problem
       logical :: buttressed
 
-      buttressed = deck%arch%buttress_width%given
-      if (form%spans > 1 .and. .not. deck%arch%pier_width%given) then
+      buttressed = deck%value(arch_buttress_width)%given
+      if (form%spans > 1 .and. .not. deck%value(arch_pier_width)%given) then
          problem = form_problem_t("expected the width of the piers between spans, got none; "// &
             & "give it", "pier_width")
       else if ((form%spans > 1 .or. buttressed) .and. .not. form%buttress(2) > 0.0_wp &
          & .or. form%spans > 1 .and. .not. form%pier(2) > 0.0_wp) then
          problem = form_problem_t("expected the height of piers and buttresses, got none; "// &
             & "give it", "pier_height")
-      else if (form%spans == 1 .and. deck%arch%pier_width%given) then
+      else if (form%spans == 1 .and. deck%value(arch_pier_width)%given) then
          problem = form_problem_t("expected two spans or more on piers, got one; give spans, "// &
             & "or remove pier_width", "pier_width")
-      else if (form%spans == 1 .and. .not. buttressed .and. (deck%arch%pier_height%given &
-         & .or. deck%arch%pier_courses%given)) then
+      else if (form%spans == 1 .and. .not. buttressed .and. (deck%value(arch_pier_height)%given &
+         & .or. deck%value(arch_pier_courses)%given)) then
          problem = form_problem_t("expected piers or buttresses, got none; give spans or "// &
             & "buttress_width, or remove pier_height and pier_courses", "pier_height")
-      else if (deck%arch%buttress_height%given .and. .not. buttressed) then
+      else if (deck%value(arch_buttress_height)%given .and. .not. buttressed) then
          problem = form_problem_t("expected buttress_width beside it, got none; give it", &
             & "buttress_height")
-      else if (deck%arch%lune_deg%given .and. (form%spans > 1 .or. buttressed)) then
+      else if (deck%value(arch_lune_deg)%given .and. (form%spans > 1 .or. buttressed)) then
          problem = form_problem_t("expected a lune of one span on fixed springings, got more; "// &
             & "remove lune_deg, or spans and buttresses", "lune_deg")
-      else if (deck%arch%lune_deg%given .and. deck%arch%right_rise%given) then
+      else if (deck%value(arch_lune_deg)%given .and. deck%value(arch_right_rise)%given) then
          problem = form_problem_t("expected a lune with springings of one height, got two; "// &
             & "remove right_rise", "lune_deg")
       end if
@@ -130,10 +139,10 @@ contains
       type(form_problem_t), intent(inout) :: problem  !! None, or several that contradict
       logical :: constant, crown, ratio, springing
 
-      constant = deck%arch%thickness%given
-      crown = deck%arch%crown_thickness%given
-      springing = deck%arch%springing_thickness%given
-      ratio = deck%arch%thickness_ratio%given
+      constant = deck%value(arch_thickness)%given
+      crown = deck%value(arch_crown_thickness)%given
+      springing = deck%value(arch_springing_thickness)%given
+      ratio = deck%value(arch_thickness_ratio)%given
       if (crown .neqv. springing) then
          problem = form_problem_t("expected crown_thickness and springing_thickness, got one; "// &
             & "give both", merge("crown_thickness    ", "springing_thickness", crown))
@@ -147,10 +156,10 @@ contains
       else if (.not. (constant .or. crown .or. form%by_radius)) then
          problem = form_problem_t("expected a thickness, got none; give it", "thickness")
       end if
-      form%thickness = deck%arch%thickness_ratio%number*form%radius
-      if (constant) form%thickness = deck%arch%thickness%number
-      if (crown) form%thickness = [deck%arch%crown_thickness%number, &
-         & deck%arch%springing_thickness%number]
+      form%thickness = deck%value(arch_thickness_ratio)%number*form%radius
+      if (constant) form%thickness = deck%value(arch_thickness)%number
+      if (crown) form%thickness = [deck%value(arch_crown_thickness)%number, &
+         & deck%value(arch_springing_thickness)%number]
    end subroutine take_thickness
 
    !> The blocks of a deck's arch

@@ -5,9 +5,10 @@ module dda_shape_text
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : loaded_point_t
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
    use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
+   use dda_key_names, only : arch_lune_deg, fill_group
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
@@ -105,8 +106,8 @@ contains
       character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
 
       text = ""
-      if (deck%arch%lune_deg%given) text = ", arch%lune_deg"
-      if (deck%fill%given) text = text//", pressure of the fill"
+      if (deck%value(arch_lune_deg)%given) text = ", arch%lune_deg"
+      if (has_group(deck, fill_group)) text = text//", pressure of the fill"
       if (len(text) > 0) text = text(3:)
    end function shape_losses
 end module dda_shape_text

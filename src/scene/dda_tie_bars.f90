@@ -5,9 +5,12 @@ module dda_tie_bars
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_block_sites, only : block_at, site_t, survey
-   use dda_deck, only : deck_error, deck_t, key_error, place_of
-   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_deck, only : deck_error, deck_t, key_error
+   use dda_deck_keys, only : deck_key
+   use dda_deck_words, only : full_name
    use dda_error, only : error_t
+   use dda_key_names, only : search_parameter, tie_ea, tie_group, tie_prestress, tie_strength, &
+      & tie_x1, tie_x2, tie_y1
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : to_text
@@ -36,11 +39,12 @@ contains
             bar(i)%block(side) = block_at(plan, site, bar(i)%point(:, side))
          end do
          bar(i)%pushes = .false.
-         bar(i)%stiffness = deck%tie%ea%numbers(i)/norm2(ends(3:4, i) - ends(1:2, i))
+         bar(i)%stiffness = deck%value(tie_ea)%numbers(i)/norm2(ends(3:4, i) - ends(1:2, i))
          bar(i)%strength = huge(1.0_wp)
-         if (deck%tie%strength%given) bar(i)%strength = deck%tie%strength%numbers(i)
+         if (deck%value(tie_strength)%given) bar(i)%strength = deck%value(tie_strength)%numbers(i)
          bar(i)%prestress = 0.0_wp
-         if (deck%tie%prestress%given) bar(i)%prestress = deck%tie%prestress%numbers(i)
+         if (deck%value(tie_prestress)%given) bar(i)%prestress = &
+            & deck%value(tie_prestress)%numbers(i)
       end do
       call move_alloc(bar, plan%boundary%bar)
    end subroutine add_ties
@@ -51,13 +55,12 @@ contains
       !> x and y of the one end, then of the other: (4, n) [m]
       real(wp), allocatable, intent(out) :: ends(:, :)
 
-      associate (tie => deck%tie)
-         allocate (ends(4, size(tie%x1%numbers)))
-         ends(1, :) = tie%x1%numbers
-         ends(2, :) = tie%y1%numbers
-         ends(3, :) = tie%x2%numbers
-         ends(4, :) = tie%y2%numbers
-      end associate
+      integer :: i
+
+      allocate (ends(4, size(deck%value(tie_x1)%numbers)))
+      do i = 1, 4
+         ends(i, :) = deck%value(tie_x1 + i - 1)%numbers
+      end do
    end subroutine tie_ends
 
    !> Check the ties of a case
@@ -65,29 +68,26 @@ contains
       type(deck_t), intent(in) :: deck
       !> Lists that do not go together, or an end in no block
       type(error_t), allocatable, intent(out) :: error
-      character(len=9), parameter :: name(7) = [character(len=9) :: "x1", "y1", "x2", "y2", "ea", &
-         & "strength", "prestress"]
-      integer :: i, key, n
+      integer :: key, n
 
-      n = size(deck%tie%x1%numbers)
+      n = size(deck%value(tie_x1)%numbers)
       if (n == 0) then
          call deck_error(error, "&tie needs x1, y1, x2 and y2, the ends of each tie, got none; "// &
-            & "give them", deck, deck%group(group_index("tie")))
+            & "give them", deck, deck%group(tie_group))
          return
       end if
-      do i = 2, size(name)
-         key = key_index("tie", trim(name(i)))
-         if (i > 5 .and. .not. deck%value(key)%given) cycle
+      do key = tie_y1, tie_prestress
+         if (key > tie_ea .and. .not. deck%value(key)%given) cycle
          if (size(deck%value(key)%numbers) == n) cycle
-         call deck_error(error, "tie%"//trim(name(i))//" needs as many numbers as tie%x1, " &
+         call key_error(error, full_name(deck_key(key))//" needs as many numbers as tie%x1, " &
             & //to_text(n)//", got "//to_text(size(deck%value(key)%numbers)) &
-            & //"; give one per tie", deck, place_of(deck, key))
+            & //"; give one per tie", deck, key)
          return
       end do
       if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) then
          call key_error(error, "&tie needs an arch that keeps its shape, but the search "// &
             & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
-            & "search", "parameter")
+            & search_parameter)
          return
       end if
       call check_ends(deck, error)
@@ -97,12 +97,11 @@ contains
    pure subroutine check_ends(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=2), parameter :: name(2) = ["x1", "x2"]
       character(len=:), allocatable :: problem
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: no_form
       real(wp), allocatable :: ends(:, :)
-      integer :: i, k, side
+      integer :: i, side
 
       call tie_ends(deck, ends)
       call shape_assembly(deck, assembly, no_form)
@@ -110,7 +109,7 @@ contains
       do i = 1, size(ends, 2)
          if (norm2(ends(3:4, i) - ends(1:2, i)) > 0.0_wp) cycle
          call key_error(error, "&tie needs ends that are apart, got tie "//to_text(i)// &
-            & " between equal points; move one", deck, "tie", "x1")
+            & " between equal points; move one", deck, tie_x1)
          return
       end do
       call add_ties(deck, assembly%plan)
@@ -132,14 +131,13 @@ contains
                   & //" between two that are fixed; move one end, or remove the tie"
             else if (bar%prestress > bar%strength) then
                call key_error(error, "tie%prestress must be at most tie%strength, got " &
-                  & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, "tie", &
-                  & "prestress")
+                  & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, &
+                  & tie_prestress)
                return
             end if
          end associate
          if (len(problem) == 0) cycle
-         k = key_index("tie", name(side))
-         call deck_error(error, problem, deck, place_of(deck, k))
+         call key_error(error, problem, deck, merge(tie_x1, tie_x2, side == 1))
          return
       end do
    end subroutine check_ends

@@ -4,6 +4,7 @@ module dda_vehicle
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_deck, only : deck_t
    use dda_fill_loads, only : fill_t
+   use dda_key_names, only : vehicle_axles, vehicle_length, vehicle_position, vehicle_spacings
    use dda_kinds, only : wp
    use dda_sort, only : sorted_order
    implicit none
@@ -59,14 +60,14 @@ contains
       real(wp), allocatable :: spacing(:)
       integer :: i
 
-      allocate (vehicle%axle, source=deck%vehicle%axles%numbers)
-      allocate (spacing, source=deck%vehicle%spacings%numbers)
+      allocate (vehicle%axle, source=deck%value(vehicle_axles)%numbers)
+      allocate (spacing, source=deck%value(vehicle_spacings)%numbers)
       allocate (vehicle%offset(size(vehicle%axle)))
       do i = 1, size(vehicle%axle)
          vehicle%offset(i) = sum(spacing(:i - 1))
       end do
-      vehicle%length = deck%vehicle%length%number
-      vehicle%position = deck%vehicle%position%number
+      vehicle%length = deck%value(vehicle_length)%number
+      vehicle%position = deck%value(vehicle_position)%number
       if (.not. present(fill)) return
       vehicle%spread = fill%spread
       vehicle%surface = fill%surface

@@ -133,7 +133,7 @@ def _of_statements(all_of_them: list[Statement], explained: set[tuple[str, str]]
     texts = [this.text for this in all_of_them]
     if texts and texts[0].startswith(("module", "submodule", "program")) and "implicit none" not in texts:
         yield 1, "implicit none"
-    if texts and texts[0].startswith("module") and "private" not in texts:
+    if texts and texts[0].startswith("module") and not {"private", "enum, bind(c)"} & set(texts):
         yield 1, "a module is private, and names what is public"
 
 

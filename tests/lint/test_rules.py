@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -165,6 +166,19 @@ def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: st
     (tmp_path / "bad.py").write_text(GOOD_PYTHON.replace(old, new, 1))
     found = python_rules.offences(tmp_path / "bad.py", strict=True)
     assert len(found) == 1 and rule in found[0], found
+
+
+def test_keys_are_named_in_the_order_of_the_registry() -> None:
+    folder = REPOSITORY / "src" / "input"
+    names = (folder / "dda_key_names.f90").read_text(encoding="utf-8").split("end enum")
+    keys, groups = ([word for line in re.findall(r"enumerator :: ((?:[^\n]*&\n)*[^\n]*)", part)
+                     for word in re.findall(r"[a-z]\w+", line)] for part in names[:2])
+    files = ("dda_deck_keys.f90", "dda_arch_keys.f90")
+    registry = "".join((folder / name).read_text(encoding="utf-8") for name in files)
+    entries = re.findall(r'key_t\(group="(\w+)", *name="(\w+)"', registry)
+    order = re.findall(r'group_t\("(\w+)"', registry)
+    assert groups == [f"{group}_group" for group in order]
+    assert keys == [f"{group}_{key}" for group in order for other, key in entries if other == group]
 
 
 def test_pages_of_the_sources_are_what_the_sources_say() -> None:
