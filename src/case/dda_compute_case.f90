@@ -164,7 +164,6 @@ contains
    !> Compute a case
    subroutine compute_case(this)
       type(case_t), intent(inout) :: this
-      type(error_t), allocatable :: error
       integer(int64) :: start, finish, rate
 
       if (this%exact_known) call exact_thickness(this%family%deck, this%exact, this%exact_known)
@@ -172,17 +171,9 @@ contains
       call plan_album(this)
       if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
       if (this%searches .and. this%limerick) then
-         ! the limit of this scheme lies somewhat above the exact value
-         if (this%exact_known .and. .not. this%search%check_far_end) &
-            & this%search%start = min(max(this%exact, this%search%low), this%search%high)
-         call find_limerick_critical(this%family, this%search, this%critical)
-         if (allocated(this%critical%fallen)) &
-            & call this%family%build(this%critical%falls, this%scene, error)
+         call search_limerick(this)
       else if (this%searches) then
-         if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this)
-         call find_critical(this%family, this%search, this%critical)
-         if (allocated(this%critical%fallen)) &
-            & call see_collapse(this, this%critical%falls, this%critical%fallen)
+         call search_critical(this)
       else if (this%limerick) then
          call deck_scene(this%family%deck, this%plan, this%scene)
          call decide_limerick(this%family%deck, this%scene, this%decision, this%album)
@@ -191,21 +182,51 @@ contains
          if (.not. allocated(this%error)) call see_collapse(this, &
             & this%family%deck%value(arch_thickness_ratio)%number, this%decision)
       end if
-      if (this%searches .and. .not. this%family%decides_chains &
-         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) then
-         call build_once(this%family, this%critical%stands, this%standing)
-         this%scene = this%standing
-      end if
-      if (this%family%deck%value(output_joints)%flag .and. this%searches) call place_joints(this)
-      if (this%searches .and. nint(this%family%deck%value(output_frames)%number) > 0) then
-         if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
-         if (.not. this%limerick) call take_pictures(this)
-      end if
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
       if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
          & .or. allocated(this%error))) call prove_case(this)
    end subroutine compute_case
+
+   !> Search the critical value, and see the scenes on its two sides that tables and pictures need
+   pure subroutine search_critical(this)
+      type(case_t), intent(inout) :: this
+
+      if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this)
+      call find_critical(this%family, this%search, this%critical)
+      if (allocated(this%critical%fallen)) &
+         & call see_collapse(this, this%critical%falls, this%critical%fallen)
+      call see_standing(this)
+      if (this%family%deck%value(output_joints)%flag) call place_joints(this)
+      if (nint(this%family%deck%value(output_frames)%number) > 0) call take_pictures(this)
+   end subroutine search_critical
+
+   !> Search the critical value of the original's scheme
+   pure subroutine search_limerick(this)
+      type(case_t), intent(inout) :: this
+      type(error_t), allocatable :: error
+
+      ! the limit of this scheme lies somewhat above the exact value
+      if (this%exact_known .and. .not. this%search%check_far_end) &
+         & this%search%start = min(max(this%exact, this%search%low), this%search%high)
+      call find_limerick_critical(this%family, this%search, this%critical)
+      if (allocated(this%critical%fallen)) &
+         & call this%family%build(this%critical%falls, this%scene, error)
+      call see_standing(this)
+      if (this%family%deck%value(output_joints)%flag) call place_joints(this)
+      if (nint(this%family%deck%value(output_frames)%number) > 0) &
+         & call repeat_with_pictures(this%family, this%critical, this%album)
+   end subroutine search_limerick
+
+   !> Make the scene that stands, where none was found to fall
+   pure subroutine see_standing(this)
+      type(case_t), intent(inout) :: this
+
+      if (this%family%decides_chains .or. allocated(this%critical%fallen) &
+         & .or. .not. allocated(this%critical%standing)) return
+      call build_once(this%family, this%critical%stands, this%standing)
+      this%scene = this%standing
+   end subroutine see_standing
 
    !> Prove the verdict of a case by limit analysis
    pure subroutine prove_case(this)
