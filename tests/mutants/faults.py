@@ -19,8 +19,8 @@ IDLE = re.compile(
     r"procedure\b|else\s*$|return\b|exit\b|cycle\b|import\b|allocate\b|deallocate\b)")
 #: Declarations of constants, whose values count
 CONSTANT = re.compile(r"\s*(real|integer)\b.*\bparameter\b.*::.*=")
-#: A real number with its kind
-REAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?)_wp")
+#: A real number with its kind; of the argument of an inquiry its kind alone counts
+REAL = re.compile(r"(?<![\w.])(?<!tiny\()(?<!huge\()(?<!epsilon\()(\d+\.\d*(?:e[+-]?\d+)?)_wp")
 COMPARISONS = {"<": ("<=", ">"), "<=": ("<", ">"), ">": (">=", "<"), ">=": (">", "<"), "==": ("/=",), "/=": ("==",)}
 
 
