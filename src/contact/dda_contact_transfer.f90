@@ -164,8 +164,8 @@ contains
             end do
          end associate
       end do
-      key = contact_keys(system, list%contact)
-      order = rising_order(key)
+      allocate (key, source=contact_keys(system, list%contact))
+      allocate (order, source=rising_order(key))
       allocate (past(n))
       past = list(order)
       key = key(order)

@@ -248,7 +248,7 @@ contains
       if (end == motion_end%balanced) then
          ! balance so far away is that of a shape that nobody has drawn
          end = motion_end%far
-         jump%mechanism = state%motion - start
+         call keep_mechanism(state%motion - start, jump)
          return
       end if
       still = 0.0_wp
@@ -258,7 +258,7 @@ contains
          & call see_ray(joints, state, rest, rates, event, jump, end)
       if (end == motion_end%endless) return
       end = motion_end%far
-      jump%mechanism = state%motion - start
+      call keep_mechanism(state%motion - start, jump)
    end subroutine see_end
 
    !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
@@ -279,6 +279,15 @@ contains
       end = motion_end%unsettled
       if (event%kind /= event_kind%none .or. .not. sum(rest*rates%motion) > 0.0_wp) return
       end = motion_end%endless
-      jump%mechanism = rates%motion
+      call keep_mechanism(rates%motion, jump)
    end subroutine see_ray
+
+   !> Keep the velocities of a motion without end
+   pure subroutine keep_mechanism(motion, jump)
+      real(wp), intent(in) :: motion(:, :)  !! The velocities: (n_dof, n_block)
+      type(jump_t), intent(inout) :: jump
+
+      if (allocated(jump%mechanism)) deallocate (jump%mechanism)
+      allocate (jump%mechanism, source=motion)
+   end subroutine keep_mechanism
 end module dda_load_jump
