@@ -1,7 +1,9 @@
 !> Critical value under the original's scheme: a bracket of two runs, halved
 submodule (dda_compute_case) dda_limerick_search
    use dda_deck, only : deck_t
-   use dda_deck_set, only : number_fits, put_number
+   use dda_deck_keys, only : deck_key
+   use dda_deck_set, only : put_number
+   use dda_key_value, only : number_fits
    use dda_scene_plan, only : plan_scene
    use dda_verdict, only : verdict
    implicit none
@@ -105,7 +107,7 @@ contains
       critical%decisions = critical%decisions + 1
       critical%undecided_at = value
       critical%reason = "the searched parameter cannot have this value"
-      if (.not. number_fits(family%parameter%key, value)) return
+      if (.not. number_fits(deck_key(family%parameter%key), value)) return
       deck = family%deck
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (allocated(error)) return

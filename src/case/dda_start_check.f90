@@ -1,10 +1,11 @@
 !> Where a run of a deck starts: restart files that fit its blocks, and points that live loads lie
 !> on
 submodule (dda_scene_check) dda_start_check
-   use dda_deck, only : deck_error, deck_place_t, file_beside, has_group, key_error, place_of
+   use dda_deck, only : deck_error, file_beside, has_group, key_error, place_of
    use dda_deck_keys, only : deck_key
    use dda_key_names, only : live_group, load_displacement_factor, load_load_factor, &
       & search_parameter, vehicle_group
+   use dda_key_value, only : deck_place_t
    use dda_live_loads, only : bears_live, check_live_points
    use dda_restart, only : check_restart, load_restart
    use dda_step_context, only : march_t

@@ -7,54 +7,29 @@ module dda_deck
    use dda_key_names, only : analysis_geometry, analysis_mode, arch_lune_deg, arch_shape, &
       & arch_span, fill_group, ground_record, limerick_dynamic, material_compressive_strength, &
       & scene_kind, search_group, search_parameter, tie_group
+   use dda_key_value, only : deck_place_t, deck_value_t, default_value
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
-   use dda_text, only : lower_case, read_number
+   use dda_text, only : lower_case
    use dda_warnings, only : warnings_t
-   use dda_deck_key, only : key_kind, key_t, word_length
+   use dda_deck_key, only : word_length
    use dda_deck_keys, only : deck_group, deck_key, group_index
    implicit none
    private
 
-   public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t
+   public :: deck_t, deck_sweep_t, parameter_t
    public :: ground_record_t
    public :: new_deck, has_group, geometry_of, keeps_velocities, place_of, deck_error, key_error
    public :: source_of
    public :: add_file_mark, file_beside
-
-   !> Where a value was written
-   type :: deck_place_t
-      !> Line of the deck, or number of the --set; 0 for a default
-      integer :: line = 0
-      !> Whether it came from a --set
-      logical :: from_command = .false.
-   end type deck_place_t
 
    !> A key, or one item of its list
    type :: parameter_t
       integer :: key = 0   !! Place in the registry
       integer :: item = 0  !! Item of a list, counted from 1; 0 for a single value
    end type parameter_t
-
-   !> Value of one key
-   type :: deck_value_t
-      !> Whether the deck, a --set or a sweep gives it
-      logical :: given = .false.
-      !> Where
-      type(deck_place_t) :: place
-      !> Number, whole numbers too
-      real(wp) :: number = 0.0_wp
-      !> Flag
-      logical :: flag = .false.
-      !> Text, words too; unallocated where the key takes none
-      character(len=:), allocatable :: text
-      !> List of numbers; unallocated where the key takes none: (n)
-      real(wp), allocatable :: numbers(:)
-      !> List of words; unallocated where the key takes none: (n)
-      character(len=word_length), allocatable :: texts(:)
-   end type deck_value_t
 
    !> One &sweep
    type :: deck_sweep_t
@@ -120,32 +95,9 @@ contains
       allocate (deck%value(0:size(deck_key)), deck%group(size(deck_group)), deck%sweeps(0))
       deck%value(0)%number = ieee_value(1.0_wp, ieee_quiet_nan)
       do i = 1, size(deck_key)
-         call put_default(deck%value(i), deck_key(i))
+         deck%value(i) = default_value(deck_key(i))
       end do
    end subroutine new_deck
-
-   !> Give a value the default of its key
-   pure subroutine put_default(value, key)
-      type(deck_value_t), intent(inout) :: value
-      type(key_t), intent(in) :: key
-      character(len=:), allocatable :: default
-      logical :: ok
-
-      default = trim(key%default)
-      select case (key%kind)
-      case (key_kind%number, key_kind%whole)
-         call read_number(default, value%number, ok)
-      case (key_kind%word, key_kind%text)
-         value%text = ""
-         if (len(default) > 2) value%text = default(2:len(default) - 1)
-      case (key_kind%flag)
-         value%flag = default == ".true."
-      case (key_kind%numbers)
-         allocate (value%numbers(0))
-      case (key_kind%texts)
-         allocate (value%texts(0))
-      end select
-   end subroutine put_default
 
    !> Whether a deck has a group
    pure logical function has_group(deck, group)

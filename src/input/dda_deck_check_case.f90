@@ -6,15 +6,15 @@ module dda_deck_check_case
       & arch_joints_deg, arch_voussoirs, joint_residual_deg, joint_slip_length, load_gravity, &
       & material_unit_weight, output_energy, output_frames, output_restart, scene_analysis, &
       & scene_kind, search_high, search_low, search_parameter
+   use dda_key_value, only : deck_place_t, number_problem
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key
-   use dda_deck, only : deck_error, deck_place_t, deck_t, geometry_of, keeps_velocities, &
-      & key_error, source_of
+   use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_parameter, only : parameter_name
-   use dda_deck_set, only : put_number, number_problem
+   use dda_deck_set, only : put_number
    use dda_deck_words, only : full_name
    use dda_model_table, only : model_problem, search_problem
    implicit none
@@ -268,7 +268,7 @@ contains
 
       associate (bound => deck%value(key))
          if (.not. bound%given) return
-         problem = number_problem(deck%searched%key, bound%number)
+         problem = number_problem(deck_key(deck%searched%key), bound%number)
          if (len(problem) > 0) then
             call deck_error(error, full_name(deck_key(key))//": "//problem// &
                "; choose an end that it can take", deck, bound%place)

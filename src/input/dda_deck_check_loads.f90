@@ -1,7 +1,7 @@
 !> What a deck says of the ground and of what means collapse in time, of live loads, and of the
 !> strength of its blocks
 module dda_deck_check_loads
-   use dda_deck, only : deck_error, deck_place_t, deck_t, has_group, key_error, place_of
+   use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of
    use dda_deck_keys, only : deck_key
    use dda_deck_words, only : full_name
    use dda_error, only : error_t
@@ -14,6 +14,7 @@ module dda_deck_check_loads
       & load_live_horizontal, load_load_factor, material_compressive_strength, scene_geometry, &
       & scene_kind, search_high, search_low, search_parameter, vehicle_axles, vehicle_group, &
       & vehicle_position, vehicle_spacings, vehicle_worst
+   use dda_key_value, only : deck_place_t
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none

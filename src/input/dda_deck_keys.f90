@@ -1,11 +1,10 @@
 !> The registry: every group and key that a deck may hold
 !>
-!> A new key is one entry here and its paragraph in docs/input.md. Reading, range checks, --set,
-!> sweeps, searches and the printed help follow from the entry.
+!> A new key is one entry here, its name in dda_key_names, and its paragraph in docs/input.md.
+!> Reading, range checks, --set, sweeps, searches and the printed help follow from the entry.
 module dda_deck_keys
    use dda_arch_keys, only : arch_keys, fill_keys, tie_keys
    use dda_deck_key, only : group_t, key_kind, key_t
-   use dda_key_names, only : search_high, search_low
    use dda_kinds, only : wp
    implicit none
    private
@@ -325,11 +324,6 @@ module dda_deck_keys
       load_keys, live_keys, vehicle_keys, fill_keys, tie_keys, ground_keys, analysis_keys, &
       limerick_keys, &
       search_keys, sweep_keys, output_keys]
-   !> How many keys each group has
-   integer, parameter :: n_keys(*) = [size(scene_keys), size(arch_keys), size(material_keys), &
-      size(joint_keys), size(load_keys), size(live_keys), size(vehicle_keys), size(fill_keys), &
-      size(tie_keys), size(ground_keys), size(analysis_keys), size(limerick_keys), &
-      size(search_keys), size(sweep_keys), size(output_keys)]
 
 contains
 
@@ -337,18 +331,8 @@ contains
    pure integer function key_index(group, name)
       character(len=*), intent(in) :: group  !! Name of the group, lower case
       character(len=*), intent(in) :: name   !! Name of the key, lower case
-      integer :: before, g
 
-      key_index = 0
-      g = group_index(group)
-      if (g == 0) return
-      before = sum(n_keys(:g - 1))
-      do key_index = before + n_keys(g), before + 1, -1
-         ! the first letter tells most keys apart, and a comparison of texts is a call
-         if (deck_key(key_index)%name(1:1) /= name(1:1)) cycle
-         if (deck_key(key_index)%name == name) return
-      end do
-      key_index = 0
+      key_index = findloc(deck_key%group == group .and. deck_key%name == name, .true., dim=1)
    end function key_index
 
    !> Place of a group in the registry: place in deck_group, counted from 1; 0 if there is no such
@@ -356,9 +340,6 @@ contains
    pure integer function group_index(name)
       character(len=*), intent(in) :: name  !! Name of the group, lower case
 
-      do group_index = size(deck_group), 1, -1
-         if (deck_group(group_index)%name(1:1) /= name(1:1)) cycle
-         if (deck_group(group_index)%name == name) return
-      end do
+      group_index = findloc(deck_group%name == name, .true., dim=1)
    end function group_index
 end module dda_deck_keys

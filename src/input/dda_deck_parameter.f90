@@ -60,7 +60,7 @@ contains
          problem = "expected a name such as joints_deg(2), got '"//shown(name)// &
             "'; number the items from 1"
       else if (.not. any(fits)) then
-         problem = "'"//shown(name)//"' is no key: "//near_key(key, group)
+         problem = "'"//shown(name)//"' is no key: "//near_key(key, group, deck_key, "keys")
       else if (.not. any(fits .and. deck_key%varies)) then
          problem = "'"//shown(name)//"' cannot be varied; choose a key of the groups arch to "// &
             "analysis"

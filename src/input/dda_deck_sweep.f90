@@ -1,14 +1,15 @@
 !> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
 module dda_deck_sweep
-   use dda_deck, only : deck_error, deck_place_t, deck_sweep_t, deck_t, deck_value_t, key_error
-   use dda_deck_key, only : key_kind, word_length
+   use dda_deck, only : deck_error, deck_sweep_t, deck_t, key_error
+   use dda_deck_key, only : key_kind, key_t, word_length
    use dda_deck_keys, only : deck_key
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_set, only : is_numeric, number_problem, put_number, put_text, text_problem
+   use dda_deck_set, only : put_number, put_text
    use dda_deck_words, only : full_name, wanted
    use dda_error, only : error_t
    use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, &
       & sweep_parameter, sweep_texts, sweep_values
+   use dda_key_value, only : deck_place_t, deck_value_t, is_numeric, number_problem, text_problem
    use dda_kinds, only : wp
    use dda_text, only : lower_case, to_text
    implicit none
@@ -157,21 +158,21 @@ contains
       type(deck_sweep_t), intent(in) :: sweep
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
+      type(key_t) :: key
       integer :: i
 
       problem = ""
-      associate (key => sweep%parameter%key)
-         if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "expected "// &
-            trim(merge("values, got texts", "texts, got values", is_numeric(key)))//": "// &
-            full_name(deck_key(key))//" must be "//wanted(deck_key(key))//"; write "// &
-            trim(merge("values", "texts ", is_numeric(key)))//" = ..."
-         do i = 1, size(sweep%numbers)
-            if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))
-         end do
-         do i = 1, size(sweep%texts)
-            if (len(problem) == 0) problem = advised(text_problem(key, sweep%texts(i)))
-         end do
-      end associate
+      key = deck_key(sweep%parameter%key)
+      if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "expected " &
+         & //trim(merge("values, got texts", "texts, got values", is_numeric(key)))//": " &
+         & //full_name(key)//" must be "//wanted(key)//"; write " &
+         & //trim(merge("values", "texts ", is_numeric(key)))//" = ..."
+      do i = 1, size(sweep%numbers)
+         if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))
+      end do
+      do i = 1, size(sweep%texts)
+         if (len(problem) == 0) problem = advised(text_problem(key, sweep%texts(i)))
+      end do
       if (len(problem) > 0) call deck_error(error, problem, deck, sweep%place)
    end subroutine check_values
 

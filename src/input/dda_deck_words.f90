@@ -100,33 +100,39 @@ contains
    end function full_name
 
    !> The group that was meant
-   pure function near_group(name) result(text)
-      character(len=*), intent(in) :: name   !! Name that is no group
-      character(len=:), allocatable :: text  !! Sentence that names the nearest group
+   pure function near_group(name, groups, topic) result(text)
+      character(len=*), intent(in) :: name    !! Name that is no group
+      type(group_t), intent(in) :: groups(:)  !! Groups of the registry
+      character(len=*), intent(in) :: topic   !! Page of the help that lists them
+      character(len=:), allocatable :: text   !! Sentence that names the nearest group
 
-      text = "the nearest known group is &"//nearest_word(name, deck_group%name)// &
-         "; 'dda help keys' lists all"
+      text = "the nearest known group is &"//nearest_word(name, groups%name)//"; 'dda help " &
+         & //topic//"' lists all"
    end function near_group
 
    !> The key that was meant
-   pure function near_key(name, group) result(text)
+   pure function near_key(name, group, keys, topic) result(text)
       !> Name that is no key of the group
       character(len=*), intent(in) :: name
       !> Name of the group; empty if any group will do
       character(len=*), intent(in) :: group
+      !> Keys of the registry
+      type(key_t), intent(in) :: keys(:)
+      !> Page of the help that lists them
+      character(len=*), intent(in) :: topic
       !> Sentence that names the group of that key, or the nearest key
       character(len=:), allocatable :: text
-      logical :: fits(size(deck_key))
+      logical :: fits(size(keys))
       integer :: i
 
-      do i = 1, size(deck_key)
-         if (deck_key(i)%name /= name) cycle
-         text = "it is a key of &"//trim(deck_key(i)%group)//"; move it there"
+      i = findloc(keys%name == name, .true., dim=1)
+      if (i > 0) then
+         text = "it is a key of &"//trim(keys(i)%group)//"; move it there"
          return
-      end do
-      fits = deck_key%group == group .or. (len(group) == 0 .and. deck_key%varies)
-      text = "the nearest known key is "//nearest_word(name, pack(deck_key%name, fits))// &
-         "; 'dda help keys' lists all"
+      end if
+      fits = keys%group == group .or. (len(group) == 0 .and. keys%varies)
+      text = "the nearest known key is "//nearest_word(name, pack(keys%name, fits)) &
+         & //"; 'dda help "//topic//"' lists all"
    end function near_key
 
    !> The word that was meant, of those that a key takes
@@ -171,14 +177,14 @@ contains
 
    !> What a deck may do instead of giving a key a value that it can take
    pure function or_leave_out(key) result(advice)
-      integer, intent(in) :: key               !! Place of the key in the registry
+      type(key_t), intent(in) :: key
       character(len=:), allocatable :: advice  !! Words after a semicolon
 
       advice = "; correct it"
-      if (len_trim(deck_key(key)%default) > 0) then
-         advice = advice//", or leave it out for "//trim(deck_key(key)%default)
-      else if (len_trim(deck_key(key)%without) > 0 .and. deck_key(key)%group /= "sweep") then
-         advice = advice//", or leave it out: "//trim(deck_key(key)%without)
+      if (len_trim(key%default) > 0) then
+         advice = advice//", or leave it out for "//trim(key%default)
+      else if (len_trim(key%without) > 0 .and. key%group /= "sweep") then
+         advice = advice//", or leave it out: "//trim(key%without)
       end if
    end function or_leave_out
 

@@ -1,9 +1,8 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
-   use dda_deck, only : add_file_mark, deck_place_t, deck_t, file_beside, has_group, new_deck, &
-      & parameter_t
+   use dda_deck, only : add_file_mark, deck_t, file_beside, has_group, new_deck, parameter_t
    use dda_deck_check_loads, only : check_block_file
-   use dda_deck_keys, only : group_index, key_index
+   use dda_deck_keys, only : group_index
    use dda_deck_parameter, only : find_parameter
    use dda_deck_scan, only : scan_deck
    use dda_deck_sweep, only : few_cases, n_cases
@@ -12,6 +11,7 @@ module dda_read_deck
    use dda_file_mark, only : file_mark, text_mark
    use dda_key_names, only : analysis_mode, analysis_restart, output_blocks, output_joints, &
       & output_proof, output_reactions, scene_geometry, scene_kind, search_group, search_parameter
+   use dda_key_value, only : deck_place_t
    use dda_read_blocks, only : parse_blocks
    use dda_text_file, only : read_text_file
    use dda_watch, only : watch_t

@@ -4,12 +4,25 @@ module dda_read_joint_map
    use dda_error, only : error_t
    use dda_joint_map, only : arched_opening, bolts_t, horseshoe, joint_map_t, joint_set_t, &
       & length_law, length_t, map_line_t, opening_t, ring
-   use dda_key_groups, only : flag_in, group_error, key_group_t, number_in, numbers_in, &
-      & read_groups, texts_in, whole_in, word_in
+   use dda_key_groups, only : group_error, key_group_t, read_groups
+   use dda_key_value, only : deck_value_t
    use dda_kinds, only : degree, wp
+   use dda_map_key_names, only : bolts_from_deg, bolts_inset, bolts_length, bolts_number, &
+      & bolts_opening, bolts_prestress, bolts_stiffness, bolts_to_deg, joint_set_bridge, &
+      & joint_set_bridge_randomness, joint_set_dip_deg, joint_set_dip_spread_deg, &
+      & joint_set_material, joint_set_region_x, joint_set_region_y, joint_set_seed, &
+      & joint_set_spacing, joint_set_spacing_randomness, joint_set_through_x, &
+      & joint_set_through_y, joint_set_trace, joint_set_trace_randomness, line_material, &
+      & line_prestress, line_role, line_stiffness, line_x, line_y, lines_edge_node_ratio, &
+      & lines_form, lines_seed, opening_corner_x, opening_corner_y, opening_excavated, &
+      & opening_height, opening_material, opening_rise, opening_shape, opening_sides, &
+      & opening_wall, opening_width, opening_x, opening_y, outline_fixed, outline_hold_depth, &
+      & outline_left, outline_material, outline_top, outline_x, outline_y, point_role, point_x, &
+      & point_y, slope_bench_height, slope_bench_width, slope_benches, slope_face_deg, &
+      & slope_foot_x, slope_foot_y, slope_x, slope_y
    use dda_map_keys, only : map_group, map_key
    use dda_polygon, only : find_crossing
-   use dda_text, only : to_text
+   use dda_text, only : lower_case, to_text
    use dda_text_file, only : read_text_file
    use dda_vector, only : area_moments, area_moments_t
    implicit none
@@ -47,13 +60,13 @@ contains
       seed = 1
       allocate (map%set(0), map%opening(0), map%line(0), map%bolts(0))
       map%edge_node_ratio = 1.0e-3_wp
-      call read_groups(text, file, map_group, map_key, group, error)
+      call read_groups(text, file, map_group, map_key, "lines", group, error)
       if (allocated(error)) return
       do i = 1, size(group)
          if (group(i)%name == "lines") then
-            seed = whole_in(group(i), "seed")
-            map%edge_node_ratio = number_in(group(i), "edge_node_ratio")
-            is_ddaml = word_in(group(i), "form") == "ddaml"
+            seed = nint(group(i)%value(lines_seed)%number)
+            map%edge_node_ratio = group(i)%value(lines_edge_node_ratio)%number
+            is_ddaml = group(i)%value(lines_form)%text == "ddaml"
          end if
          if (any(group(i)%name == [character(len=7) :: "lines", "outline", "slope"]) &
             & .and. any(group(:i - 1)%name == group(i)%name)) then
@@ -86,41 +99,43 @@ contains
       type(joint_map_t), intent(inout) :: map
       type(error_t), allocatable, intent(out) :: error
       type(joint_set_t) :: set
-      integer :: n
 
       set%row = group%row
-      set%dip = number_in(group, "dip_deg")*degree
-      set%dip_spread = number_in(group, "dip_spread_deg")*degree
-      set%spacing = length_in(group, "spacing")
-      set%trace = length_in(group, "trace")
-      set%bridge = length_in(group, "bridge")
-      set%material = whole_in(group, "material")
-      set%seed = [seed, whole_in(group, "seed", size(map%set) + 1)]
-      n = size([numbers_in(group, "through_x"), numbers_in(group, "through_y")])
-      if (n == 1) call group_error(group, "expected both through_x and through_y, got one", error)
-      set%anchored = n == 2
-      if (set%anchored) set%anchor = [number_in(group, "through_x"), number_in(group, "through_y")]
-      if (.not. allocated(error) .and. size(numbers_in(group, "region_x")) > 0) &
-         & call take_polygon(group, "region_x", "region_y", set%region, error)
+      set%dip = group%value(joint_set_dip_deg)%number*degree
+      set%dip_spread = group%value(joint_set_dip_spread_deg)%number*degree
+      set%spacing = length_of(group%value(joint_set_spacing:joint_set_spacing_randomness))
+      set%trace = length_of(group%value(joint_set_trace:joint_set_trace_randomness))
+      set%bridge = length_of(group%value(joint_set_bridge:joint_set_bridge_randomness))
+      set%material = nint(group%value(joint_set_material)%number)
+      set%seed = [seed, size(map%set) + 1]
+      if (group%value(joint_set_seed)%given) &
+         & set%seed(2) = nint(group%value(joint_set_seed)%number)
+      associate (through => group%value(joint_set_through_x:joint_set_through_y))
+         if (count(through%given) == 1) call group_error(group, &
+            & "expected both through_x and through_y, got one", error)
+         set%anchored = all(through%given)
+         if (set%anchored) set%anchor = through%number
+      end associate
+      if (.not. allocated(error) .and. group%value(joint_set_region_x)%given) &
+         & call take_polygon(group, joint_set_region_x, joint_set_region_y, set%region, error)
       if (.not. allocated(error)) map%set = [map%set, set]
    end subroutine take_set
 
    !> A length with its law
-   pure type(length_t) function length_in(group, name)
-      type(key_group_t), intent(in) :: group
-      character(len=*), intent(in) :: name  !! Name of the key
+   pure type(length_t) function length_of(value)
+      type(deck_value_t), intent(in) :: value(3)  !! Its mean, its law and its randomness
 
-      length_in%mean = number_in(group, name)
-      length_in%randomness = number_in(group, name//"_randomness")
-      select case (word_in(group, name//"_law"))
+      length_of%mean = value(1)%number
+      length_of%randomness = value(3)%number
+      select case (value(2)%text)
       case ("uniform")
-         length_in%law = length_law%uniform
+         length_of%law = length_law%uniform
       case ("exponential")
-         length_in%law = length_law%exponential
+         length_of%law = length_law%exponential
       case ("normal")
-         length_in%law = length_law%normal
+         length_of%law = length_law%normal
       end select
-   end function length_in
+   end function length_of
 
    !> Lines or points placed by hand
    pure subroutine take_lines(group, map, error)
@@ -130,18 +145,19 @@ contains
       type(map_line_t) :: line
       real(wp), allocatable :: point(:, :)
       logical :: is_line
-      integer :: i
+      integer :: i, role
 
       is_line = group%name == "line"
-      call take_points(group, "x", "y", merge(2, 1, is_line), point, error)
+      if (is_line) call take_points(group, line_x, line_y, 2, point, error)
+      if (.not. is_line) call take_points(group, point_x, point_y, 1, point, error)
       if (allocated(error)) return
+      role = merge(line_role, point_role, is_line)
       line%row = group%row
       line%role = findloc([character(len=8) :: "joint", "material", "fix", "load", "measure", &
-         & "hole", "bolt"] == word_in(group, "role"), .true., dim=1)
+         & "hole", "bolt"] == group%value(role)%text, .true., dim=1)
       if (is_line) then
-         line%material = whole_in(group, "material")
-         line%bolt = [number_in(group, "stiffness"), number_in(group, "strength"), &
-            & number_in(group, "prestress")]
+         line%material = nint(group%value(line_material)%number)
+         line%bolt = group%value(line_stiffness:line_prestress)%number
       end if
       do i = 1, size(point, 2) - merge(1, 0, is_line)
          line%ends = [point(:, i), point(:, merge(i + 1, i, is_line))]
@@ -156,12 +172,11 @@ contains
       type(bolts_t) :: bolts
 
       bolts%row = group%row
-      bolts%opening = whole_in(group, "opening")
-      bolts%number = whole_in(group, "number")
-      bolts%fan = degree*[number_in(group, "from_deg"), number_in(group, "to_deg")]
-      bolts%reach = [number_in(group, "length"), number_in(group, "inset")]
-      bolts%property = [number_in(group, "stiffness"), number_in(group, "strength"), &
-         & number_in(group, "prestress")]
+      bolts%opening = nint(group%value(bolts_opening)%number)
+      bolts%number = nint(group%value(bolts_number)%number)
+      bolts%fan = degree*group%value(bolts_from_deg:bolts_to_deg)%number
+      bolts%reach = group%value(bolts_length:bolts_inset)%number
+      bolts%property = group%value(bolts_stiffness:bolts_prestress)%number
       map%bolts = [map%bolts, bolts]
    end subroutine take_bolts
 
@@ -170,13 +185,14 @@ contains
       type(key_group_t), intent(in) :: group(:)  !! All groups
       type(joint_map_t), intent(in) :: map
       type(error_t), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, opening
 
       do i = 1, size(group)
          if (group(i)%name /= "bolts") cycle
-         if (whole_in(group(i), "opening") <= size(map%opening)) cycle
+         opening = nint(group(i)%value(bolts_opening)%number)
+         if (opening <= size(map%opening)) cycle
          call group_error(group(i), "expected the number of an opening up to " &
-            & //to_text(size(map%opening))//", got "//to_text(whole_in(group(i), "opening")), error)
+            & //to_text(size(map%opening))//", got "//to_text(opening), error)
          return
       end do
    end subroutine check_bolts
@@ -186,7 +202,7 @@ contains
       type(key_group_t), intent(in) :: group(:)
       type(joint_map_t), intent(inout) :: map
       type(error_t), allocatable, intent(out) :: error  !! No outline, or no simple one
-      character(len=16), allocatable :: side(:)
+      character(len=:), allocatable :: side
       character(len=*), parameter :: sides(3) = [character(len=6) :: "left", "right", "bottom"]
       real(wp), allocatable :: box(:), surface(:, :)
       integer :: i, s
@@ -199,13 +215,15 @@ contains
          return
       end if
       associate (outline => group(i))
-         map%outline_material = whole_in(outline, "material")
-         allocate (box, source=[numbers_in(outline, "left"), numbers_in(outline, "right"), &
-            & numbers_in(outline, "bottom"), numbers_in(outline, "top")])
-         if (size(numbers_in(outline, "x")) > 0) then
+         map%outline_material = nint(outline%value(outline_material)%number)
+         associate (side => outline%value(outline_left:outline_top))
+            box = pack(side%number, side%given)
+         end associate
+         if (outline%value(outline_x)%given) then
             if (size(box) > 0 .or. s > 0) call group_error(outline, "expected either a " &
                & //"polygon or a rectangle, got more than that", error)
-            if (.not. allocated(error)) call take_polygon(outline, "x", "y", map%outline, error)
+            if (.not. allocated(error)) &
+               & call take_polygon(outline, outline_x, outline_y, map%outline, error)
          else if (size(box) /= merge(3, 4, s > 0)) then
             call group_error(outline, "expected left, right and bottom, and top where there " &
                & //"is no &slope, got "//to_text(size(box))//" of them", error)
@@ -220,19 +238,21 @@ contains
          end if
          if (.not. allocated(error)) call check_polygon(outline, map%outline, error)
          if (allocated(error)) return
-         allocate (side, source=texts_in(outline, "fixed"))
-         do s = 1, size(side)
-            if (all(sides /= side(s))) then
+         do s = 1, size(outline%value(outline_fixed)%texts)
+            side = lower_case(trim(outline%value(outline_fixed)%texts(s)))
+            if (all(sides /= side)) then
                call group_error(outline, "fixed must be 'left', 'right' or 'bottom', got '" &
-                  & //trim(side(s))//"'", error)
+                  & //side//"'", error)
                return
             end if
-            map%held_side = map%held_side .or. sides == side(s)
+            map%held_side = map%held_side .or. sides == side
          end do
          ! a line so near to the side crosses all blocks along it: corners nearer than twice as much
          ! are merged with the side
-         map%hold_depth = number_in(outline, "hold_depth", 0.2_wp*max(1.0e-4_wp, &
-            & map%edge_node_ratio)*norm2(maxval(map%outline, 2) - minval(map%outline, 2)))
+         map%hold_depth = 0.2_wp*max(1.0e-4_wp, map%edge_node_ratio) &
+            & *norm2(maxval(map%outline, 2) - minval(map%outline, 2))
+         if (outline%value(outline_hold_depth)%given) &
+            & map%hold_depth = outline%value(outline_hold_depth)%number
       end associate
    end subroutine take_outline
 
@@ -246,18 +266,18 @@ contains
       real(wp) :: tangent, rise
       integer :: k, n
 
-      if (size(numbers_in(group, "x")) > 0) then
-         call take_points(group, "x", "y", 2, point, error)
+      if (group%value(slope_x)%given) then
+         call take_points(group, slope_x, slope_y, 2, point, error)
          if (allocated(error)) return
-      else if (size([numbers_in(group, "foot_x"), numbers_in(group, "foot_y")]) == 2) then
-         n = whole_in(group, "benches")
-         rise = number_in(group, "bench_height")
-         tangent = tan(number_in(group, "face_deg")*degree)
+      else if (all(group%value(slope_foot_x:slope_foot_y)%given)) then
+         n = nint(group%value(slope_benches)%number)
+         rise = group%value(slope_bench_height)%number
+         tangent = tan(group%value(slope_face_deg)%number*degree)
          allocate (point(2, 2*n))
-         point(:, 1) = [number_in(group, "foot_x"), number_in(group, "foot_y")]
+         point(:, 1) = group%value(slope_foot_x:slope_foot_y)%number
          do k = 1, n
             if (k > 1) point(:, 2*k - 1) = point(:, 2*k - 2) &
-               & + [number_in(group, "bench_width"), 0.0_wp]
+               & + [group%value(slope_bench_width)%number, 0.0_wp]
             point(:, 2*k) = point(:, 2*k - 1) + [rise/tangent, rise]
          end do
       else
@@ -277,38 +297,37 @@ contains
    end subroutine take_surface
 
    !> Points of two lists
-   pure subroutine take_points(group, x_name, y_name, least, point, error)
+   pure subroutine take_points(group, x_key, y_key, least, point, error)
       type(key_group_t), intent(in) :: group
-      !> Names of the keys
-      character(len=*), intent(in) :: x_name, y_name
+      !> Places of the keys
+      integer, intent(in) :: x_key, y_key
       !> Fewest points
       integer, intent(in) :: least
       !> The points: (2, n) [m]
       real(wp), allocatable, intent(out) :: point(:, :)
       !> Lists of unequal lengths, or too short ones
       type(error_t), allocatable, intent(out) :: error
-      real(wp), allocatable :: x(:), y(:)
 
-      allocate (x, source=numbers_in(group, x_name))
-      allocate (y, source=numbers_in(group, y_name))
-      if (size(x) /= size(y) .or. size(x) < least) then
-         call group_error(group, "expected "//x_name//" and "//y_name//" of one length from " &
-            & //to_text(least)//", got "//to_text(size(x))//" and "//to_text(size(y)) &
-            & //" numbers", error)
-         return
-      end if
-      point = transpose(reshape([x, y], [size(x), 2]))
+      associate (x => group%value(x_key)%numbers, y => group%value(y_key)%numbers)
+         if (size(x) /= size(y) .or. size(x) < least) then
+            call group_error(group, "expected "//trim(map_key(x_key)%name)//" and " &
+               & //trim(map_key(y_key)%name)//" of one length from "//to_text(least)//", got " &
+               & //to_text(size(x))//" and "//to_text(size(y))//" numbers", error)
+            return
+         end if
+         point = transpose(reshape([x, y], [size(x), 2]))
+      end associate
    end subroutine take_points
 
    !> A polygon of two lists, anticlockwise whichever way it was given
-   pure subroutine take_polygon(group, x_name, y_name, corner, error)
+   pure subroutine take_polygon(group, x_key, y_key, corner, error)
       type(key_group_t), intent(in) :: group
-      character(len=*), intent(in) :: x_name, y_name
+      integer, intent(in) :: x_key, y_key
       real(wp), allocatable, intent(out) :: corner(:, :)  !! Its corners: (2, n) [m]
       type(error_t), allocatable, intent(out) :: error    !! No simple polygon
       type(area_moments_t) :: moments
 
-      call take_points(group, x_name, y_name, 3, corner, error)
+      call take_points(group, x_key, y_key, 3, corner, error)
       if (allocated(error)) return
       moments = area_moments(corner)
       if (moments%area < 0.0_wp) corner = corner(:, size(corner, 2):1:-1)
@@ -342,23 +361,27 @@ contains
       type(joint_map_t), intent(inout) :: map
       type(error_t), allocatable, intent(out) :: error
       type(opening_t) :: opening
-      real(wp) :: at(2), width, wall
+      real(wp) :: at(2), height, rise, width, wall
       integer :: n
 
       opening%row = group%row
-      opening%material = whole_in(group, "material")
-      opening%excavated = flag_in(group, "excavated")
-      at = [number_in(group, "x"), number_in(group, "y")]
-      width = number_in(group, "width")
-      wall = number_in(group, "wall")
-      n = whole_in(group, "sides")
-      select case (word_in(group, "shape"))
+      opening%material = nint(group%value(opening_material)%number)
+      opening%excavated = group%value(opening_excavated)%flag
+      at = group%value(opening_x:opening_y)%number
+      width = group%value(opening_width)%number
+      height = width
+      if (group%value(opening_height)%given) height = group%value(opening_height)%number
+      rise = 0.5_wp*width
+      if (group%value(opening_rise)%given) rise = group%value(opening_rise)%number
+      wall = group%value(opening_wall)%number
+      n = nint(group%value(opening_sides)%number)
+      select case (group%value(opening_shape)%text)
       case ("circle")
          opening%corner = ring(at, [0.5_wp, 0.5_wp]*width, n)
       case ("ellipse")
-         opening%corner = ring(at, 0.5_wp*[width, number_in(group, "height", width)], n)
+         opening%corner = ring(at, 0.5_wp*[width, height], n)
       case ("arch")
-         opening%corner = arched_opening(at, width, wall, number_in(group, "rise", 0.5_wp*width), n)
+         opening%corner = arched_opening(at, width, wall, rise, n)
       case ("horseshoe")
          if (wall <= 0.0_wp .or. wall >= 0.99_wp*width) then
             call group_error(group, "expected a horseshoe with a wall above 0 and below the " &
@@ -367,7 +390,7 @@ contains
          end if
          opening%corner = horseshoe(at, 0.5_wp*width, wall, n)
       case default
-         call take_polygon(group, "corner_x", "corner_y", opening%corner, error)
+         call take_polygon(group, opening_corner_x, opening_corner_y, opening%corner, error)
       end select
       if (.not. allocated(error)) call check_polygon(group, opening%corner, error)
       if (.not. allocated(error)) map%opening = [map%opening, opening]

@@ -5,10 +5,12 @@ submodule (dda_deck_scene) dda_deck_family
    use dda_arch_form, only : form_problem_t
    use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, settings_of, &
       & unit_weight
-   use dda_deck_set, only : number_fits, put_number
+   use dda_deck_keys, only : deck_key
+   use dda_deck_set, only : put_number
    use dda_error, only : fatal_error
    use dda_key_names, only : arch_half_angle_deg, arch_thickness_ratio, &
       & load_gravity_direction_deg, load_horizontal_coefficient, load_load_factor
+   use dda_key_value, only : number_fits
    use dda_kinds, only : degree
    use dda_live_loads, only : check_live_points
    use dda_scene, only : searched_load
@@ -42,7 +44,7 @@ contains
    !> Make the chain of one thickness ratio
    module procedure link_arch
       linked = family%chains
-      if (linked) linked = number_fits(family%parameter%key, value)
+      if (linked) linked = number_fits(deck_key(family%parameter%key), value)
       if (.not. linked) return
       settings = family%settings
       call arch_chain(family%numbers, family%rays, value, chain)
@@ -55,7 +57,7 @@ contains
       type(form_problem_t) :: problem
       type(scene_plan_t) :: plan
 
-      if (.not. number_fits(family%parameter%key, value)) then
+      if (.not. number_fits(deck_key(family%parameter%key), value)) then
          call fatal_error(error, "the searched parameter cannot have this value")
          return
       end if

@@ -1,13 +1,14 @@
 !> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
    use dda_boundary, only : boundary_t, measured_point_t
-   use dda_deck, only : deck_t, deck_value_t
+   use dda_deck, only : deck_t
    use dda_key_names, only : analysis_collapse_displacement, analysis_max_displacement_ratio, &
       & analysis_penalty_ratio, analysis_steps, analysis_time_step, arch_abutment_overhang, &
       & arch_abutment_size, arch_radius, limerick_auto_penalty, limerick_close_ratio, &
       & limerick_contact_damping, limerick_dynamic, limerick_gravity_steps, limerick_open_ratio, &
       & limerick_overlap_deg, limerick_penetration_ratio, limerick_rotation, &
       & limerick_stiffness_ratio, scene_kind
+   use dda_key_value, only : deck_value_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_blocks, only : blocks_model, inner_points

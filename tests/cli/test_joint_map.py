@@ -108,11 +108,17 @@ def test_joints_run_through_rock_that_is_still_there(tmp_path: Path) -> None:
 
 BAD = {
     "no outline": ("&lines /\n", "map.nml:1: error: &lines: expected an &outline"),
-    "unknown key": ("&outline lefd=1 /\n", "map.nml:1: error: &outline has no key 'lefd'"),
-    "unknown group": ("&joint_sets /\n", "map.nml:1: error: expected a group such as &lines"),
+    "unknown key": (
+        "&outline lefd=1 /\n",
+        "map.nml:1: error: unknown key 'lefd' in &outline: the nearest known key is left; 'dda help lines' lists all",
+    ),
+    "unknown group": (
+        "&joint_sets /\n",
+        "map.nml:1: error: unknown group &joint_sets: the nearest known group is &joint_set;",
+    ),
     "no spacing": (
         "&outline left=0 right=1 bottom=0 top=1 /\n&joint_set spacing=0 /\n",
-        "map.nml:2: error: spacing must be a number",
+        "map.nml:2: error: joint_set%spacing must be a number",
     ),
     "too dense": (
         "&outline left=0 right=1e6 bottom=0 top=1e6 /\n&joint_set spacing=1e-5 /\n",

@@ -1,0 +1,265 @@
+!> Keys of a file and their values, from the tokens of a namelist by a registry
+module dda_key_entry
+   use dda_deck_key, only : key_kind, key_t, max_items, word_length
+   use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
+   use dda_deck_words, only : full_name, near_key, or_leave_out, wanted
+   use dda_key_value, only : deck_place_t, deck_value_t, number_problem, set_number, set_text
+   use dda_kinds, only : wp
+   use dda_text, only : lower_case, read_integer, read_number, to_text
+   implicit none
+   private
+
+   public :: find_key, read_entry, read_value
+
+contains
+
+   !> Read one key and its values
+   pure subroutine read_entry(scan, i, group, keys, topic, value, problem, line)
+      type(deck_scan_t), intent(in) :: scan
+      !> Token of the key; then the token after its values
+      integer, intent(inout) :: i
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Keys of the registry
+      type(key_t), intent(in) :: keys(:)
+      !> Page of the help that lists them
+      character(len=*), intent(in) :: topic
+      !> Values by the places of their keys; those of other groups may be missing
+      type(deck_value_t), allocatable, intent(inout) :: value(:)
+      !> What is wrong, and what to do; empty if nothing is
+      character(len=:), allocatable, intent(out) :: problem
+      !> Where it is
+      integer, intent(out) :: line
+      integer :: first, key
+
+      line = scan%token(i)%line
+      if (scan%token(i)%kind /= token_kind%key) then
+         problem = "expected key = value in &"//group//", got '"//shown(token_text(scan, i)) &
+            & //"'; write a key, '=' and its value"
+         return
+      end if
+      call find_key(keys, group, token_text(scan, i), topic, key, problem)
+      if (len(problem) > 0) return
+      if (value(key)%given) then
+         problem = full_name(keys(key))//" is repeated: the first is in line " &
+            & //to_text(value(key)%place%line)//"; remove one of them"
+         return
+      end if
+      first = i + 1
+      i = first
+      do while (any(scan%token(i)%kind == [token_kind%word, token_kind%quoted, &
+         & token_kind%nothing]))
+         i = i + 1
+      end do
+      call read_value(scan, first, i - 1, keys, key, 0, deck_place_t(line), value(key), problem)
+      line = value(key)%place%line
+   end subroutine read_entry
+
+   !> Find a key of a group by its name
+   pure subroutine find_key(keys, group, name, topic, key, problem)
+      type(key_t), intent(in) :: keys(:)
+      character(len=*), intent(in) :: group
+      character(len=*), intent(in) :: name   !! Name of the key
+      character(len=*), intent(in) :: topic
+      integer, intent(out) :: key            !! Place in the registry
+      character(len=:), allocatable, intent(out) :: problem
+      integer :: open
+
+      problem = ""
+      key = findloc(keys%group == group .and. keys%name == name, .true., dim=1)
+      open = index(name//"(", "(")
+      if (key == 0 .and. any(keys%group == group .and. keys%name == name(:open - 1))) then
+         problem = "expected the whole list, "//name(:open - 1)//" = ..., got "//shown(name) &
+            & //"; write all of its items"
+      else if (key == 0) then
+         problem = "unknown key '"//shown(name)//"' in &"//group//": " &
+            & //near_key(name, group, keys, topic)
+      else if (keys(key)%kind == key_kind%later) then
+         problem = full_name(keys(key))//" is not yet there. It will be: " &
+            & //trim(keys(key)%meaning)//" Remove it"
+      end if
+   end subroutine find_key
+
+   !> Read the values of one key
+   pure subroutine read_value(scan, first, last, keys, key, item, place, value, problem)
+      type(deck_scan_t), intent(in) :: scan
+      !> First token of the values
+      integer, intent(in) :: first
+      !> Last token; one before the first if there are none
+      integer, intent(in) :: last
+      type(key_t), intent(in) :: keys(:)
+      !> Place of the key among them
+      integer, intent(in) :: key
+      !> The item of its list, if only that one is set; else 0
+      integer, intent(in) :: item
+      !> Where the key stands
+      type(deck_place_t), intent(in) :: place
+      !> Receives the value, and where it stands, or what is wrong with it
+      type(deck_value_t), intent(inout) :: value
+      !> Wrong type, wrong number of values, or a value out of range; empty if it will do
+      character(len=:), allocatable, intent(out) :: problem
+
+      call check_values(scan, first, last, keys, key, item, place, value%place, problem)
+      if (len(problem) > 0) return
+      select case (keys(key)%kind)
+      case (key_kind%numbers)
+         if (item > 0) then
+            call set_number(value, keys(key), item, number_at(scan, first), problem)
+         else
+            value%numbers = all_numbers(scan, first, last)
+         end if
+         value%place = place
+      case (key_kind%texts)
+         value%texts = all_texts(scan, first, last)
+         value%place = place
+      case (key_kind%number, key_kind%whole)
+         call set_number(value, keys(key), 0, number_at(scan, first), problem)
+         value%place = place_at(scan, first, place)
+      case default
+         call set_text(value, keys(key), token_text(scan, first), problem)
+         value%place = place_at(scan, first, place)
+      end select
+      value%given = len(problem) == 0
+   end subroutine read_value
+
+   !> Whether the values of a key are of its kind and not too many
+   pure subroutine check_values(scan, first, last, keys, key, item, place, at, problem)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: first, last
+      type(key_t), intent(in) :: keys(:)
+      integer, intent(in) :: key, item
+      type(deck_place_t), intent(in) :: place
+      !> Where the first is that will not do
+      type(deck_place_t), intent(out) :: at
+      !> Why it will not do; empty if all will
+      character(len=:), allocatable, intent(out) :: problem
+      character(len=:), allocatable :: found
+      logical :: takes_list
+      integer :: n, i
+
+      takes_list = item == 0 .and. any(keys(key)%kind == [key_kind%numbers, key_kind%texts])
+      n = nint(min(sum(real(scan%token(first:last)%count, wp)), 1.0e9_wp))
+      i = first
+      found = ""
+      if (n == 0) then
+         found = "nothing"
+      else if (.not. takes_list .and. n > 1) then
+         i = min(first + 1, last)
+         found = to_text(n)//" values"
+         if (i > first) found = found//hint(scan, i, pack(keys%name, &
+            & keys%group == keys(key)%group))
+      else if (takes_list .and. n > max_items) then
+         found = to_text(n)//" values (the most is "//to_text(max_items)//")"
+      else
+         do i = first, last
+            found = mismatch(scan, i, keys(key))
+            if (len(found) > 0) exit
+         end do
+      end if
+      at = place_at(scan, i, place)
+      problem = ""
+      if (len(found) > 0) problem = full_name(keys(key))//" must be "//wanted(keys(key)) &
+         & //", got "//found//or_leave_out(keys(key))
+   end subroutine check_values
+
+   !> What a token is instead of a value of a key
+   pure function mismatch(scan, i, key) result(found)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: i                !! Place of the token
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: found  !! What was found; empty if the token will do
+      logical :: fits, needs_quotes, is_word
+      integer :: whole
+      real(wp) :: number
+
+      is_word = scan%token(i)%kind == token_kind%word
+      fits = is_word
+      needs_quotes = .false.
+      found = shown(token_text(scan, i))
+      select case (key%kind)
+      case (key_kind%whole)
+         if (is_word) call read_integer(token_text(scan, i), whole, fits)
+      case (key_kind%number, key_kind%numbers)
+         if (is_word) call read_number(token_text(scan, i), number, fits)
+         if (fits) fits = len(number_problem(key, number)) == 0
+      case (key_kind%word, key_kind%text, key_kind%texts)
+         fits = scan%token(i)%kind == token_kind%quoted
+         needs_quotes = is_word
+         if (key%kind == key_kind%texts) fits = fits .and. &
+            len(token_text(scan, i)) <= word_length
+      end select
+      if (scan%token(i)%kind == token_kind%quoted) found = "'"//found//"'"
+      if (scan%token(i)%kind == token_kind%nothing) found = "nothing between two commas"
+      if (needs_quotes) found = found//" without quotes"
+      if (fits) found = ""
+   end function mismatch
+
+   !> Why there may be a second value where one was wanted
+   pure function hint(scan, i, names) result(text)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: i                  !! Place of the second value
+      character(len=*), intent(in) :: names(:)  !! Names of the keys of its group
+      character(len=:), allocatable :: text     !! A guess in parentheses; empty if there is none
+      character(len=:), allocatable :: name
+
+      text = ""
+      if (scan%token(i)%kind /= token_kind%word) return
+      name = lower_case(token_text(scan, i))
+      if (any(names == name)) then
+         text = " (is '=' missing after "//name//"?)"
+      else if (verify(name, "0123456789") == 0) then
+         text = " (decimals are written with a point)"
+      end if
+   end function hint
+
+   !> Where a token stands
+   pure type(deck_place_t) function place_at(scan, i, place)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: i  !! Place of the token; past the end if there is none
+      type(deck_place_t), intent(in) :: place
+
+      place_at = place
+      if (place%from_command .or. i > scan%n) return
+      if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) return
+      place_at%line = scan%token(i)%line
+   end function place_at
+
+   !> Number that a token stands for
+   pure real(wp) function number_at(scan, i)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: i  !! Place of a token that is a number
+      logical :: unused
+
+      call read_number(token_text(scan, i), number_at, unused)
+   end function number_at
+
+   !> Numbers that tokens stand for, repeat counts written out
+   pure function all_numbers(scan, first, last) result(numbers)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: first, last
+      real(wp), allocatable :: numbers(:)  !! The numbers: (n)
+      integer :: i, n
+
+      allocate (numbers(sum(scan%token(first:last)%count)))
+      n = 0
+      do i = first, last
+         numbers(n + 1:n + scan%token(i)%count) = number_at(scan, i)
+         n = n + scan%token(i)%count
+      end do
+   end function all_numbers
+
+   !> Words that tokens stand for, repeat counts written out
+   pure function all_texts(scan, first, last) result(texts)
+      type(deck_scan_t), intent(in) :: scan
+      integer, intent(in) :: first, last
+      character(len=word_length), allocatable :: texts(:)  !! The words: (n)
+      integer :: i, n
+
+      allocate (texts(sum(scan%token(first:last)%count)))
+      n = 0
+      do i = first, last
+         texts(n + 1:n + scan%token(i)%count) = token_text(scan, i)
+         n = n + scan%token(i)%count
+      end do
+   end function all_texts
+end module dda_key_entry

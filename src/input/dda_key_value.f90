@@ -1,0 +1,191 @@
+!> Values of the keys of a registry: their defaults, and what numbers and texts they take
+module dda_key_value
+   use dda_deck_key, only : in_range, key_kind, key_t, word_length
+   use dda_deck_token, only : shown
+   use dda_deck_words, only : full_name, near_word, or_leave_out, quoted_words, wanted
+   use dda_kinds, only : wp
+   use dda_text, only : lower_case, read_number, to_text
+   implicit none
+   private
+
+   public :: deck_place_t, deck_value_t, default_value, is_numeric, number_fits, number_problem
+   public :: set_number, set_text, text_problem
+
+   !> Where a value was written
+   type :: deck_place_t
+      !> Line of the deck, or number of the --set; 0 for a default
+      integer :: line = 0
+      !> Whether it came from a --set
+      logical :: from_command = .false.
+   end type deck_place_t
+
+   !> Value of one key
+   type :: deck_value_t
+      !> Whether the deck, a --set or a sweep gives it
+      logical :: given = .false.
+      !> Where
+      type(deck_place_t) :: place
+      !> Number, whole numbers too
+      real(wp) :: number = 0.0_wp
+      !> Flag
+      logical :: flag = .false.
+      !> Text, words too; unallocated where the key takes none
+      character(len=:), allocatable :: text
+      !> List of numbers; unallocated where the key takes none: (n)
+      real(wp), allocatable :: numbers(:)
+      !> List of words; unallocated where the key takes none: (n)
+      character(len=word_length), allocatable :: texts(:)
+   end type deck_value_t
+
+contains
+
+   !> The default of a key
+   pure type(deck_value_t) function default_value(key) result(value)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: default
+      logical :: ok
+
+      default = trim(key%default)
+      select case (key%kind)
+      case (key_kind%number, key_kind%whole)
+         call read_number(default, value%number, ok)
+      case (key_kind%word, key_kind%text)
+         value%text = ""
+         if (len(default) > 2) value%text = default(2:len(default) - 1)
+      case (key_kind%flag)
+         value%flag = default == ".true."
+      case (key_kind%numbers)
+         allocate (value%numbers(0))
+      case (key_kind%texts)
+         allocate (value%texts(0))
+      end select
+   end function default_value
+
+   !> Give a key, or one item of its list, a number
+   pure subroutine set_number(value, key, item, number, problem)
+      type(deck_value_t), intent(inout) :: value  !! Left as it is if there is a problem
+      type(key_t), intent(in) :: key
+      integer, intent(in) :: item                 !! Item of a list; 0 for a single number
+      real(wp), intent(in) :: number              !! The number in the unit of the registry
+      !> Why it cannot be, and what to do; empty if it can
+      character(len=:), allocatable, intent(out) :: problem
+      integer :: n
+
+      problem = ""
+      n = 0
+      if (allocated(value%numbers)) n = size(value%numbers)
+      if (item > n) then
+         problem = full_name(key)//" has no item "//to_text(item)//": its list has " &
+            & //to_text(n)//"; write it in &"//trim(key%group)
+      else if (.not. number_fits(key, number)) then
+         problem = number_problem(key, number)//or_leave_out(key)
+      else if (item > 0) then
+         value%numbers(item) = number
+         value%given = .true.
+      else
+         value%number = number
+         value%given = .true.
+      end if
+   end subroutine set_number
+
+   !> Give a key a text, a word or the text of a flag
+   pure subroutine set_text(value, key, text, problem)
+      type(deck_value_t), intent(inout) :: value  !! Left as it is if there is a problem
+      type(key_t), intent(in) :: key
+      character(len=*), intent(in) :: text        !! The value, without quotes
+      !> Why it cannot be, and what to do; empty if it can
+      character(len=:), allocatable, intent(out) :: problem
+      logical :: unused
+
+      problem = text_problem(key, text)
+      if (len(problem) > 0) problem = problem//or_leave_out(key)
+      if (len(problem) > 0) return
+      value%given = .true.
+      select case (key%kind)
+      case (key_kind%flag)
+         call read_flag(text, value%flag, unused)
+      case (key_kind%word)
+         value%text = lower_case(trim(text))
+      case default
+         value%text = trim(text)
+      end select
+   end subroutine set_text
+
+   !> Why a number cannot be the value of a key
+   pure function number_problem(key, number) result(problem)
+      type(key_t), intent(in) :: key
+      real(wp), intent(in) :: number  !! The number in the unit of the registry
+      !> What was wanted and what was found; empty if the number will do
+      character(len=:), allocatable :: problem
+
+      problem = ""
+      if (number_fits(key, number)) return
+      problem = full_name(key)//" must be "//wanted(key)//", got "//to_text(number)
+   end function number_problem
+
+   !> Whether a number can be the value of a key
+   pure logical function number_fits(key, number)
+      type(key_t), intent(in) :: key
+      real(wp), intent(in) :: number
+
+      number_fits = is_numeric(key)
+      if (number_fits) number_fits = in_range(key, number)
+   end function number_fits
+
+   !> Why a text cannot be the value of a key
+   pure function text_problem(key, text) result(problem)
+      type(key_t), intent(in) :: key
+      character(len=*), intent(in) :: text
+      !> What was wanted and what was found; empty if the text will do
+      character(len=:), allocatable :: problem
+      logical :: fits, flag
+
+      problem = ""
+      select case (key%kind)
+      case (key_kind%word)
+         fits = has_word(key%words, text)
+         if (has_word(key%later, text)) problem = full_name(key)//" = "// &
+            quoted_words(lower_case(trim(text)))//" is not yet there: this version takes "// &
+            quoted_words(key%words)
+      case (key_kind%flag)
+         call read_flag(text, flag, fits)
+      case default
+         fits = key%kind == key_kind%text
+      end select
+      if (.not. fits .and. len(problem) == 0) problem = full_name(key)//" must be "// &
+         wanted(key)//", got '"//shown(trim(text))//"'"//near_word(key, text)
+   end function text_problem
+
+   !> Whether a list of words holds a word, whatever its case
+   pure logical function has_word(words, text)
+      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=*), intent(in) :: text   !! The word
+
+      has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
+      if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
+   end function has_word
+
+   !> Read .true., .false., T, F and what is like them
+   pure subroutine read_flag(text, flag, ok)
+      character(len=*), intent(in) :: text
+      logical, intent(inout) :: flag  !! The flag; left as it was if the text is none
+      logical, intent(out) :: ok      !! Whether the text is a flag
+
+      ok = .true.
+      select case (lower_case(text))
+      case (".true.", "true", "t", ".t.")
+         flag = .true.
+      case (".false.", "false", "f", ".f.")
+         flag = .false.
+      case default
+         ok = .false.
+      end select
+   end subroutine read_flag
+
+   !> Whether a key takes numbers
+   pure logical function is_numeric(key)
+      type(key_t), intent(in) :: key
+
+      is_numeric = any(key%kind == [key_kind%number, key_kind%whole, key_kind%numbers])
+   end function is_numeric
+end module dda_key_value
