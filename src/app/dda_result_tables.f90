@@ -10,8 +10,8 @@ module dda_result_tables
    use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
-   use dda_table_file, only : add_sums, append_line, close_table, length_of, line_sum, &
-      & open_table, remove_file, sum_of, sync_table, table_file_t
+   use dda_table_file, only : add_sums, append_line, close_table, field_number, length_of, &
+      & line_sum, open_table, remove_file, sum_of, sync_table, table_file_t, without_field
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, bytes_of, growing_text_t, lines_of
@@ -74,6 +74,8 @@ module dda_result_tables
       character(len=:), allocatable :: folder
       !> The tables, by their places
       type(result_table_t) :: at(13)
+      !> Number of the column of results.csv that no two runs agree in
+      integer :: seconds = 0
       !> Bytes of all tables but results.csv and the sizes after the last case
       integer(int64) :: length = 0
       !> Check sum of their lines
@@ -120,6 +122,7 @@ contains
       tables%has_vtu = deck%value(output_vtu)%flag
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
          & deck%value(output_condition)%flag))
+      tables%seconds = field_number(tables%at(table%results)%header, "seconds")
       call name_table(tables%at(table%joints), "/joints.csv", joints_header)
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
          & //parenthesis(left_out(deck)))
@@ -322,8 +325,8 @@ contains
       character(len=*), intent(in) :: remark         !! What goes to the log
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
-      character(len=:), allocatable :: log
-      integer(int64) :: length, lines_sum
+      character(len=:), allocatable :: log, results
+      integer(int64) :: length, lines_sum, own
       integer :: j
 
       if (tables%at(table%joints)%wanted) then
@@ -342,12 +345,14 @@ contains
       tables%waiting_sum = add_sums(tables%waiting_sum, line_sum(log))
       length = common_length(tables) + bytes_of(tables%waiting(1))
       lines_sum = add_sums(common_sum(tables), tables%waiting_sum)
+      results = results_line(row)
+      own = add_sums(lines_sum, line_sum(without_field(results, tables%seconds)))
       call add_line(tables%waiting(2), to_text(row%number)//"," &
          & //to_text(real(length - tables%length, wp))//"," &
-         & //to_text(real(add_sums(lines_sum, -tables%sum), wp)))
+         & //to_text(real(add_sums(own, -tables%sum), wp)))
       tables%length = length
       tables%sum = lines_sum
-      call add_line(tables%waiting(3), results_line(row))
+      call add_line(tables%waiting(3), results)
    end subroutine write_case
 
    !> Write the rows that wait, last those of results.csv, so that a case with a row is whole

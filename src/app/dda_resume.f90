@@ -1,15 +1,16 @@
 !> dda run --resume: what an earlier run of the same deck has finished
 !>
 !> A case is finished where its row in results.csv is whole, for that row is written last, and where
-!> its rows in all other tables have the bytes and the check sum that sizes.record tells. Everything
-!> else of that run, rows cut off by a kill among them, is left out of the tables.
+!> its rows have the bytes and the check sum that sizes.record tells. Everything else of that run,
+!> rows cut off by a kill among them, is left out of the tables.
 submodule (dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_disk_record, only : trusted_length
    use dda_kinds, only : wp
    use dda_result_tables, only : common_length, common_sum, result_table_t, sync_tables, table
-   use dda_table_file, only : add_sums, close_lines, field, keep_line, line_sum, n_fields, &
-      & next_line, open_lines, open_part, settle_part, table_lines_t
+   use dda_table_file, only : add_sums, close_lines, field, field_number, keep_line, line_sum, &
+      & n_fields, next_line, open_lines, open_part, settle_part, table_lines_t, &
+      & without_field
    use dda_text, only : read_integer, read_number
    use dda_text_file, only : read_text_file
    implicit none
@@ -43,8 +44,7 @@ contains
       call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, finished)
    end procedure find_finished
 
-   !> Whether each case has the bytes and lines that were written down of it in the tables beside
-   !> results.csv
+   !> Whether each case has the bytes and the check sum that were written down of it
    subroutine compare_sizes(tables, whole)
       type(result_tables_t), intent(in) :: tables
       logical, intent(out) :: whole(:)  !! Whether it has: (n)
@@ -58,8 +58,7 @@ contains
 
       bytes = 0
       do i = 1, size(tables%at)
-         if (tables%at(i)%wanted .and. i /= table%results .and. i /= table%sizes) &
-            & call add_bytes(tables%at(i), bytes)
+         if (tables%at(i)%wanted .and. i /= table%sizes) call add_bytes(tables%at(i), bytes)
       end do
       whole = .false.
       layout = layout_of(tables%at(table%sizes)%header)
@@ -77,7 +76,8 @@ contains
       call close_lines(lines)
    end subroutine compare_sizes
 
-   !> Add the bytes that each case has in a table, and the check sums of its lines
+   !> Add the bytes that each case has in a table, and the check sums of its lines; of results.csv
+   !> these sums without the seconds
    subroutine add_bytes(this, bytes)
       type(result_table_t), intent(in) :: this
       integer(int64), intent(inout) :: bytes(:, :)  !! Bytes and sum: (2, n)
@@ -94,7 +94,11 @@ contains
          if (.not. found) exit
          number = case_of(layout, line, size(bytes, 2))
          if (number == 0) cycle
-         bytes(1, number) = bytes(1, number) + len(line) + 1
+         if (layout%seconds > 0) then
+            line = without_field(line, layout%seconds)
+         else
+            bytes(1, number) = bytes(1, number) + len(line) + 1
+         end if
          bytes(2, number) = add_sums(bytes(2, number), line_sum(line))
       end do
       call close_lines(lines)
@@ -113,7 +117,7 @@ contains
       logical :: found
 
       layout = layout_of(this%header)
-      verdict = column(this%header, "verdict")
+      verdict = field_number(this%header, "verdict")
       call open_lines(this%file, lines, length)
       do
          call next_line(lines, line, found)
@@ -178,9 +182,9 @@ contains
 
       if (index(header, " ") > 0) return
       layout%columns = n_fields(header)
-      layout%case = column(header, "case")
-      layout%seconds = column(header, "seconds")
-      layout%unknowns = column(header, "unknowns")
+      layout%case = field_number(header, "case")
+      layout%seconds = field_number(header, "seconds")
+      layout%unknowns = field_number(header, "unknowns")
    end function layout_of
 
    !> Case that a line belongs to; 0 for one that is no whole row of the table
@@ -204,15 +208,5 @@ contains
       if (ok) ok = case_of >= 1 .and. case_of <= total
       if (.not. ok) case_of = 0
    end function case_of
-
-   !> Place of a column, 0 if there is none of that name
-   pure integer function column(header, name)
-      character(len=*), intent(in) :: header
-      character(len=*), intent(in) :: name  !! Name of the column
-
-      do column = n_fields(header), 1, -1
-         if (field(header, column) == name) return
-      end do
-   end function column
 
 end submodule dda_resume

@@ -16,6 +16,7 @@ module dda_table_file
    public :: line_sum, add_sums, table_file_t, open_table, append_line, close_table, remove_file
    public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
    public :: sum_of, table_lines_t, open_lines, next_line, close_lines, n_fields, field
+   public :: field_number, without_field
 
    !> Sums are counted modulo 2 to this power
    integer, parameter :: bits = 32
@@ -306,27 +307,58 @@ contains
       end do
    end function n_fields
 
-   !> One field of a line as it stands there; empty if there is none of that number
+   !> Text of a field; empty if there is none of that number
    pure function field(line, number) result(text)
       character(len=*), intent(in) :: line
       integer, intent(in) :: number  !! Which, from 1
       character(len=:), allocatable :: text
+      integer :: ends(2)
+
+      ends = field_ends(line, number)
+      text = line(ends(1):ends(2))
+   end function field
+
+   !> A line without what one of its fields holds; the whole line if there is none of that number
+   pure function without_field(line, number) result(text)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: number  !! Which, from 1
+      character(len=:), allocatable :: text
+      integer :: ends(2)
+
+      ends = field_ends(line, number)
+      text = line(:ends(1) - 1)//line(ends(2) + 1:)
+   end function without_field
+
+   !> First and last character of a field; the last before the first if it is empty or not there
+   pure function field_ends(line, number) result(ends)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: number  !! Which, from 1
+      integer :: ends(2)
       logical :: quoted
-      integer :: i, n, start
+      integer :: i, n
 
       quoted = .false.
       n = 1
-      start = 1
-      text = ""
+      ends = [1, len(line)]
       do i = 1, len(line)
          if (line(i:i) == """") quoted = .not. quoted
          if (line(i:i) /= "," .or. quoted) cycle
-         if (n == number) text = line(start:i - 1)
+         if (n == number) ends(2) = i - 1
          if (n == number) return
          n = n + 1
-         start = i + 1
+         ends(1) = i + 1
       end do
-      if (n == number) text = line(start:)
-   end function field
+      if (n /= number) ends = [1, 0]
+   end function field_ends
+
+   !> Number of the field that holds a name, 0 if there is none
+   pure integer function field_number(header, name) result(number)
+      character(len=*), intent(in) :: header
+      character(len=*), intent(in) :: name  !! Name of the column
+
+      do number = n_fields(header), 1, -1
+         if (field(header, number) == name) return
+      end do
+   end function field_number
 
 end module dda_table_file

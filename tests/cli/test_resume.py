@@ -140,9 +140,10 @@ def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
         lambda line: line.rpartition(",")[0] + "\n",
         lambda line: line.rsplit(",", 11)[0] + 11 * "," + "\n",
         lambda line: line.rsplit(",", 12)[0] + ",,3" + 10 * "," + "\n",
+        lambda line: line.replace(",0.", ",1.", 1),
         lambda line: "",
     ],
-    ids=["twice", "zeros", "beyond", "negative", "short", "no unknowns", "no seconds", "gone"],
+    ids=["twice", "zeros", "beyond", "negative", "short", "no unknowns", "no seconds", "a digit", "gone"],
 )
 def test_damaged_row_is_not_taken_as_good(tmp_path: Path, damage) -> None:
     out = write_deck(tmp_path)

@@ -322,6 +322,16 @@ def test_tables_that_were_written_again_are_told(tmp_path: Path, capsys: pytest.
     assert main(["verify", str(folder), "--ignore-sums"]) == 0
     table.write_text(text)
     assert main(["verify", str(folder)]) == 0
+    # seconds are those of one run; any other cell of results.csv is the program's
+    table = folder / "results.csv"
+    text, header = table.read_text(), table.read_text().partition("\n")[0].split(",")
+    for name, status in (("seconds", 0), ("steps", 1)):
+        first, last = text.rstrip("\n").split("\n")
+        cells = last.split(",")
+        cells[header.index(name)] = "77"
+        table.write_text(f"{first}\n{','.join(cells)}\n")
+        assert main(["verify", str(folder), "--quiet"]) == status
+    table.write_text(text)
     (folder / "sizes.record").unlink()
     assert main(["verify", str(folder)]) == 2
     assert "--ignore-sums" in capsys.readouterr().err

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import zlib
 from pathlib import Path
 
 from voussoir.verify.deck import VerifyError
 
-#: Tables whose lines are in the sum, where a run leaves them
+#: Tables whose lines are in the sum beside those of results.csv, where a run leaves them
 SUMMED = (
     "joints.csv", "log.txt", "frames.csv", "frame_joints.csv", "points.csv", "energy.csv", "blocks.csv",
     "proof_forces.csv", "proof_motion.csv", "bars.csv", "reactions.csv",
 )
+
+#: A comma that parts two fields: an even number of quotes is behind it
+_COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')
 
 
 def told_sums(folder: Path) -> dict[int, int]:
@@ -28,7 +32,7 @@ def told_sums(folder: Path) -> dict[int, int]:
 
 def sums_of(folder: Path) -> dict[int, int]:
     """Sums of the tables as they are: CRC-32 of each line, added up for each case; lines of no case under 0."""
-    sums: dict[int, int] = {}
+    sums = _sums_of_results(folder / "results.csv")
     for path in [folder / name for name in SUMMED]:
         if not path.exists():
             continue
@@ -39,4 +43,16 @@ def sums_of(folder: Path) -> dict[int, int]:
                 word = line.split(blank, 1)[0]
                 case = int(word) if word.isdigit() else 0
                 sums[case] = (sums.get(case, 0) + zlib.crc32(line.rstrip(b"\n"))) % 2**32
+    return sums
+
+
+def _sums_of_results(table: Path) -> dict[int, int]:
+    """Sums of the rows of results.csv, without their seconds: no two runs agree in these."""
+    header, *rows = (_COMMA.split(line) for line in table.read_text(encoding="utf-8").rstrip("\n").split("\n"))
+    case, seconds = header.index("case"), header.index("seconds")
+    sums: dict[int, int] = {}
+    for row in rows:
+        number = int(row[case]) if len(row) > case and row[case].isdigit() else 0
+        row[seconds:seconds + 1] = [""] * (len(row) > seconds)
+        sums[number] = (sums.get(number, 0) + zlib.crc32(",".join(row).encode())) % 2**32
     return sums
