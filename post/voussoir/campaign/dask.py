@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from voussoir.campaign import case_set, part
+from voussoir.campaign import part
 from voussoir.campaign.part import Part, run_part
 from voussoir.campaign.share import Engine, Outcome
 from voussoir.dda_program import DdaError
@@ -34,8 +34,7 @@ def dask_engine(address: str) -> tuple[Engine, int]:
             f"({error}); start one with 'dask scheduler', or correct the address"
         ) from error
     # by value: the workers need not have this package
-    for module in (case_set, part):
-        cloudpickle.register_pickle_by_value(module)
+    cloudpickle.register_pickle_by_value(part)
 
     def task(part: dict) -> Outcome:
         return run_part(Part(**part))

@@ -5,23 +5,14 @@ from __future__ import annotations
 import hashlib
 import shutil
 import sys
-import time
-from array import array
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from voussoir.campaign.case_set import CaseSet
 from voussoir.campaign.merge import replace
-from voussoir.campaign.part import Part, content_of, finished_by, finished_in, run_part
+from voussoir.campaign.part import Part, run_part
 from voussoir.dda_program import Asked, DdaError, ask
-
-#: Most cases of a part: its command line stays short, and little is done twice after a kill
-LARGEST_PART = 10000
-#: Parts a worker, so that all end at about the same time
-PARTS_A_WORKER = 8
 
 #: Folders that this process has, with their open lock files
 _LOCKS: dict[Path, BinaryIO] = {}
@@ -108,6 +99,11 @@ def changed_keys(old: str, new: str) -> str:
     return ", ".join(sorted(key for key in {*one, *other} if one.get(key) != other.get(key)))
 
 
+def content_of(file: Path) -> bytes:
+    """Bytes of a file; none if it is not there."""
+    return file.read_bytes() if file.is_file() else b""
+
+
 def lock(out: Path, shared: bool) -> None:
     """Take a folder until this process ends, however it ends; shares of a job array take it together.
 
@@ -138,29 +134,32 @@ def unlock(out: Path) -> None:
         _LOCKS.pop(out).close()
 
 
-def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> CaseSet:
-    """Cases whose rows are whole, in the folder of the campaign or in a part; `problems` receives what is damaged."""
-    told = campaign.asked.record, campaign.asked.headers, problems
-    found = CaseSet(case for case in finished_by(campaign.out, *told) if case in cases)
-    rest = [case for case in cases if case not in found] if found else cases
-    for case in finished_in(campaign.parts, rest, *told):
-        found.add(case)
-    return found
-
-
-def split(
-    campaign: Campaign, cases: range, workers: int, jobs: int = 1, problems: list[str] | None = None
-) -> list[Part]:
-    """Cut cases that are not finished into parts of equal size, in the order of their cases."""
-    done = finished(campaign, cases, problems)
-    rest = array("q", (case for case in cases if case not in done)) if done else cases
-    size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
+def parts_of(campaign: Campaign, cases: range, jobs: int, largest: int, shown: bool = False) -> list[Part]:
+    """Parts of which some of these cases are: those that were begun, and new ones, at most so large, of the rest."""
+    spans = begun(campaign)
+    at, new = cases.start, []
+    for first, last in [*sorted(spans), (cases.stop, cases.stop)]:
+        new += [(low, min(low + largest, first, cases.stop) - 1) for low in range(at, min(first, cases.stop), largest)]
+        at = max(at, last + 1)
+    mine = [span for span in spans if span[0] < cases.stop and span[1] >= cases.start]
     return [
         Part(
-            campaign.dda, campaign.deck, campaign.settings, campaign.parts, rest[start : start + size], jobs,
-            campaign.asked.record, campaign.asked.headers)
-        for start in range(0, len(rest), size)
+            campaign.dda, campaign.deck, campaign.settings, spans.get(span, campaign.parts / f"{span[0]}-{span[1]}"),
+            *span, jobs, campaign.asked.record, shown)
+        for span in sorted([*mine, *new])
     ]
+
+
+def begun(campaign: Campaign) -> dict[tuple[int, int], Path]:
+    """Folders of parts by their first and last cases; tables that were merged already are a part."""
+    found = {}
+    for folder in campaign.parts.iterdir() if campaign.parts.is_dir() else ():
+        first, _, last = folder.name.partition("-")
+        if first.isdecimal() and last.isdecimal() and 0 < int(first) <= int(last) <= campaign.total:
+            found[int(first), int(last)] = folder
+    if not found and content_of(campaign.out / "deck.record") == campaign.asked.record.encode():
+        found[1, campaign.total] = campaign.out
+    return found
 
 
 def share(total: int, index: int, of: int) -> range:
@@ -168,34 +167,20 @@ def share(total: int, index: int, of: int) -> range:
     return range((index - 1) * total // of + 1, index * total // of + 1)
 
 
-def local_engine(workers: int) -> Engine:
-    """Processes on this machine."""
-
-    def run(parts: list[Part]) -> Iterator[Outcome]:
-        with ThreadPoolExecutor(workers) as pool:
-            futures = [pool.submit(run_part, part) for part in parts]
-            try:
-                for future in as_completed(futures):
-                    yield future.result()
-            finally:
-                pool.shutdown(cancel_futures=True)
-
-    return run
+def local_engine(parts: list[Part]) -> Iterator[Outcome]:
+    """One part after the other on this machine; the program computes several cases at the same time."""
+    return map(run_part, parts)
 
 
-def run_parts(parts: list[Part], engine: Engine, shown: bool) -> Outcome:
-    """Run all parts and tell on standard error how far they are: the worst status, 4 before 2, and its message."""
+def run_parts(parts: list[Part], engine: Engine, shown: bool = False) -> Outcome:
+    """Run all parts and tell on standard error how many have ended: the worst status, 4 before 2, and its message."""
     worst, message = 0, ""
-    start = time.monotonic()
     for done, (status, text) in enumerate(engine(parts), start=1):
+        if shown:
+            sys.stderr.write(f"\rpart {done} of {len(parts)} " + "\n" * (done == len(parts)))
+            sys.stderr.flush()
         if status == 4 or status == 2 and worst != 4:
             worst, message = status, text
-        if shown and done < len(parts):
-            left = (time.monotonic() - start) / done * (len(parts) - done)
-            sys.stderr.write(f"\rpart {done} of {len(parts)}, about {left:.0f} s left ")
-            sys.stderr.flush()
         if worst:
             break
-    if shown:
-        sys.stderr.write("\r" + 60 * " " + "\r")
     return worst, message

@@ -8,15 +8,20 @@ import shutil
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from voussoir.campaign.dask import dask_engine
-from voussoir.campaign.merge import Summary, merge, merged
+from voussoir.campaign.merge import Summary, merge, merged, owners
 from voussoir.campaign.parquet import write_parquet
-from voussoir.campaign.part import finished_by
-from voussoir.campaign.share import Campaign, finished, local_engine, open_campaign, run_parts, share, split, unlock
+from voussoir.campaign.share import (
+    Campaign, begun, local_engine, open_campaign, parts_of, run_parts, share, unlock,
+)
 from voussoir.command.options import add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.extras import load
 
+#: Most cases of a task on a cluster, and tasks a thread: all are to end at about the same time
+LARGEST_TASK, TASKS_A_THREAD = 10000, 8
 #: Of several exit statuses the first one counts
 _WORST_FIRST = (4, 2, 3, 0)
 
@@ -66,7 +71,11 @@ def run(arguments: argparse.Namespace) -> int:
     shared = arguments.index is not None
     try:
         campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared)
-        return _compute(campaign, arguments, share(campaign.total, index, of))
+        cases = share(campaign.total, index, of)
+        status, message = (0, "") if arguments.merge else _compute(campaign, arguments, cases)
+        if message:
+            sys.stderr.write(message + "\n")
+        return min((status, _finish(campaign, arguments, cases)), key=_WORST_FIRST.index)
     except OSError as error:
         raise DdaError(
             f"{error.filename or out}:1: error: files cannot be written: {error.strerror}; what is finished stays safe "
@@ -75,55 +84,36 @@ def run(arguments: argparse.Namespace) -> int:
         unlock(out)
 
 
-def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
-    """Compute what is not finished, and merge."""
-    asked = campaign.asked
-    status, message, problems = 0, "", []
-    before = finished_by(campaign.out, asked.record, asked.headers, problems)
-    if len(before) == campaign.total:
-        shutil.rmtree(campaign.parts, ignore_errors=True)
-        return _report(campaign, arguments, merged(campaign.out, before))
-    if not arguments.merge:
-        workers, engine = arguments.workers, local_engine(arguments.workers)
-        if arguments.scheduler:
-            engine, workers = dask_engine(arguments.scheduler)
-        parts = split(campaign, cases, workers, problems=problems)
-        _warn(problems, arguments)
-        found = len(cases) - sum(len(part.cases) for part in parts)
-        if found and not arguments.quiet:
-            print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
-        shown = sys.stderr.isatty() and not arguments.quiet
-        status, message = run_parts(parts, engine, shown)
-    else:
-        finished(campaign, cases, problems)
-        _warn(problems, arguments)
-    if message:
-        sys.stderr.write(message + "\n")
-    return min((status, _finish(campaign, arguments)), key=_WORST_FIRST.index)
+def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> tuple[int, str]:
+    """Compute what is not finished: worst status, and its message."""
+    done = owners([*begun(campaign).values()], campaign.total)
+    found = int(np.count_nonzero(done[cases.start:cases.stop] >= 0))
+    if found and not arguments.quiet:
+        print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
+    shown = sys.stderr.isatty() and not arguments.quiet
+    if arguments.scheduler:
+        engine, threads = dask_engine(arguments.scheduler)
+        largest = max(1, min(LARGEST_TASK, -(-len(cases) // (TASKS_A_THREAD * threads))))
+        return run_parts(parts_of(campaign, cases, 1, largest), engine, shown)
+    parts = parts_of(campaign, cases, arguments.workers, max(1, len(cases)), shown)
+    if any(part.folder == campaign.out for part in parts):  # the program takes the folder itself
+        unlock(campaign.out)
+    return run_parts(parts, local_engine)
 
 
-def _warn(problems: list[str], arguments: argparse.Namespace) -> None:
-    """Say what is damaged, each thing once."""
-    if not arguments.quiet:
-        sys.stderr.writelines(f"{problem}\n" for problem in dict.fromkeys(problems))
-
-
-def _finish(campaign: Campaign, arguments: argparse.Namespace) -> int:
+def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
     """Merge, unless other shares are still to come."""
-    if arguments.index is not None:
-        done = finished(campaign, range(1, campaign.total + 1))
-        if len(done) < campaign.total:
-            if not arguments.quiet:
-                left = campaign.total - len(done)
-                print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
-            cases = share(campaign.total, arguments.index, arguments.of)
-            return 0 if all(case in done for case in cases) else 3
-    asked = campaign.asked
-    merge(campaign.parts, campaign.out, asked.record, asked.headers)
-    summary = merged(campaign.out, finished_by(campaign.out, asked.record, asked.headers))
-    if summary.cases == campaign.total and arguments.index is None:
+    parts = [folder for _, folder in sorted(begun(campaign).items())]
+    done = owners(parts, campaign.total) >= 0
+    if arguments.index is not None and not done[1:].all():
+        if not arguments.quiet:
+            left = campaign.total - int(np.count_nonzero(done))
+            print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
+        return 0 if done[cases.start:cases.stop].all() else 3
+    merge(parts, campaign.out, campaign.total, campaign.asked.record, campaign.asked.headers)
+    if done[1:].all() and arguments.index is None:
         shutil.rmtree(campaign.parts, ignore_errors=True)
-    return _report(campaign, arguments, summary)
+    return _report(campaign, arguments, merged(campaign.out))
 
 
 def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary) -> int:
