@@ -32,9 +32,12 @@ module dda_load_stations
       real(wp), allocatable :: time(:)
    end type load_stations_t
 
-   !> Longest leg of gravity that tilts: its chord is off by the square of it. Where nothing but
-   !> weight acts what the chord lacks of it is given back, beside other loads it is not [rad]
-   real(wp), parameter :: longest_tilt = 4.4e-3_wp, longest_beside = 8.0e-4_wp
+   !> Legs of gravity that tilts, all but the last one, whatever angle is asked for: ways to
+   !> two angles are one way. A chord is off by the square of it. Where nothing but weight acts what
+   !> the chord lacks of it is given back, beside other loads it is not [rad]
+   real(wp), parameter :: tilt_leg = 4.4e-3_wp, leg_beside = 8.0e-4_wp
+   !> What is left of an angle below this share of a leg is no leg
+   real(wp), parameter :: shortest_leg = 1.0e-9_wp
    !> Loads below this share of those that they are left of are rounding
    real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
@@ -55,14 +58,15 @@ contains
       !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
       logical, intent(in) :: upright
       real(wp), allocatable :: time(:)
-      integer :: at, n_led, n_live, n_push, n_tilt
+      real(wp) :: leg
+      integer :: at, i, n_led, n_live, n_push, n_tilt
       logical :: later
 
       later = settings%from > 0.0_wp
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
-      n_tilt = merge(ceiling(abs(settings%tilt) &
-         & /merge(longest_tilt, longest_beside, only_weight(settings))), 0, upright)
+      leg = merge(tilt_leg, leg_beside, only_weight(settings))
+      n_tilt = merge(ceiling(abs(settings%tilt)/leg - shortest_leg), 0, upright)
       n_push = merge(1, 0, abs(settings%push) > 0.0_wp .and. .not. settings%live_push)
       n_live = merge(1, 0, bears_live_load(settings))
       if (later) then
@@ -80,23 +84,13 @@ contains
       stations%time(at + 1:) = time
       if (later) return
       stations%led(0) = 0.0_wp
-      if (n_tilt > 0) stations%tilt(:n_led) = 0.0_wp
-      stations%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
+      if (n_tilt > 0) stations%tilt(:n_led + n_tilt - 1) = sign(leg, settings%tilt) &
+         & *[(real(max(0, i - n_led), wp), i=0, n_led + n_tilt - 1)]
       stations%push(:n_led + n_tilt) = 0.0_wp
       stations%live(:at - n_live) = 0.0_wp
       if (n_live == 0) stations%live = 1.0_wp
       if (settings%live_push) stations%push = stations%live*full_push(settings)
    end function load_stations
-
-   !> Shares of a path in equal legs; all of it where there is none
-   pure function shares(n) result(share)
-      integer, intent(in) :: n  !! Number of legs
-      real(wp) :: share(0:n)    !! The shares: (0:n)
-      integer :: i
-
-      share = [(real(i, wp)/real(max(n, 1), wp), i=0, n)]
-      if (n == 0) share = 1.0_wp
-   end function shares
 
    !> Loads on the blocks and displacements of their supports at a station
    pure subroutine loads_at(stations, station, settings, system, graph, load, opening)
