@@ -113,7 +113,7 @@ contains
             farthest = point%factor
             idle = 0
          end if
-         call judge(path, goal, turn, idle, point)
+         call judge(path, goal, turn, idle, springs%n_factorisation, point)
          if (point%state /= interior_state%running) exit
          point%n_turn = point%n_turn + 1
          call predict(rays, path, springs, point, turn)
@@ -139,11 +139,12 @@ contains
    end function worst
 
    !> Whether the iteration ends here
-   pure subroutine judge(path, goal, turn, idle, point)
+   pure subroutine judge(path, goal, turn, idle, n_factorisation, point)
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(turn_t), intent(in) :: turn
-      integer, intent(in) :: idle  !! Turns without progress
+      integer, intent(in) :: idle             !! Turns without progress
+      integer, intent(in) :: n_factorisation  !! Factorisations so far
       type(interior_point_t), intent(inout) :: point
       real(wp) :: live
 
@@ -152,7 +153,7 @@ contains
       if (point%imbalance < certain .and. point%factor >= goal%target) then
          point%state = interior_state%reached
       else if (point%violation < certain .and. point%upper + point%margin < goal%target &
-         & .and. goal%target < no_limit .and. .not. goal%to_limit) then
+         & .and. goal%target < no_limit .and. n_factorisation >= goal%to_limit) then
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then
          point%state = interior_state%optimal

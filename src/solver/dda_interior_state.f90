@@ -53,8 +53,9 @@ module dda_interior_state
       real(wp) :: tolerance = 1.0e-9_wp
       !> Factor of which it is enough to know whether it can be reached
       real(wp) :: target = no_limit
-      !> Whether the largest factor is asked for where it cannot
-      logical :: to_limit = .false.
+      !> Factorisations within which the largest factor is looked for where it cannot; then, what
+      !> proves that is enough
+      integer :: to_limit = 0
       !> A factor for which the live load is so many times as large as the dead load, or one, is
       !> beyond bounds
       real(wp) :: ceiling = 1.0e9_wp

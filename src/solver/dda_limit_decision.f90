@@ -148,7 +148,7 @@ contains
 
    !> Whether joints that do not crush can carry a load that grows out of another one. What falls
    !> does so in the mechanism in which it falls first, with the forces of then
-   pure subroutine decide_on_way(graph, dead, load, tolerance, decision)
+   pure subroutine decide_on_way(graph, dead, load, tolerance, enough, decision)
       type(joint_graph_t), intent(in) :: graph
       !> The load out of which it grows: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)
@@ -156,6 +156,8 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> Relative gap of the two proofs of the load at which it falls
       real(wp), intent(in) :: tolerance
+      !> Factorisations after which any mechanism by which it falls is enough
+      integer, intent(in) :: enough
       !> The decision; undecided where the dead load does not stand, too
       type(load_decision_t), intent(out) :: decision
       type(joint_rays_t) :: rays
@@ -172,7 +174,7 @@ contains
       call go_on_to_load(rays, start, resolution, springs, point)
       if (state_at_end(point) == load_state%stands) then
          call scale_load(rays, load, unit_of_force(load), finish)
-         call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=.true.)
+         call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=enough)
          call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
          call keep_velocities(rays, point%v, decision%velocity)
          call conclude(graph, load, point, decision)
@@ -254,8 +256,9 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       !> Forces inside their bounds in, where the path ends out; the load is at factor one
       type(interior_point_t), intent(inout) :: point
-      !> Whether a path that does not reach the load is followed to its largest factor
-      logical, intent(in), optional :: to_limit
+      !> Factorisations within which the largest factor of a path is looked for that does not reach
+      !> the load: none if absent
+      integer, intent(in), optional :: to_limit
       type(interior_goal_t) :: goal
       type(load_path_t) :: path
       real(wp) :: start(3, 0:rays%n_block), before(size(point%x, 1), size(point%x, 2))

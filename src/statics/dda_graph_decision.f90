@@ -30,6 +30,9 @@ module dda_graph_decision
    real(wp), parameter :: limit_gap = 1.0e-9_wp
    !> Factorisations that find how joints slide in a fall, and all that the fall of live loads takes
    integer, parameter :: few = 5, most = 30
+   !> Factorisations after which it is not asked in which mechanism live loads let blocks fall
+   !> first; a turn may take three
+   integer, parameter :: enough = most - few - 2
 
 contains
 
@@ -156,7 +159,7 @@ contains
       on_way = .not. bare .and. ubound(stations%tilt, 1) > 0 .and. .not. crushes(graph)
       if (on_way) then
          call loads_at(stations, 0, settings, system, graph, dead, opening)
-         call decide_on_way(graph, dead, load, limit_gap, decision)
+         call decide_on_way(graph, dead, load, limit_gap, enough, decision)
          on_way = decision%state /= load_state%undecided
          if (on_way) return
          n = decision%n_factorisation
