@@ -66,9 +66,8 @@ module dda_load_jump
    real(wp), parameter :: weakest = 1.0e-10_wp, strongest = 1.0e5_wp
    !> A load is raised by this part of a block's weight at least to see how the blocks move
    real(wp), parameter :: nudge = 1.0e-6_wp
-   !> Where a motion does not converge the load is raised by so many times as much, and where it is
-   !> a fall by so much less
-   real(wp), parameter :: wider = 10.0_wp, narrower = 0.25_wp
+   !> Where a motion does not converge the load is raised by so many times as much
+   real(wp), parameter :: wider = 10.0_wp
    !> What a motion may leave of a nudge
    real(wp), parameter :: nudge_left = 1.0e-6_wp
    !> Rounding of forces
@@ -76,9 +75,9 @@ module dda_load_jump
 
 contains
 
-   !> Raise the load by a little and let the blocks move; where they fall, by less, too. The way is
-   !> the same wherever it is to end, unless that is next to nothing: where it leads beyond, a
-   !> smaller one may end there
+   !> Raise the load by a little and let the blocks move; where they fall, by the least, too: to see
+   !> a fall takes long. The way is the same wherever it is to end, unless that is next to nothing:
+   !> where it leads beyond, a smaller one may end there
    pure subroutine nudge_to_balance(joints, equations, load_rate, opening_rate, width, left, &
       & state, jump, gained, end)
       type(coulomb_joints_t), intent(in) :: joints
@@ -100,26 +99,24 @@ contains
       integer, intent(out) :: end
       type(coulomb_state_t) :: moved, last
       integer :: fall, last_end, most_pivots
+      logical :: least
 
       most_pivots = equations%most_pivots
       equations%most_pivots = few_pivots
       gained = merge(left, width, left < nudge)
-      fall = motion_end%unsettled
-      do
+      least = gained <= nudge
+      call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+      if (end == motion_end%unsettled) then
+         gained = wider*gained
          call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
-         if (end == motion_end%unsettled) then
-            ! what does not settle falls as it does by a little more
-            end = fall
-            if (fall /= motion_end%unsettled) exit
-            gained = wider*gained
-            call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, &
-               & moved, end)
-         end if
-         if (end == motion_end%balanced .or. end == motion_end%unsettled) exit
+      end if
+      if (end /= motion_end%balanced .and. end /= motion_end%unsettled .and. .not. least) then
          fall = end
-         if (.not. gained > nudge) exit
-         gained = max(nudge, narrower*gained)
-      end do
+         gained = nudge
+         call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+         ! what does not settle falls as it does by a little more
+         if (end == motion_end%unsettled) end = fall
+      end if
       if (end == motion_end%balanced .and. gained > left) then
          call try_nudge(joints, equations, load_rate, opening_rate, left, state, jump, last, &
             & last_end)

@@ -267,8 +267,8 @@ contains
       !> The state, left as it is unless another in balance is found
       type(coulomb_state_t), intent(inout) :: state
       type(path_rate_t), intent(in) :: way
-      !> By how much, to see how the blocks move
-      real(wp), intent(in) :: width
+      !> By how much, to see how the blocks move; out: by how much they did
+      real(wp), intent(inout) :: width
       !> Where the path ends
       real(wp), intent(in) :: h_end
       !> Receives the jump, or how the blocks fall
@@ -285,6 +285,7 @@ contains
          result%n_jump = result%n_jump + 1
          result%largest_jump = max(result%largest_jump, maxval(abs(state%motion - before)))
          result%reached = min(h_end, result%reached + gained)
+         width = min(width, gained)
       else
          call note_fall(end, jump, result)
       end if
