@@ -12,7 +12,7 @@ module dda_block_lines
    private
 
    public :: entry_t, line_t, split_line, take_numbers, take_words, largest_number, keep_entry
-   public :: take_entry, waiting_entry_t, take_record
+   public :: listed, take_entry, waiting_entry_t, take_record
 
    !> Longest word of a line [characters]
    integer, parameter :: word_size = 32

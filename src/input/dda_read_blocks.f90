@@ -1,7 +1,7 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
-   use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, &
+   use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, listed, split_line, &
       & take_words, waiting_entry_t
    use dda_block_sites, only : site_t, survey
    use dda_deck_key, only : key_kind, key_t
@@ -19,10 +19,20 @@ module dda_read_blocks
 
    public :: parse_blocks
 
-   !> Words that begin an entry
-   character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
-      & "measure, load, live, displacement, base_acceleration, base_velocity, "// &
-      & "base_displacement, bar, water, absorb, remove, add"
+   !> A kind of entry
+   type :: entry_kind_t
+      character(len=17) :: word  !! The word that begins it
+      integer :: n_column        !! Numbers of each row below it
+   end type entry_kind_t
+
+   !> All of them
+   type(entry_kind_t), parameter :: entries(*) = [entry_kind_t("block", 2), &
+      & entry_kind_t("material", 0), entry_kind_t("joint", 0), entry_kind_t("fix", 0), &
+      & entry_kind_t("fix_line", 0), entry_kind_t("measure", 0), entry_kind_t("load", 3), &
+      & entry_kind_t("live", 3), entry_kind_t("displacement", 3), &
+      & entry_kind_t("base_acceleration", 3), entry_kind_t("base_velocity", 3), &
+      & entry_kind_t("base_displacement", 3), entry_kind_t("bar", 0), entry_kind_t("water", 2), &
+      & entry_kind_t("absorb", 0), entry_kind_t("remove", 2), entry_kind_t("add", 2)]
 
    !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
@@ -170,13 +180,19 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value
-      integer :: i
+      integer :: i, kind
       logical :: ok
 
       if (scan(line%word(1)(1:1), "0123456789+-.") == 0) then
-         call check_entry(line, error)
-         if (.not. allocated(error)) call close_entry(reading, warnings, error)
-         if (.not. allocated(error)) call open_entry(line, reading%entry)
+         kind = findloc(entries%word == line%word(1), .true., dim=1)
+         if (kind == 0) then
+            call fatal_error(error, "expected a number or one of "//listed(entries%word) &
+               & //", got '"//shown(trim(line%word(1)))//"'", line=line%number)
+            return
+         end if
+         call close_entry(reading, warnings, error)
+         reading%entry%head = line
+         reading%entry%n_column = entries(kind)%n_column
          return
       end if
       associate (entry => reading%entry)
@@ -217,40 +233,13 @@ contains
       case (3)
          text = "expected a row of three numbers: a time [s] and two components"
       case default
-         text = "expected one of "//entries
+         text = "expected one of "//listed(entries%word)
       end select
    end function row_wanted
 
-   !> Whether a line begins an entry
-   pure subroutine check_entry(line, error)
-      type(line_t), intent(in) :: line
-      type(error_t), allocatable, intent(out) :: error
-
-      if (index(", "//entries//",", ", "//trim(line%word(1))//",") == 0) &
-         & call fatal_error(error, "expected one of "//entries//" or a number, got '" &
-         & //shown(trim(line%word(1)))//"'", line=line%number)
-   end subroutine check_entry
-
-   !> Begin an entry
-   pure subroutine open_entry(line, entry)
-      type(line_t), intent(in) :: line
-      type(entry_t), intent(inout) :: entry
-
-      entry%head = line
-      select case (line%word(1))
-      case ("block", "water", "remove", "add")
-         entry%n_column = 2
-      case ("load", "live", "displacement", &
-         & "base_acceleration", "base_velocity", "base_displacement")
-         entry%n_column = 3
-      case default
-         entry%n_column = 0
-      end select
-   end subroutine open_entry
-
    !> Take in an entry that is complete; points wait until all blocks are known
    pure subroutine close_entry(reading, warnings, error)
-      !> What has been read so far; its entry is left without a head
+      !> What has been read so far; its entry is left without rows
       type(reading_t), intent(inout) :: reading
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -262,15 +251,12 @@ contains
          call add_material(reading%entry%head, reading%growing%plan, error)
       case ("joint")
          call add_law(reading%entry%head, reading%growing, error)
-      case ("fix", "fix_line", "measure", "load", "live", "displacement", &
-         & "base_acceleration", "base_velocity", "base_displacement", "bar", "water", &
-         & "absorb", "remove", "add")
+      case ("")
+         continue
+      case default
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
-      reading%entry%head%n = 0
-      reading%entry%head%word(1) = ""
       reading%entry%n_row = 0
-      reading%entry%n_column = 0
    end subroutine close_entry
 
    !> Take in a block: block [fixed] [material N] [velocity vx vy w] [stress sx sy txy]
