@@ -3,7 +3,8 @@ module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
-   use dda_deck_words, only : deck_help, near_one, registry_help
+   use dda_deck_keys, only : deck_group, deck_key
+   use dda_deck_words, only : near_one, registry_help
    use dda_map_keys, only : map_group, map_key
    use dda_model_table, only : models_help
    use dda_process, only : exit_status
@@ -175,7 +176,7 @@ contains
       case ("help", "--help", "-h")
          call print_lines(command%screen, on_help)
       case ("keys")
-         call print_text(command%screen, deck_help())
+         call print_text(command%screen, registry_help(deck_group, deck_key))
       case ("models")
          call print_text(command%screen, models_help())
       case default

@@ -3,12 +3,11 @@ module dda_deck_words
    use dda_kinds, only : wp
    use dda_text, only : to_text, lower_case
    use dda_deck_key, only : group_t, key_t, key_kind, word_length
-   use dda_deck_keys, only : deck_key, deck_group
    implicit none
    private
 
    public :: wanted, quoted_words, full_name, near_group, near_key, near_word
-   public :: near_one, or_leave_out, deck_help, registry_help
+   public :: near_one, or_leave_out, registry_help
 
    !> Longest word that is compared letter by letter [characters]
    integer, parameter :: longest = 40
@@ -227,18 +226,12 @@ contains
       edit_distance = row(len(b))
    end function edit_distance
 
-   !> All groups and keys with unit, range, default and meaning: what `dda help keys` prints
-   pure function deck_help() result(text)
-      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
-
-      text = registry_help(deck_group, deck_key)
-   end function deck_help
-
-   !> The groups and keys of a registry with unit, range, default and meaning
+   !> The groups and keys of a registry with unit, range, default and meaning: what `dda help keys`
+   !> and `dda help lines` print
    pure function registry_help(groups, keys) result(text)
       type(group_t), intent(in) :: groups(:)  !! The groups
       type(key_t), intent(in) :: keys(:)      !! The keys
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text   !! Lines, each ended by a line feed
       character(len=1), parameter :: lf = achar(10)
       integer :: g, i
 
