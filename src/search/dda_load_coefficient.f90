@@ -167,7 +167,7 @@ contains
       real(wp), intent(in) :: far                    !! Its value at the end of the path
       type(load_stations_t), intent(in) :: stations  !! Stations of the path
       type(graph_verdict_t), intent(in) :: proof
-      real(wp) :: angle(2)
+      real(wp) :: gravity(2)
       integer :: i
 
       i = proof%station
@@ -180,25 +180,33 @@ contains
          case (searched_load%factor)
             value = (before*stations%live(i) + after*stations%live(i + 1))*far
          case default
-            angle = stations%tilt(i:i + 1)
-            value = atan2(before*sin(angle(1)) + after*sin(angle(2)), &
-               & before*cos(angle(1)) + after*cos(angle(2)))
+            gravity = gravity_at_end(stations, proof)
+            value = atan2(gravity(1), gravity(2))
          end select
       end associate
    end function value_at_end
+
+   !> Gravity where a path has ended, over that at its beginning: to the right and down
+   pure function gravity_at_end(stations, proof) result(gravity)
+      type(load_stations_t), intent(in) :: stations
+      type(graph_verdict_t), intent(in) :: proof
+      real(wp) :: gravity(2), part(2)
+
+      associate (i => proof%station)
+         part = [1.0_wp - proof%share, proof%share]*stations%weight(i:i + 1)
+         gravity = [sum(part*sin(stations%tilt(i:i + 1))), sum(part*cos(stations%tilt(i:i + 1)))]
+      end associate
+   end function gravity_at_end
 
    !> Give blocks their whole weight where a path has ended on a chord between two directions of it
    pure subroutine restore_weight(stations, proof)
       type(load_stations_t), intent(in) :: stations
       !> How the path ended; its forces grow by a few millionths
       type(graph_verdict_t), intent(inout) :: proof
-      real(wp) :: weight, half
+      real(wp) :: weight
 
       if (ubound(stations%tilt, 1) == 0) return
-      associate (tilt => stations%tilt(proof%station:proof%station + 1), share => proof%share)
-         half = 0.5_wp*(tilt(2) - tilt(1))
-         weight = sqrt(1.0_wp - 4.0_wp*share*(1.0_wp - share)*sin(half)**2)
-      end associate
+      weight = norm2(gravity_at_end(stations, proof))
       proof%state%force = proof%state%force/weight
       proof%state%load = proof%state%load/weight
    end subroutine restore_weight

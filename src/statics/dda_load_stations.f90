@@ -24,6 +24,8 @@ module dda_load_stations
       real(wp), allocatable :: led(:)
       !> Angle of gravity from upright, to the right: (0:n_leg) [rad]
       real(wp), allocatable :: tilt(:)
+      !> Share of the weight: somewhat less than one where gravity tilts on a chord: (0:n_leg)
+      real(wp), allocatable :: weight(:)
       !> Horizontal coefficient: (0:n_leg)
       real(wp), allocatable :: push(:)
       !> Share of the live loads: (0:n_leg)
@@ -32,9 +34,9 @@ module dda_load_stations
       real(wp), allocatable :: time(:)
    end type load_stations_t
 
-   !> Legs of gravity that tilts, all but the last one, whatever angle is asked for: ways to
-   !> two angles are one way. A chord is off by the square of it. Where nothing but weight acts what
-   !> the chord lacks of it is given back, beside other loads it is not [rad]
+   !> Legs of gravity that tilts, whatever angle is asked for: a way ends on the chord on which a
+   !> longer one goes on, and gets the rest of its weight then. Chords are off by their square.
+   !> Where nothing but weight acts that is given back, beside other loads it is not [rad]
    real(wp), parameter :: tilt_leg = 4.4e-3_wp, leg_beside = 8.0e-4_wp
    !> What is left of an angle below this share of a leg is no leg
    real(wp), parameter :: shortest_leg = 1.0e-9_wp
@@ -58,15 +60,16 @@ contains
       !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
       logical, intent(in) :: upright
       real(wp), allocatable :: time(:)
-      real(wp) :: leg
+      real(wp) :: half
       integer :: at, i, n_led, n_live, n_push, n_tilt
       logical :: later
 
       later = settings%from > 0.0_wp
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
-      leg = merge(tilt_leg, leg_beside, only_weight(settings))
-      n_tilt = merge(ceiling(abs(settings%tilt)/leg - shortest_leg), 0, upright)
+      half = 0.5_wp*merge(tilt_leg, leg_beside, only_weight(settings))
+      n_tilt = merge(ceiling(abs(settings%tilt)/(2.0_wp*half) - shortest_leg), 0, upright)
+      if (n_tilt > 0) n_tilt = n_tilt + 1
       n_push = merge(1, 0, abs(settings%push) > 0.0_wp .and. .not. settings%live_push)
       n_live = merge(1, 0, bears_live_load(settings))
       if (later) then
@@ -78,16 +81,21 @@ contains
       at = n_led + n_tilt + n_push + n_live
       allocate (stations%led(0:at + size(time)), source=1.0_wp)
       allocate (stations%tilt(0:at + size(time)), source=settings%tilt)
+      allocate (stations%weight(0:at + size(time)), source=1.0_wp)
       allocate (stations%push(0:at + size(time)), source=full_push(settings))
       allocate (stations%live(0:at + size(time)), source=1.0_wp)
       allocate (stations%time(0:at + size(time)), source=settings%from)
       stations%time(at + 1:) = time
       if (later) return
       stations%led(0) = 0.0_wp
-      if (n_tilt > 0) stations%tilt(:n_led + n_tilt - 1) = sign(leg, settings%tilt) &
-         & *[(real(max(0, i - n_led), wp), i=0, n_led + n_tilt - 1)]
+      if (n_tilt > 0) then
+         at = n_led + n_tilt - 1
+         stations%tilt(:at - 1) = sign(2.0_wp*half, settings%tilt) &
+            & *[(real(max(0, i - n_led), wp), i=0, at - 1)]
+         stations%weight(at) = cos(half)/cos(abs(settings%tilt - stations%tilt(at - 1)) - half)
+      end if
       stations%push(:n_led + n_tilt) = 0.0_wp
-      stations%live(:at - n_live) = 0.0_wp
+      stations%live(:n_led + n_tilt + n_push) = 0.0_wp
       if (n_live == 0) stations%live = 1.0_wp
       if (settings%live_push) stations%push = stations%live*full_push(settings)
    end function load_stations
@@ -110,7 +118,7 @@ contains
 
       load = 0.0_wp
       call press_carriers(settings, system, load)
-      direction = gravity_direction(stations%tilt(station))
+      direction = stations%weight(station)*gravity_direction(stations%tilt(station))
       direction(1) = direction(1) + stations%push(station)
       shaking = -value_at(settings%boundary%base_acceleration, stations%time(station))
       do b = 1, size(system%equation)

@@ -184,3 +184,14 @@ def test_what_no_direction_of_gravity_lets_stand_falls_by_a_few_factorisations(t
     (row,) = rows(tmp_path, block_text(*make_pushed(seed)), search)
     assert row["verdict"] == "collapsed"
     assert int(row["factorisations"]) <= 100 and int(row["open_close_iterations"]) == 0
+
+
+def test_gravity_that_tilts_goes_one_way_to_all_angles(tmp_path: Path) -> None:
+    """Blocks that jump 21 times as gravity tilts: decisions beside the collapse agree with the search."""
+    text = block_text(*make_pushed(99164))
+    (found,) = rows(tmp_path, text, "&search parameter = 'gravity_direction_deg', low = -90, high = -20 /")
+    critical = float(found["critical"])
+    values = [critical + far * side for side in (-1.0, 1.0) for far in (1e-2, 6e-4, 4e-4, 1e-4)]
+    angles = ", ".join(map(repr, values))
+    decided = rows(tmp_path, text, f"&sweep parameter = 'gravity_direction_deg', values = {angles} /")
+    assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
