@@ -45,6 +45,7 @@ contains
       if (done) return
       call close_bracket(family, part, critical)
       if (part%low > search%low) call find_other(family, search, part%low, critical)
+      if (family%load /= searched_load%none) call tell_fall(family, critical)
       if (allocated(critical%standing) .and. .not. family%decides_chains) &
          & call share_forces(family, critical)
       if (allocated(critical%fallen)) call unfold(critical%fallen)
@@ -232,6 +233,28 @@ contains
          critical%undecided_at = value
       end if
    end subroutine decide_at
+
+   !> How a load lets fall what falls nearest to critical, as the joint graph tells it: to follow it
+   !> in steps takes minutes
+   pure subroutine tell_fall(family, critical)
+      class(family_t), intent(in) :: family
+      !> What was found, its decision that falls among it
+      type(critical_t), intent(inout) :: critical
+      type(decision_t) :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+
+      if (.not. allocated(critical%fallen)) return
+      if (critical%fallen%by_graph) return
+      call family%build(critical%falls, scene, error)
+      if (allocated(error)) return
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+      critical%factorisations = critical%factorisations + decision%outcome%factorisations
+      if (decision%outcome%verdict /= verdict%collapsed) return
+      call shed(decision)
+      critical%fallen = decision
+   end subroutine tell_fall
 
    !> Share out the forces of what stands nearest to critical, which its proof alone does not tell
    pure subroutine share_forces(family, critical)
