@@ -58,7 +58,7 @@ def check(words: list[str], folder: Path) -> bool:
         Whether all is well.
     """
     done = subprocess.run([*VALGRIND, *words], cwd=folder, capture_output=True, text=True)
-    told = [line for line in done.stderr.splitlines() if line.startswith("==")]
+    told = [line for line in done.stderr.splitlines() if line.startswith(("==", "valgrind:"))]
     name = " ".join([Path(words[0]).name, *(Path(word).name for word in words[1:])])
     good = done.returncode != FOUND and not told and done.returncode >= 0
     print(f"{'ok    ' if good else 'FAILED'} {name}", *([] if good else told), sep="\n   ", flush=True)
@@ -76,8 +76,10 @@ def main() -> int:
         folder = Path(name)
         for deck, text in DECKS.items():
             (folder / f"{deck}.nml").write_text(text)
-        calls = [[options.dda, *call.replace("INPUT", str(INPUT)).split()] for call in CALLS]
-        commands = calls + [[program] for program in options.programs]
+        # they run in another folder
+        dda, *programs = [str(Path(program).resolve()) for program in [options.dda, *options.programs]]
+        calls = [[dda, *call.replace("INPUT", str(INPUT)).split()] for call in CALLS]
+        commands = calls + [[program] for program in programs]
         good = list(pool.map(lambda words: check(words, folder), commands))
     print(f"{len(good)} runs, {good.count(False)} with findings")
     return 0 if all(good) else 1
