@@ -54,7 +54,9 @@ contains
 
       call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
       turn%flexibility = sum(path%live*turn%unit_response)
-      if (path%moves) turn%flexibility = huge(turn%flexibility)
+      ! nor has a load that does no work a factor
+      if (path%moves .or. .not. abs(turn%flexibility) > 0.0_wp) &
+         & turn%flexibility = huge(turn%flexibility)
    end subroutine respond_to_live_load
 
    !> Direction to balance, compatibility and the aim
