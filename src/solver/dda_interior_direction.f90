@@ -5,7 +5,7 @@
 !> stiffness that is large: what they open is led back to zero from turn to turn.
 module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
-   use dda_joint_rays, only : add_ray_forces, joint_rays_t
+   use dda_joint_rays, only : add_ray_forces, joint_rays_t, ray_rates
    use dda_kinds, only : wp
    use dda_ray_matrix, only : add_digits, digits_of, ray_matrix_t, solve_springs
    implicit none
@@ -20,8 +20,6 @@ module dda_interior_direction
       real(wp), allocatable :: lack(:, :), rest(:, :)
       !> Response to the live load, to the right-hand side: (3, 0:n_block)
       real(wp), allocatable :: unit_response(:, :), response(:, :)
-      !> Rates less what velocities make of them: (n_side, n_joint)
-      real(wp), allocatable :: excess(:, :)
       !> What the power of the live load lacks of one
       real(wp) :: lack_of_power = 0.0_wp
       !> Smallest factor whose gap is relative to itself
@@ -37,8 +35,6 @@ module dda_interior_direction
       !> Direction: (n_side, n_joint), the same, (3, 0:n_block), and of the factor
       real(wp), allocatable :: dx(:, :), ds(:, :), dv(:, :)
       real(wp) :: dfactor = 0.0_wp
-      !> One over forces and over rates of bounded rays, none of others: (n_side, n_joint)
-      real(wp), allocatable :: per_force(:, :), per_rate(:, :)
       !> Imbalance that the direction leaves, the largest that is accepted
       real(wp) :: left = 0.0_wp, accepted = 0.0_wp
    end type turn_t
@@ -101,7 +97,10 @@ contains
 
       turn%dv = 0.0_wp
       turn%dfactor = 0.0_wp
-      turn%ds = path%compliance*turn%aim - turn%excess
+      ! rates less what velocities make of them are to go
+      call ray_rates(rays, point%v, turn%rate)
+      turn%ds = path%compliance*turn%aim &
+         & - ((point%s - path%compliance*point%x)*rays%bounded - turn%rate)
       turn%dx = turn%aim - springs%stiffness*turn%ds
       turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
       call balance_direction(rays, path, point, springs, turn)

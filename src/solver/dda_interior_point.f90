@@ -99,13 +99,13 @@ contains
       farthest = point%factor
       idle = 0
       ! where the load is no number no point is better than the first
-      best = point
+      call keep(point, best)
       do
          call see_residuals(rays, path, point, turn)
          idle = idle + 1
          if (worst(point) < merit) then
             merit = worst(point)
-            best = point
+            call keep(point, best)
             idle = 0
          end if
          ! on the way to a target the gap may stay
@@ -130,6 +130,17 @@ contains
       if (goal%target >= no_limit .and. worst(best) < near) best%state = interior_state%optimal
       point = best
    end subroutine solve_cones
+
+   !> Keep a point but for its rates, from which nothing goes on
+   pure subroutine keep(point, kept)
+      type(interior_point_t), intent(inout) :: point  !! The point; it comes back as it was
+      type(interior_point_t), intent(inout) :: kept
+      real(wp), allocatable :: s(:, :)
+
+      call move_alloc(point%s, s)
+      kept = point
+      call move_alloc(s, point%s)
+   end subroutine keep
 
    !> The worst of the three figures
    pure real(wp) function worst(point)

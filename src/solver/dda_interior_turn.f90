@@ -33,6 +33,26 @@ module dda_interior_turn
    !> Products beyond these multiples of the one aimed at are corrected
    real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
 
+   !> What the products x*s at the end of a step are led to
+   type :: centring_enum
+      integer :: equal = 0    !! One product, with the second order of the direction before
+      integer :: within = 1   !! Multiples of it, where they lie beyond them
+      integer :: inwards = 2  !! One product, of the point itself
+   end type centring_enum
+
+   !> Names of these
+   type(centring_enum), parameter :: centring = centring_enum()
+
+   !> What a correction aims at
+   type :: centring_t
+      !> One of centring
+      integer :: kind = centring%equal
+      !> The product
+      real(wp) :: product = 0.0_wp
+      !> Steps of forces and of rates at whose end products are looked at: (2)
+      real(wp) :: further(2) = 0.0_wp
+   end type centring_t
+
 contains
 
    !> Work space of the turns
@@ -48,8 +68,7 @@ contains
       turn%unit_response = 0.0_wp
       turn%response = 0.0_wp
       turn%dv = 0.0_wp
-      allocate (turn%excess, turn%aim, turn%unit_rate, turn%rate, turn%dx, turn%ds, &
-         & turn%per_force, turn%per_rate, source=0.0_wp*rays%bounded)
+      allocate (turn%aim, turn%unit_rate, turn%rate, turn%dx, turn%ds, mold=rays%bounded)
       turn%least_factor = path%negligible/goal%tolerance
    end subroutine begin_turns
 
@@ -68,7 +87,6 @@ contains
       point%imbalance = maxval(abs(turn%lack))/max(path%largest_dead, &
          & abs(point%factor)*path%largest_live, 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
       call ray_rates(rays, point%v, turn%rate)
-      turn%excess = (point%s - path%compliance*point%x)*rays%bounded - turn%rate
       power = maxval(abs(point%v))
       against = max(maxval(-turn%rate*rays%bounded), maxval(abs(turn%rate*rays%free)))
       point%violation = against/max(power, tiny(power))
@@ -116,10 +134,6 @@ contains
 
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
-      where (rays%bounded > 0.0_wp)
-         turn%per_force = 1.0_wp/point%x
-         turn%per_rate = 1.0_wp/point%s
-      end where
       call set_stiffness(rays, path, point, springs)
       call set_springs(rays, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
@@ -150,26 +164,24 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn  !! Predictor in, direction out
-      real(wp) :: reach(2), before(2), further(2), product
-      real(wp) :: change(size(point%x, 1), size(point%x, 2))
+      type(centring_t) :: wish
+      real(wp) :: reach(2), before(2)
       integer :: i
 
-      reach = longest_steps(turn)
-      product = aimed_product(rays, goal, point, turn, reach)
-      call add_correction(rays, path, (product - turn%dx*turn%ds)/point%s, springs, point, turn, &
-         & reach)
+      reach = longest_steps(rays, point, turn)
+      wish%product = aimed_product(rays, goal, point, turn, reach)
+      call add_correction(rays, path, wish, springs, point, turn, reach)
+      wish%kind = centring%within
       do i = 1, max_centring
          if (minval(reach) > long_enough) exit
          before = reach
-         further = min(1.0_wp, reach + longer)
-         change = (point%x + further(1)*turn%dx)*(point%s + further(2)*turn%ds)
-         change = max(-largest_product*product, min(max(change, least_product*product), &
-            & largest_product*product) - change)
-         call add_correction(rays, path, change/point%s, springs, point, turn, reach)
+         wish%further = min(1.0_wp, reach + longer)
+         call add_correction(rays, path, wish, springs, point, turn, reach)
          if (sum(reach) < sum(before) + worthwhile) exit
       end do
-      if (minval(reach) < short) call add_correction(rays, path, half*turn%barrier/point%s &
-         & - point%x - turn%aim, springs, point, turn, reach)
+      wish%kind = centring%inwards
+      wish%product = half*turn%barrier
+      if (minval(reach) < short) call add_correction(rays, path, wish, springs, point, turn, reach)
       call refine_direction(rays, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
       call direct_again(rays, path, point, springs, turn)
    end subroutine correct
@@ -181,49 +193,75 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
       real(wp), intent(in) :: reach(2)  !! Steps along it
-      real(wp) :: after, centring
+      real(wp) :: after, share
 
       ! where every force may have any sign there is nothing to aim at
       product = 0.0_wp
       if (.not. turn%barrier > 0.0_wp) return
       after = sum((point%x + reach(1)*turn%dx)*(point%s + reach(2)*turn%ds)*rays%bounded) &
          & /real(max(1, rays%n_bounded), wp)
-      centring = min(1.0_wp, (after/turn%barrier)**3)
-      centring = max(centring, min(1.0_wp, 0.02_wp*goal%tolerance*abs(point%factor) &
+      share = min(1.0_wp, (after/turn%barrier)**3)
+      share = max(share, min(1.0_wp, 0.02_wp*goal%tolerance*abs(point%factor) &
          & /(real(max(1, rays%n_bounded), wp)*turn%barrier)))
-      product = centring*turn%barrier
+      product = share*turn%barrier
    end function aimed_product
+
+   !> Change of x that a correction aims at on one ray
+   elemental real(wp) function change_of_aim(wish, x, s, dx, ds, aim) result(change)
+      type(centring_t), intent(in) :: wish
+      real(wp), intent(in) :: x, s    !! Force and rate
+      real(wp), intent(in) :: dx, ds  !! The direction before
+      real(wp), intent(in) :: aim     !! Change of x that it aims at
+
+      select case (wish%kind)
+      case (centring%equal)
+         change = (wish%product - dx*ds)/s
+      case (centring%within)
+         change = (x + wish%further(1)*dx)*(s + wish%further(2)*ds)
+         change = max(-largest_product*wish%product, min(max(change, &
+            & least_product*wish%product), largest_product*wish%product) - change)
+         change = change/s
+      case default
+         change = wish%product/s - x - aim
+      end select
+   end function change_of_aim
 
    !> Change the aim of a direction, and take as much of that as makes the steps longest
    !> (Colombo and Gondzio 2008)
-   pure subroutine add_correction(rays, path, change, springs, point, turn, reach)
+   pure subroutine add_correction(rays, path, wish, springs, point, turn, reach)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      real(wp), intent(in) :: change(:, :)  !! Change of x that is aimed at: (n_side, n_joint)
+      type(centring_t), intent(in) :: wish
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
-      real(wp), dimension(size(change, 1), size(change, 2)) :: dx, ds, soft
-      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
-      integer :: i, best
+      real(wp), dimension(n_side, size(turn%dx, 2)) :: dx, ds
+      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share), soft(n_side)
+      integer :: i, j, best
 
       dx = turn%dx
       ds = turn%ds
       dv = turn%dv
       dfactor = turn%dfactor
-      soft = change*rays%bounded*(1.0_wp - path%compliance*springs%stiffness)
-      turn%dx = turn%dx + soft
-      turn%ds = turn%ds + path%compliance*soft
+      do j = 1, size(dx, 2)
+         soft = change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), ds(:, j), &
+            & turn%aim(:, j))*rays%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
+         turn%dx(:, j) = turn%dx(:, j) + soft
+         turn%ds(:, j) = turn%ds(:, j) + path%compliance*soft
+      end do
       call balance_direction(rays, path, point, springs, turn)
-      steps = steps_of_shares(turn, dx, ds)
+      steps = steps_of_shares(rays, point, turn, dx, ds)
       best = n_share
       do i = n_share - 1, 1, -1
          if (product(steps(:, i)) > 1.02_wp*product(steps(:, best))) best = i
       end do
       reach = steps(:, best)
       share = real(best, wp)/real(n_share, wp)
-      turn%aim = turn%aim + share*change*rays%bounded
+      do j = 1, size(dx, 2)
+         turn%aim(:, j) = turn%aim(:, j) + share*change_of_aim(wish, point%x(:, j), &
+            & point%s(:, j), dx(:, j), ds(:, j), turn%aim(:, j))*rays%bounded(:, j)
+      end do
       turn%dx = dx + share*(turn%dx - dx)
       turn%ds = ds + share*(turn%ds - ds)
       turn%dv = dv + share*(turn%dv - dv)
@@ -232,19 +270,22 @@ contains
 
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the
    !> turn changed is taken
-   pure function steps_of_shares(turn, dx, ds) result(steps)
+   pure function steps_of_shares(rays, point, turn, dx, ds) result(steps)
+      type(joint_rays_t), intent(in) :: rays
+      type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
       real(wp), intent(in) :: dx(:, :), ds(:, :)  !! The direction before: (n_side, n_joint)
       real(wp) :: steps(2, n_share)               !! Steps of forces and of rates: (2, n_share)
-      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
+      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2), per(n_side, 2)
       integer :: i, j
 
       hurry = share_of_way
       do j = 1, size(dx, 2)
-         from(:, 1) = -dx(:, j)*turn%per_force(:, j)
-         from(:, 2) = -ds(:, j)*turn%per_rate(:, j)
-         more(:, 1) = -turn%dx(:, j)*turn%per_force(:, j) - from(:, 1)
-         more(:, 2) = -turn%ds(:, j)*turn%per_rate(:, j) - from(:, 2)
+         per = one_over(rays, point, j)
+         from(:, 1) = -dx(:, j)*per(:, 1)
+         from(:, 2) = -ds(:, j)*per(:, 2)
+         more(:, 1) = -turn%dx(:, j)*per(:, 1) - from(:, 1)
+         more(:, 2) = -turn%ds(:, j)*per(:, 2) - from(:, 2)
          do i = 1, n_share
             hurry(:, :, i) = max(hurry(:, :, i), from + real(i, wp)/real(n_share, wp)*more)
          end do
@@ -254,19 +295,35 @@ contains
 
    !> Longest steps of forces and of rates along the direction, at most 1, that keep them inside
    !> their bounds
-   pure function longest_steps(turn) result(reach)
+   pure function longest_steps(rays, point, turn) result(reach)
+      type(joint_rays_t), intent(in) :: rays
+      type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
       real(wp) :: reach(2)  !! Steps
-      real(wp) :: hurry(n_side, 2)
+      real(wp) :: hurry(n_side, 2), per(n_side, 2)
       integer :: j
 
       hurry = share_of_way
       do j = 1, size(turn%dx, 2)
-         hurry(:, 1) = max(hurry(:, 1), -turn%dx(:, j)*turn%per_force(:, j))
-         hurry(:, 2) = max(hurry(:, 2), -turn%ds(:, j)*turn%per_rate(:, j))
+         per = one_over(rays, point, j)
+         hurry(:, 1) = max(hurry(:, 1), -turn%dx(:, j)*per(:, 1))
+         hurry(:, 2) = max(hurry(:, 2), -turn%ds(:, j)*per(:, 2))
       end do
       reach = 1.0_wp/maxval(hurry, dim=1)
    end function longest_steps
+
+   !> One over forces and over rates of the bounded rays of a joint, none of others
+   pure function one_over(rays, point, j) result(per)
+      type(joint_rays_t), intent(in) :: rays
+      type(interior_point_t), intent(in) :: point
+      integer, intent(in) :: j      !! Number of the joint
+      real(wp) :: per(n_side, 2)    !! Of forces, of rates: (n_side, 2)
+      logical :: is_bounded(n_side)
+
+      is_bounded = rays%bounded(:, j) > 0.0_wp
+      per(:, 1) = rays%bounded(:, j)/merge(point%x(:, j), 1.0_wp, is_bounded)
+      per(:, 2) = rays%bounded(:, j)/merge(point%s(:, j), 1.0_wp, is_bounded)
+   end function one_over
 
    !> Move along the direction, almost to the border
    pure subroutine move(rays, path, turn, point)
@@ -276,7 +333,7 @@ contains
       type(interior_point_t), intent(inout) :: point
       real(wp) :: reach(2)
 
-      reach = share_of_way*longest_steps(turn)
+      reach = share_of_way*longest_steps(rays, point, turn)
       ! with masses, forces and accelerations balance together
       if (path%moves) reach = minval(reach)
       point%x = point%x + reach(1)*turn%dx
