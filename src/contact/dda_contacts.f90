@@ -8,7 +8,7 @@ module dda_contacts
    implicit none
    private
 
-   public :: edge_pairs_t, joint_search_t, contacts_t
+   public :: edge_pairs_t, joint_search_t, contacts_t, move_contacts
 
    !> Pairs of edges that were near, and how far their corners can go before others may be
    type :: edge_pairs_t
@@ -40,7 +40,7 @@ module dda_contacts
       type(joint_springs_t) :: springs
       !> Face of the friction cone that each joint's force lies on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
-      !> Trial force N1, N2, T of the springs: (3, n_joint) [N/m]
+      !> Trial force N1, N2, T of the springs, from the first step on: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
       !> Force N1, N2, T: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
@@ -48,10 +48,10 @@ module dda_contacts
       real(wp), allocatable :: gap(:, :)
       !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
-      !> Slip that is past and done, where blocks move: (n_joint) [m]
+      !> Slip that is past and done, where blocks move, from the first step on: (n_joint) [m]
       real(wp), allocatable :: past_slip(:)
-      !> Share that is left of each contact's strength: 1 is whole, 0 has slid or parted:
-      !> (2, n_joint)
+      !> Share that is left of each contact's strength, from the first step on: 1 is whole, 0 has
+      !> slid or parted: (2, n_joint)
       real(wp), allocatable :: intact(:, :)
       !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
       logical :: searched = .false.
@@ -61,4 +61,35 @@ module dda_contacts
       type(joint_search_t) :: search
    end type contacts_t
 
+contains
+
+   !> Hand contacts over without a copy of what is large
+   pure subroutine move_contacts(from, to)
+      type(contacts_t), intent(inout) :: from  !! The contacts; what is large is gone
+      type(contacts_t), intent(inout) :: to
+      type(contacts_t) :: large
+
+      call move_large(from, large)
+      to = from
+      call move_large(large, to)
+   end subroutine move_contacts
+
+   !> Move what is large
+   pure subroutine move_large(from, to)
+      type(contacts_t), intent(inout) :: from, to
+
+      call move_alloc(from%joint, to%joint)
+      call move_alloc(from%face, to%face)
+      call move_alloc(from%trial, to%trial)
+      call move_alloc(from%force, to%force)
+      call move_alloc(from%gap, to%gap)
+      call move_alloc(from%increment, to%increment)
+      call move_alloc(from%intact, to%intact)
+      call move_alloc(from%springs%row, to%springs%row)
+      call move_alloc(from%springs%cone, to%springs%cone)
+      call move_alloc(from%springs%shift, to%springs%shift)
+      call move_alloc(from%search%near%pair, to%search%near%pair)
+      call move_alloc(from%search%near%vertex, to%search%near%vertex)
+      call move_alloc(from%search%outline%direction, to%search%outline%direction)
+   end subroutine move_large
 end module dda_contacts

@@ -7,7 +7,7 @@ module dda_block_system
    implicit none
    private
 
-   public :: block_system_t, new_block_system, n_unknown, set_initial_state
+   public :: block_system_t, move_system, new_block_system, n_unknown, set_initial_state
 
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
@@ -97,6 +97,31 @@ contains
          system%equation(b) = merge(0, movable, fixed(b))
       end do
    end function new_block_system
+
+   !> Hand blocks over without a copy of what is large
+   pure subroutine move_system(from, to)
+      type(block_system_t), intent(inout) :: from  !! The blocks; what is large is gone
+      type(block_system_t), intent(inout) :: to
+      type(block_system_t) :: large
+
+      call move_large(from, large)
+      to = from
+      call move_large(large, to)
+   end subroutine move_system
+
+   !> Move what is large
+   pure subroutine move_large(from, to)
+      type(block_system_t), intent(inout) :: from, to
+
+      call move_alloc(from%vertex, to%vertex)
+      call move_alloc(from%moved, to%moved)
+      call move_alloc(from%centroid, to%centroid)
+      call move_alloc(from%second, to%second)
+      call move_alloc(from%motion, to%motion)
+      call move_alloc(from%velocity, to%velocity)
+      call move_alloc(from%stress, to%stress)
+      call move_alloc(from%initial_stress, to%initial_stress)
+   end subroutine move_large
 
    !> Give a block velocity and stress to begin with
    pure subroutine set_initial_state(system, block, velocity, stress)

@@ -1,8 +1,8 @@
 !> Forward analysis: a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_block_factor, only : factored_condition
-   use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
+   use dda_block_system, only : block_system_t, move_system
+   use dda_contacts, only : contacts_t, move_contacts
    use dda_energy, only : keep_energy
    use dda_error, only : error_t
    use dda_frames, only : album_t, keep_pictures
@@ -77,8 +77,8 @@ contains
          return
       end if
       run%settings = settings
-      run%system = system
-      run%contacts = contacts
+      call move_system(system, run%system)
+      call move_contacts(contacts, run%contacts)
       call begin_run(run, error, onward)
       if (present(album)) call keep_pictures(run, .false., album)
       do while (.not. (allocated(error) .or. is_over(run)))
@@ -93,8 +93,8 @@ contains
       outcome%motion = run%step%state%motion
       if (present(album)) call end_pictures(run, outcome, album)
       call conclude(run, error, outcome)
-      system = run%system
-      contacts = run%contacts
+      call move_system(run%system, system)
+      call move_contacts(run%contacts, contacts)
    end subroutine run_to_verdict
 
    !> Whether all steps are spent, or all the time of a dynamic run
