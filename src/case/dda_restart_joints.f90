@@ -1,6 +1,6 @@
 !> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
 submodule (dda_restart) dda_restart_joints
-   use dda_contact_detection, only : set_joints
+   use dda_contact_detection, only : begin_memory, set_joints
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
    use dda_outline, only : outline_of, outline_t
    implicit none
@@ -41,7 +41,9 @@ contains
          allocate (joint(size(whole, 2)))
          call make_joints(system, contacts, whole, number, joint, sound)
          if (sound) call set_joints(joint, contacts)
+         if (sound) call begin_memory(contacts)
       else
+         call begin_memory(contacts)
          sound = size(contacts%joint) == size(whole, 2)
          if (sound) call pack_joints(system, contacts, given, ignored)
          if (sound) sound = all(given(:7, :) == whole(:7, :))

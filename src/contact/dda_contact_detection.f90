@@ -10,8 +10,8 @@ module dda_contact_detection
    implicit none
    private
 
-   public :: find_contacts, follow_contacts, keep_contacts, raise_springs, set_joints
-   public :: set_strength
+   public :: begin_memory, find_contacts, follow_contacts, keep_contacts, raise_springs
+   public :: set_joints, set_strength
 
 contains
 
@@ -34,7 +34,7 @@ contains
       call set_joints(joint, contacts)
    end subroutine find_contacts
 
-   !> Take these joints, closed, whole and free of force, without springs
+   !> Take these joints, closed and free of force, without springs and without memory
    pure subroutine set_joints(joint, contacts)
       !> The joints, placed: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
@@ -44,16 +44,25 @@ contains
 
       n = size(joint)
       call move_alloc(joint, contacts%joint)
-      if (allocated(contacts%face)) deallocate (contacts%face, contacts%intact)
-      if (allocated(contacts%trial)) deallocate (contacts%past_slip, contacts%trial, &
-         & contacts%force, contacts%gap, contacts%increment)
-      allocate (contacts%face(n), contacts%past_slip(n))
-      allocate (contacts%intact(2, n), source=1.0_wp)
-      allocate (contacts%trial(3, n), source=0.0_wp)
-      allocate (contacts%force, contacts%gap, contacts%increment, source=contacts%trial)
-      contacts%past_slip = 0.0_wp
+      if (allocated(contacts%face)) deallocate (contacts%face)
+      if (allocated(contacts%force)) deallocate (contacts%force, contacts%gap, contacts%increment)
+      if (allocated(contacts%trial)) deallocate (contacts%trial, contacts%past_slip)
+      if (allocated(contacts%intact)) deallocate (contacts%intact)
+      allocate (contacts%face(n))
+      allocate (contacts%force(3, n), source=0.0_wp)
+      allocate (contacts%gap, contacts%increment, source=contacts%force)
       contacts%springs = joint_springs_t()
    end subroutine set_joints
+
+   !> What contacts carry from step to step where they have carried nothing yet
+   pure subroutine begin_memory(contacts)
+      type(contacts_t), intent(inout) :: contacts
+
+      if (allocated(contacts%trial)) return
+      allocate (contacts%trial, source=0.0_wp*contacts%force)
+      allocate (contacts%past_slip(size(contacts%joint)), source=0.0_wp)
+      allocate (contacts%intact(2, size(contacts%joint)), source=1.0_wp)
+   end subroutine begin_memory
 
    !> Springs of contacts that have none yet, as strong as what is left of the joints: in reference
    !> geometry where the blocks were at the beginning, in current geometry where they are
@@ -62,6 +71,7 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(inout) :: contacts
 
+      call begin_memory(contacts)
       if (allocated(contacts%springs%row)) return
       call new_joint_springs(system, merge(1.0_wp, 0.0_wp, settings%current)*system%motion, &
          & contacts%joint, settings%penalty_ratio, settings%n_dof, contacts%springs)
@@ -85,10 +95,11 @@ contains
       end do
       call set_joints(joint, contacts)
       contacts%face = old%face(k)
-      contacts%trial = old%trial(:, k)
       contacts%force = old%force(:, k)
       contacts%gap = old%gap(:, k)
       contacts%increment = old%increment(:, k)
+      if (.not. allocated(old%trial)) return
+      contacts%trial = old%trial(:, k)
       contacts%past_slip = old%past_slip(k)
       contacts%intact = old%intact(:, k)
    end subroutine keep_contacts

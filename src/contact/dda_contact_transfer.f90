@@ -3,7 +3,7 @@
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : set_joints, set_strength
+   use dda_contact_detection, only : begin_memory, set_joints, set_strength
    use dda_contact_search, only : look_around, near_joints, touching_joints
    use dda_contact_types, only : contact_t, joint_t, new_joint_springs, place_joint, &
       & slip_at, vertex_number
@@ -118,6 +118,7 @@ contains
       call move_alloc(contacts%face, before%face)
       call move_alloc(contacts%intact, before%intact)
       call set_joints(joint, contacts)
+      call begin_memory(contacts)
       call new_joint_springs(system, system%motion, contacts%joint, penalty_ratio, n_dof, &
          & contacts%springs)
       do j = 1, size(contacts%joint)

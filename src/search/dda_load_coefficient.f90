@@ -116,11 +116,9 @@ contains
       type(joint_graph_t), intent(in) :: graph
       real(wp) :: load(3, graph%n_block)        !! The loads: (3, n_block) [N/m, N/m, N]
       type(load_stations_t) :: stations
-      real(wp) :: opening(3, size(graph%kind))
 
       stations = load_stations(settings, .true.)
-      call loads_at(stations, ubound(stations%tilt, 1), settings, scene%system, graph, load, &
-         & opening)
+      call loads_at(stations, ubound(stations%tilt, 1), settings, scene%system, graph, load)
    end function full_loads
 
    !> Forces that carry the loads at a value that stands; those that carry a limit do not carry less

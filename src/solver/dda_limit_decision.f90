@@ -131,9 +131,8 @@ contains
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
 
-      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
-      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
       if (all(abs(load(1:3, :)) <= 0.0_wp)) then
+         call prove_nothing(graph, decision)
          decision%state = load_state%stands
          return
       end if
@@ -141,6 +140,7 @@ contains
       call plan_matrix(rays, springs)
       call go_to_load(rays, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
+      call prove_nothing(graph, decision)
       call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
       call keep_velocities(rays, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
@@ -165,8 +165,6 @@ contains
       type(interior_point_t) :: point
       real(wp) :: start(3, 0:graph%n_block), finish(3, 0:graph%n_block)
 
-      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
-      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
       call set_rays(graph, rays)
       call plan_matrix(rays, springs)
       call scale_load(rays, dead, unit_of_force(load), start)
@@ -175,12 +173,22 @@ contains
       if (state_at_end(point) == load_state%stands) then
          call scale_load(rays, load, unit_of_force(load), finish)
          call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=enough)
+         call prove_nothing(graph, decision)
          call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
          call keep_velocities(rays, point%v, decision%velocity)
          call conclude(graph, load, point, decision)
       end if
       decision%n_factorisation = springs%n_factorisation
    end subroutine decide_on_way
+
+   !> A decision without forces and without motion
+   pure subroutine prove_nothing(graph, decision)
+      type(joint_graph_t), intent(in) :: graph
+      type(load_decision_t), intent(inout) :: decision
+
+      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
+      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
+   end subroutine prove_nothing
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(rays, load, springs, point)

@@ -51,13 +51,13 @@ contains
       type(load_stations_t) :: stations
       type(load_decision_t) :: decision
       type(graph_verdict_t) :: path
-      real(wp), allocatable :: load(:, :), opening(:, :)
+      real(wp), allocatable :: load(:, :)
       logical :: dead_alone, on_way
 
       call scene_graph(settings, system, contacts, graph)
-      allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
+      allocate (load(3, graph%n_block))
       stations = stations_of(settings, system, graph, present(start))
-      call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
+      call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
       if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
@@ -103,9 +103,9 @@ contains
       !> A path that finds no state under the dead loads
       type(graph_verdict_t), intent(inout) :: path
       type(load_decision_t) :: decision
-      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: dead(3, graph%n_block)
 
-      call loads_at(stations, 0, settings, system, graph, dead, opening)
+      call loads_at(stations, 0, settings, system, graph, dead)
       call decide_load(graph, dead, decision)
       path%n_factorisation = path%n_factorisation + decision%n_factorisation
       if (decision%state /= load_state%falls .or. is_feigned(settings, system, decision)) return
@@ -124,13 +124,13 @@ contains
       type(joint_graph_t), intent(in) :: graph
       logical, intent(in) :: goes_on  !! Whether a stage before has left a state
       type(load_decision_t) :: decision
-      real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: load(3, graph%n_block)
       logical :: coulomb
 
       coulomb = settings%verdict_flow == flow_rule%coulomb
       stations_of = load_stations(settings, coulomb)
       if (goes_on .or. .not. (coulomb .and. abs(settings%tilt) > 0.0_wp)) return
-      call loads_at(stations_of, 0, settings, system, graph, load, opening)
+      call loads_at(stations_of, 0, settings, system, graph, load)
       call decide_load(graph, load, decision)
       stations_of = load_stations(settings, decision%state /= load_state%falls)
    end function stations_of
@@ -152,13 +152,13 @@ contains
       !> Whether it was decided on the way, so that what falls is in the mechanism in which it fell
       !> first
       logical, intent(out) :: on_way
-      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: dead(3, graph%n_block)
       integer :: n
 
       n = 0
       on_way = .not. bare .and. ubound(stations%tilt, 1) > 0 .and. .not. crushes(graph)
       if (on_way) then
-         call loads_at(stations, 0, settings, system, graph, dead, opening)
+         call loads_at(stations, 0, settings, system, graph, dead)
          call decide_on_way(graph, dead, load, limit_gap, enough, decision)
          on_way = decision%state /= load_state%undecided
          if (on_way) return

@@ -112,7 +112,7 @@ contains
       !> Loads: (n_dof, n_block) [N/m, N/m, N]
       real(wp), intent(out) :: load(:, :)
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out), optional :: opening(:, :)
       real(wp) :: direction(2), force(2), shaking(2), of_block(6), total(size(load, 2))
       integer :: b, e, i
 
@@ -133,8 +133,7 @@ contains
          load(:, b + 1:) = 0.0_wp
          load(1, b + 1:) = -graph%bound
       end if
-      opening = 0.0_wp
-      call lead_pins(stations, station, settings, system, graph, opening)
+      if (present(opening)) call lead_pins(stations, station, settings, system, graph, opening)
       if (.not. allocated(settings%boundary%loaded)) return
       total = norm2(load(1:2, :), dim=1)
       do i = 1, size(settings%boundary%loaded)
@@ -184,11 +183,12 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
-      !> Opening of the joints; that of the pins is set: (3, n_joint) [m]
-      real(wp), intent(inout) :: opening(:, :)
+      !> Opening of the joints, none but that of the pins: (3, n_joint) [m]
+      real(wp), intent(out) :: opening(:, :)
       real(wp) :: displacement(2)
       integer :: i, j
 
+      opening = 0.0_wp
       if (.not. allocated(settings%boundary%held)) return
       if (.not. any(graph%kind == joint_kind%pin)) return
       j = findloc(graph%kind, joint_kind%pin, dim=1) - 1
