@@ -60,6 +60,9 @@ module dda_result_tables
    !> The places by name
    type(table_enum), parameter :: table = table_enum()
 
+   !> Lines of joints are written when they are together about so long [bytes]
+   integer, parameter :: most_bytes = 65536
+
    !> One table
    type :: result_table_t
       character(len=:), allocatable :: file    !! Name of the file with its folder
@@ -332,9 +335,11 @@ contains
       if (tables%at(table%joints)%wanted) then
          do j = 1, size(joint_row)
             call add_line(lines, joint_line(joint_row(j)))
+            if (bytes_of(lines) < most_bytes .and. j < size(joint_row)) cycle
+            call append_line(tables%at(table%joints)%open, lines_of(lines), error)
+            if (allocated(error)) return
+            lines = growing_text_t()
          end do
-         call append_line(tables%at(table%joints)%open, lines_of(lines), error)
-         if (allocated(error)) return
       end if
       if (tables%at(table%blocks)%wanted .and. allocated(blocks%state)) then
          call append_line(tables%at(table%blocks)%open, block_lines(row%number, blocks), error)

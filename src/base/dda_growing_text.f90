@@ -26,7 +26,8 @@ contains
       if (.not. allocated(lines%text)) lines%text = repeat(" ", 4096)
       room = lines%length + len(line) + 1
       if (room > len(lines%text)) then
-         longer = lines%text//repeat(" ", max(room, len(lines%text)))
+         allocate (character(len=max(2*len(lines%text), room)) :: longer)
+         longer(:lines%length) = lines%text(:lines%length)
          call move_alloc(longer, lines%text)
       end if
       lines%text(lines%length + 1:room) = line//new_line("a")

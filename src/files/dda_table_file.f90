@@ -138,7 +138,8 @@ contains
 
       if (len(line) == 0) return
       table%lines = add_sums(table%lines, line_sum(line))
-      call append_text(table%file, line//new_line("a"))
+      call append_text(table%file, line)
+      call append_text(table%file, new_line("a"))
       call flush_binary(table%file, error)
    end subroutine append_line
 
