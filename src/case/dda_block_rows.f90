@@ -168,7 +168,7 @@ contains
 
    !> Tell what each joint does in a collapse; its motion is that of the last step
    pure subroutine tell_roles(fallen, joint, row, motion)
-      !> Contacts at the end of the collapse
+      !> Contacts at the end of the collapse; without joints they are those of the rows
       type(contacts_t), intent(in) :: fallen
       !> The joints of the rows: of the same run, or of one that stands beside it: (n_joint)
       type(joint_t), intent(in) :: joint(:)
@@ -176,8 +176,8 @@ contains
       type(joint_row_t), intent(inout) :: row(:)
       !> Motion of the blocks in the last step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)
-      integer :: role(size(fallen%joint)), j, k
-      logical :: slip(size(fallen%joint))
+      integer :: role(size(fallen%face)), j, k
+      logical :: slip(size(fallen%face))
       real(wp) :: largest
 
       largest = largest_of(fallen)
@@ -186,10 +186,13 @@ contains
       slip = slides(fallen%face, fallen%increment(3, :), largest)
       do j = 1, size(row)
          row(j)%slides%known = .false.
-         k = place_in(fallen%joint, joint(j), j)
+         k = j
+         if (allocated(fallen%joint)) k = place_in(fallen%joint, joint(j), j)
          if (k == 0) cycle
          row(j)%mechanism = role_word(role(k))
-         if (slip(k)) row(j)%slides = &
+         if (.not. slip(k)) cycle
+         row(j)%slides = some_number(sign(1.0_wp, fallen%increment(3, k))*joint(j)%tangent)
+         if (allocated(fallen%joint)) row(j)%slides = &
             & some_number(sign(1.0_wp, fallen%increment(3, k))*fallen%joint(k)%tangent)
       end do
    end subroutine tell_roles

@@ -8,9 +8,10 @@ submodule (dda_compute_case) dda_case_decision
    use dda_decision, only : decide_in_stages
    use dda_deck, only : parameter_t
    use dda_deck_set, only : put_number
-   use dda_key_names, only : analysis_restart, vehicle_position
+   use dda_key_names, only : analysis_restart, output_joints, vehicle_position
    use dda_mechanism, only : follow_collapse
    use dda_restart, only : load_restart
+   use dda_scene, only : searched_load
    use dda_settings, only : settings_t
    use dda_verdict, only : verdict
    implicit none
@@ -77,18 +78,47 @@ contains
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
       if (wanted) call build_once(this%family, value, this%scene)
       if (collapsed) call follow_collapse(this%scene, decision, this%album)
-      if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
-         & decision%contacts%joint = this%scene%contacts%joint
    end procedure see_collapse
 
-   !> Give the assembly nearest to critical that was found to stand its joints
-   module procedure place_joints
-      if (.not. allocated(this%critical%standing)) return
-      associate (contacts => this%critical%standing%contacts)
-         if (allocated(contacts%joint)) return
-         call build_once(this%family, this%critical%stands, this%standing)
-         contacts%joint = this%standing%contacts%joint
+   !> Forget the joints of a decision that are those of its scene
+   module procedure leave_joints
+      if (this%searches .or. this%limerick .or. this%scene%settings%current) return
+      associate (mine => this%decision%contacts, others => this%scene%contacts)
+         if (.not. (allocated(mine%joint) .and. allocated(others%joint))) return
+         if (size(mine%joint) == size(others%joint)) deallocate (mine%joint)
       end associate
+   end procedure leave_joints
+
+   !> Give what was decided the joints of its scene where it has none
+   module procedure place_joints
+      if (allocated(this%critical%standing)) call place_standing(this, &
+         & this%critical%standing%contacts)
+      if (this%limerick .or. allocated(this%error)) return
+      if (.not. this%searches) then
+         call take_joints(this%scene%contacts, this%decision%contacts)
+      else if (allocated(this%critical%fallen)) then
+         call take_joints(this%scene%contacts, this%critical%fallen%contacts)
+      end if
    end procedure place_joints
+
+   !> Give the assembly nearest to critical that was found to stand its joints: a load coefficient
+   !> moves none
+   pure subroutine place_standing(this, contacts)
+      type(case_t), intent(inout) :: this
+      type(contacts_t), intent(inout) :: contacts  !! Those of the assembly
+
+      if (allocated(contacts%joint)) return
+      if (this%family%load /= searched_load%none) call take_joints(this%scene%contacts, contacts)
+      if (allocated(contacts%joint) .or. .not. this%family%deck%value(output_joints)%flag) return
+      call build_once(this%family, this%critical%stands, this%standing)
+      contacts%joint = this%standing%contacts%joint
+   end subroutine place_standing
+
+   !> Take the joints of a scene that needs them no more
+   pure subroutine take_joints(from, to)
+      type(contacts_t), intent(inout) :: from, to
+
+      if (.not. allocated(to%joint)) call move_alloc(from%joint, to%joint)
+   end subroutine take_joints
 
 end submodule dda_case_decision

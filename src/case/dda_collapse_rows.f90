@@ -1,7 +1,6 @@
 !> How a case falls, or would fall next, in its rows
 submodule (dda_case_rows) dda_collapse_rows
    use dda_block_rows, only : scale_to_one
-   use dda_contact_types, only : joint_t
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
    implicit none
@@ -11,33 +10,45 @@ contains
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    module procedure tell_nearest
       type(scene_t) :: scene
-      type(joint_t), allocatable :: joint(:)
 
-      associate (critical => this%critical)
-         scene = this%scene
-         allocate (joint(0))
-         if (allocated(critical%standing)) then
-            ! a load coefficient changes no blocks
-            if (this%family%load == searched_load%none) then
-               scene = this%standing
-               call build_once(this%family, critical%stands, scene)
-            end if
-            if (allocated(critical%standing%contacts%joint)) then
-               joint = critical%standing%contacts%joint
-               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
-                  & scene%origin)
-            end if
-         else if (allocated(critical%fallen)) then
-            joint = critical%fallen%contacts%joint
-            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
-         end if
-         if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
-         if (.not. allocated(critical%fallen)) return
-         if (size(joint) > 0) call tell_roles(critical%fallen%contacts, joint, joint_row, &
-            & critical%fallen%outcome%motion)
-         call tell_fall(critical%fallen, scene, blocks)
-      end associate
+      ! a load coefficient changes no blocks
+      if (allocated(this%critical%standing) .and. this%family%load == searched_load%none) then
+         scene = this%standing
+         call build_once(this%family, this%critical%stands, scene)
+         call tell_scene(scene, this%critical, joint_row, blocks)
+      else
+         call tell_scene(this%scene, this%critical, joint_row, blocks)
+      end if
    end procedure tell_nearest
+
+   !> The same of its scene
+   pure subroutine tell_scene(scene, critical, joint_row, blocks)
+      type(scene_t), intent(in) :: scene
+      type(critical_t), intent(in) :: critical
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      type(told_blocks_t), intent(inout) :: blocks
+
+      if (allocated(critical%standing)) then
+         call tell_joints(scene, critical%standing%contacts, critical, joint_row)
+      else if (allocated(critical%fallen)) then
+         call tell_joints(scene, critical%fallen%contacts, critical, joint_row)
+      end if
+      if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+      if (allocated(critical%fallen)) call tell_fall(critical%fallen, scene, blocks)
+   end subroutine tell_scene
+
+   !> Joints of one side of the bracket, and what they do in the collapse
+   pure subroutine tell_joints(scene, contacts, critical, joint_row)
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts  !! Contacts of the side
+      type(critical_t), intent(in) :: critical
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+
+      if (.not. allocated(contacts%joint)) return
+      joint_row = joint_rows(contacts, scene%joint_angle_deg, scene%origin)
+      if (size(joint_row) > 0 .and. allocated(critical%fallen)) call tell_roles( &
+         & critical%fallen%contacts, contacts%joint, joint_row, critical%fallen%outcome%motion)
+   end subroutine tell_joints
 
    !> Displacements of the blocks in the collapse nearest to critical
    pure subroutine tell_fall(fallen, scene, blocks)

@@ -12,7 +12,7 @@ module dda_compute_case
    use dda_frames, only : album_t
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
-   use dda_key_names, only : arch_thickness_ratio, output_frames, output_joints, &
+   use dda_key_names, only : arch_thickness_ratio, output_frames, &
       & output_thrust_bar, output_thrust_joint, vehicle_worst
    use dda_kinds, only : wp
    use dda_scene, only : build_once, family_t, scene_t
@@ -109,7 +109,12 @@ module dda_compute_case
          type(decision_t), intent(inout) :: decision
       end subroutine see_collapse
 
-      !> Give the assembly nearest to critical that was found to stand its joints: a chain has none
+      !> Forget the joints of a decision that are those of its scene: its proof needs room
+      pure module subroutine leave_joints(this)
+         type(case_t), intent(inout) :: this
+      end subroutine leave_joints
+
+      !> Give what was decided the joints of its scene where it has none; the scene may lose them
       pure module subroutine place_joints(this)
          type(case_t), intent(inout) :: this
       end subroutine place_joints
@@ -185,7 +190,11 @@ contains
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
       if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
-         & .or. allocated(this%error))) call prove_case(this)
+         & .or. allocated(this%error))) then
+         call leave_joints(this)
+         call prove_case(this)
+      end if
+      call place_joints(this)
    end subroutine compute_case
 
    !> Search the critical value, and see the scenes on its two sides that tables and pictures need
@@ -197,7 +206,6 @@ contains
       if (allocated(this%critical%fallen)) &
          & call see_collapse(this, this%critical%falls, this%critical%fallen)
       call see_standing(this)
-      if (this%family%deck%value(output_joints)%flag) call place_joints(this)
       if (nint(this%family%deck%value(output_frames)%number) > 0) call take_pictures(this)
    end subroutine search_critical
 
@@ -213,7 +221,6 @@ contains
       if (allocated(this%critical%fallen)) &
          & call this%family%build(this%critical%falls, this%scene, error)
       call see_standing(this)
-      if (this%family%deck%value(output_joints)%flag) call place_joints(this)
       if (nint(this%family%deck%value(output_frames)%number) > 0) &
          & call repeat_with_pictures(this%family, this%critical, this%album)
    end subroutine search_limerick

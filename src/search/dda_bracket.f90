@@ -276,10 +276,8 @@ contains
       critical%standing = decision
    end subroutine share_forces
 
-   !> Give back what a search does not ask a kept decision for: its springs, and its blocks but for
-   !> their bars, which the family makes anew at any value
-   pure subroutine shed(decision)
-      type(decision_t), intent(inout) :: decision
+   !> Give back what a search does not ask a kept decision for
+   module procedure shed
       type(bar_state_t), allocatable :: bar(:)
 
       if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
@@ -288,7 +286,7 @@ contains
       decision%contacts%springs = joint_springs_t()
       if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
          & deallocate (decision%outcome%motion)
-   end subroutine shed
+   end procedure shed
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit, in_vain) result(value)

@@ -6,7 +6,7 @@ module dda_critical
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
-   use dda_search, only : critical_t, search_t
+   use dda_search, only : critical_t, decision_t, search_t
    implicit none
    private
 
@@ -85,6 +85,12 @@ module dda_critical
    end interface
 
    interface
+
+      !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
+      !> for their bars, which the family makes anew at any value
+      pure module subroutine shed(decision)
+         type(decision_t), intent(inout) :: decision
+      end subroutine shed
 
       !> Search the critical value of a family of scenes
       pure module subroutine find_critical(family, search, critical)

@@ -132,6 +132,14 @@ contains
       call follow_side(load, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
    end subroutine look_elsewhere
 
+   !> Keep of a decision what the scene does not have: a coefficient moves no joints
+   pure subroutine keep_state(decision)
+      type(decision_t), intent(inout) :: decision
+
+      call shed(decision)
+      deallocate (decision%contacts%joint)
+   end subroutine keep_state
+
    !> How a side falls that limit analysis brings down
    pure subroutine tell_fall(settings, graph, side)
       type(settings_t), intent(in) :: settings
@@ -339,6 +347,7 @@ contains
             & right%proof, critical%standing)
          if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
             & left%proof, critical%standing)
+         call keep_state(critical%standing)
       end if
    end subroutine conclude
 
@@ -362,6 +371,7 @@ contains
       call keep_collapse(scene, side, critical)
       allocate (critical%standing)
       call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
+      call keep_state(critical%standing)
       call keep_limit(search, low, high, side, critical)
    end subroutine close_bracket
 
@@ -395,6 +405,7 @@ contains
       allocate (critical%fallen)
       call record_collapse(scene%settings, scene%system, scene%contacts, side%proof, &
          & critical%fallen)
+      call keep_state(critical%fallen)
    end subroutine keep_collapse
 
 end submodule dda_load_search
