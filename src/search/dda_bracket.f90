@@ -284,6 +284,9 @@ contains
       decision%system = block_system_t()
       if (allocated(bar)) call move_alloc(bar, decision%system%bar)
       decision%contacts%springs = joint_springs_t()
+      if (present(keeps_joints)) then
+         if (.not. keeps_joints) deallocate (decision%contacts%joint)
+      end if
       if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
          & deallocate (decision%outcome%motion)
    end procedure shed

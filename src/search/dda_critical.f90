@@ -88,8 +88,11 @@ module dda_critical
 
       !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
       !> for their bars, which the family makes anew at any value
-      pure module subroutine shed(decision)
+      pure module subroutine shed(decision, keeps_joints)
          type(decision_t), intent(inout) :: decision
+         !> Whether it keeps its joints, as it does if this is not given: a load coefficient moves
+         !> none
+         logical, intent(in), optional :: keeps_joints
       end subroutine shed
 
       !> Search the critical value of a family of scenes

@@ -1,7 +1,5 @@
 !> Critical value of a load coefficient: the first collapse on the loading path, with the associated
-!> limit beside it
-!>
-!> The coefficient comes last on the path, so one path finds its critical value.
+!> limit beside it. The coefficient comes last on the path, so one path finds its critical value
 submodule (dda_critical) dda_load_search
    use dda_decision, only : follow_from_rest, record_collapse, record_rest
    use dda_error, only : error_t
@@ -131,14 +129,6 @@ contains
       call follow_side(load, scene, graph, origin, min(high, to + margin), 1.0_wp, search, right)
       call follow_side(load, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
    end subroutine look_elsewhere
-
-   !> Keep of a decision what the scene does not have: a coefficient moves no joints
-   pure subroutine keep_state(decision)
-      type(decision_t), intent(inout) :: decision
-
-      call shed(decision)
-      deallocate (decision%contacts%joint)
-   end subroutine keep_state
 
    !> How a side falls that limit analysis brings down
    pure subroutine tell_fall(settings, graph, side)
@@ -303,8 +293,7 @@ contains
    !> right, and the other one is told beside it
    pure subroutine conclude(search, low, high, scene, right, left, critical)
       type(search_t), intent(in) :: search
-      !> Ends of the range, from where the coefficient does nothing
-      real(wp), intent(in) :: low, high
+      real(wp), intent(in) :: low, high  !! Ends of the range, from where it does nothing
       type(scene_t), intent(in) :: scene
       type(side_t), intent(in) :: right, left
       type(critical_t), intent(inout) :: critical
@@ -347,7 +336,7 @@ contains
             & right%proof, critical%standing)
          if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
             & left%proof, critical%standing)
-         call keep_state(critical%standing)
+         call shed(critical%standing, keeps_joints=.false.)
       end if
    end subroutine conclude
 
@@ -371,7 +360,7 @@ contains
       call keep_collapse(scene, side, critical)
       allocate (critical%standing)
       call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
-      call keep_state(critical%standing)
+      call shed(critical%standing, keeps_joints=.false.)
       call keep_limit(search, low, high, side, critical)
    end subroutine close_bracket
 
@@ -405,7 +394,7 @@ contains
       allocate (critical%fallen)
       call record_collapse(scene%settings, scene%system, scene%contacts, side%proof, &
          & critical%fallen)
-      call keep_state(critical%fallen)
+      call shed(critical%fallen, keeps_joints=.false.)
    end subroutine keep_collapse
 
 end submodule dda_load_search
