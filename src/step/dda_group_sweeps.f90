@@ -18,11 +18,15 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_group_sweeps
    integer, parameter :: max_sweeps = 4000
    !> After this many sweeps the joints without force are looked at again
    integer, parameter :: round = 8
+   !> After so many of these rounds it is seen how soon many joints will settle
+   integer, parameter :: first_rounds = 2
+   !> Multiple of a change that counts as none which may be left where a longer step has failed
+   real(wp), parameter :: in_the_end = 1.0e5_wp
 
    !> What counts as noticeable
    real(wp), parameter :: falling = 0.8_wp
-   !> Sweeps that cost as much as interior springs of few joints
-   integer, parameter :: worth = 32
+   !> Sweeps that cost as much as interior springs of few joints, and of many
+   integer, parameter :: worth = 32, worth_many = 96
    !> Joints swept, again and again, before what is left is no more to be swept
    integer, parameter :: most_work = 400000
    !> The same where a longer step has failed
@@ -108,13 +112,16 @@ contains
       real(wp) :: wanted(2)
 
       wanted = [max(enough(1), no_force*largest), enough(2)]
-      if (purpose >= sweeps_for%patience .and. sweep > 0) wanted = coarsest*wanted
+      if (purpose >= sweeps_for%patience .and. sweep > 0) &
+         & wanted = merge(in_the_end, coarsest, purpose == sweeps_for%the_end)*wanted
       settled = change(1) <= enough(1) .or. all(change <= wanted) &
          & .and. (purpose /= sweeps_for%rounding .or. sweep >= strictly)
       ended = settled .or. purpose == sweeps_for%a_look
       if (ended) return
       if (purpose == sweeps_for%haste .and. sweep > 0) &
-         & ended = takes_long(maxval(change/wanted), lately)
+         & ended = takes_long(maxval(change/wanted), lately, worth)
+      if (purpose == sweeps_for%patience .and. sweep > first_rounds*round .and. n <= vast) &
+         & ended = takes_long(maxval(change/wanted), lately, worth_many)
       if (purpose >= sweeps_for%patience .and. sweep*n &
          & > merge(patient_work, most_work, purpose == sweeps_for%the_end)) then
          settled = (purpose >= sweeps_for%the_last .or. n > vast) &
@@ -125,12 +132,13 @@ contains
    end subroutine judge
 
    !> Whether a change that falls as it did in the last round needs more sweeps than are worth it
-   pure logical function takes_long(change, lately)
+   pure logical function takes_long(change, lately, most)
       real(wp), intent(in) :: change  !! The change over what counts as none
       real(wp), intent(in) :: lately
+      integer, intent(in) :: most     !! Sweeps that are worth it
 
       takes_long = .not. change < lately
-      if (.not. takes_long) takes_long = -log(change) < worth/round*log(change/lately)
+      if (.not. takes_long) takes_long = -log(change) < most/round*log(change/lately)
    end function takes_long
 
    !> One sweep over the joints forwards and one backwards

@@ -15,11 +15,14 @@ SEEDS = (0, 8, 11)
 WEDGED = (23, 122)
 #: What is pushed, in time, and comes to rest in its 17th step
 PUSHED = (3042, 3058)
+#: What is pressed hard, in time, by forces over gaps that a look leaves
+PRESSED = (304, 771)
 
 
 @pytest.mark.parametrize(
     ("name", "seed"),
-    [*itertools.product(PROPERTIES, SEEDS), *(("proof", s) for s in WEDGED), *(("energy", s) for s in PUSHED)])
+    [*itertools.product(PROPERTIES, SEEDS), *(("proof", s) for s in WEDGED),
+     *(("energy", s) for s in PUSHED + PRESSED)])
 def test_property_holds_of_random_assemblies(tmp_path: Path, name: str, seed: int) -> None:
     if name == "proof":
         pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
