@@ -185,6 +185,7 @@ def test_lock_of_a_killed_campaign_holds_up_no_other(tmp_path: Path) -> None:
     patience = time.monotonic() + 60
     while not list(out.glob("parts/*/results.csv")) and time.monotonic() < patience:
         time.sleep(0.005)
+    os.killpg(first.pid, signal.SIGSTOP)
     assert first.poll() is None
     second = subprocess.run(words, capture_output=True, text=True, check=False)
     assert second.returncode == 4 and "in use" in second.stderr
