@@ -179,7 +179,7 @@ def test_missing_program_is_told(tmp_path: Path, monkeypatch, capsys) -> None:
 def part_of(folder: Path, dda: Path, first: int, last: int) -> Part:
     """A part of the deck of 30 cases."""
     deck = write_deck(folder)
-    return Part(dda, deck, (), folder / "parts" / f"{first}-{last}", first, last, 2, ask(Path(DDA), deck, []).record)
+    return Part(dda, deck, (), folder / "parts" / f"{first}-{last}", first, last, ask(Path(DDA), deck, []).record)
 
 
 def test_program_that_is_killed_is_started_again(tmp_path: Path, unbroken) -> None:
@@ -196,7 +196,7 @@ def test_program_that_is_killed_is_started_again(tmp_path: Path, unbroken) -> No
     part = part_of(tmp_path, dying, 1, 30)
     assert run_part(part) == (0, "")
     assert int(count.read_text()) == 33
-    merge([part.folder], tmp_path, 30, part.record, ask(Path(DDA), part.deck, []).headers)
+    merge([part.folder], 30, tmp_path, part.record, ask(Path(DDA), part.deck, []).headers)
     assert tables(tmp_path) == unbroken
 
 

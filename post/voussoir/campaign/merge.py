@@ -40,27 +40,52 @@ class Summary:
     undecided: int
 
 
-def owners(parts: list[Path], total: int) -> np.ndarray:
-    """Number of the part that each case is taken from, the first that has finished it, -1 for none: (total + 1)."""
-    owner = np.full(total + 1, -1, dtype="i4")
+def owners(parts: list[Path], total: int) -> tuple[np.ndarray, bool]:
+    """Number of the part that each case is taken from, the first that has finished it, -1 for none: (total + 1).
+
+    And whether the parts one behind the other are all cases in order: every case is written to all tables before the
+    next one is, so that the order of one table is that of all.
+    """
+    owner, last, tidy = np.full(total + 1, -1, dtype="i4"), 0, True
     for number, part in enumerate(parts):
         cases = np.fromiter((case for case in cases_of(part / "results.csv") if case <= total), dtype="i8")
+        tidy = tidy and bool(np.array_equal(cases, np.arange(last + 1, last + len(cases) + 1)))
+        last += len(cases)
         owner[cases[owner[cases] < 0]] = number
-    return owner
+    return owner, tidy and last == total
 
 
-def merge(parts: list[Path], out: Path, total: int, record: str, headers: dict[str, str]) -> None:
-    """Merge parts into the folder of the campaign; each table, by its name and first line, is replaced at once."""
-    owner = owners(parts, total)
+def merge(parts: list[Path], total: int, out: Path, record: str, headers: dict[str, str]) -> np.ndarray:
+    """Merge parts into the folder of the campaign, each case from its owner: the owners.
+
+    Each table, by its name and first line, is replaced at once.
+    """
+    owner, tidy = owners(parts, total)
     (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
-        if name in headers and any((part / name).exists() for part in parts):
-            merge_table(name, headers[name], parts, owner, out)
-        else:
+        if name not in headers or not any((part / name).exists() for part in parts):
             (out / name).unlink(missing_ok=True)  # of another deck
+        elif tidy:
+            join_table(name, headers[name], parts, out)
+        else:
+            merge_table(name, headers[name], parts, owner, out)
     for number, part in enumerate(parts):
         copy_pictures(part, owner == number, out)
     replace(out / "deck.record", lambda file: file.write(record.encode()))
+    return owner
+
+
+def join_table(name: str, header: str, parts: list[Path], out: Path) -> None:
+    """Put one table of parts one behind the other."""
+
+    def write(file: BinaryIO) -> None:
+        file.write(header.encode() + b"\n")
+        for source in (part / name for part in parts if (part / name).exists()):
+            with source.open("rb") as body:
+                body.readline()
+                shutil.copyfileobj(body, file, _PIECE)
+
+    replace(out / name, write)
 
 
 def merge_table(name: str, header: str, parts: list[Path], owner: np.ndarray, out: Path) -> None:

@@ -31,25 +31,21 @@ class Part:
     #: Its first case and its last
     first: int
     last: int
-    #: Cases computed at the same time
-    jobs: int
     #: Text of deck.record that it must have in the end
     record: str
-    #: Whether the program tells on standard error how far it is
-    shown: bool = False
 
 
 def run_part(part: Part) -> tuple[int, str]:
     """Compute the cases of a part that are not finished: worst exit status of the program, and its message.
 
-    A program that was killed is started again. Where it dies without having finished anything, it computes one case at
-    a time, and the case at which it dies is left out, so that one case cannot hold up the others.
+    A program that was killed is started again. Where it dies without having finished anything, the case at which it
+    died is left out, so that one case cannot hold up the others.
     """
     left_out: set[int] = set()
-    jobs, before = part.jobs, -1
+    before = -1
     while True:
         _wait_for(part.folder)
-        status, message = _run(part, jobs, left_out)
+        status, message = _run(part, left_out)
         if status in (0, 3) and (part.folder / "deck.record").read_bytes() != part.record.encode():
             return 2, (
                 f"{part.deck}:1: error: expected the deck and its files as they were when the "
@@ -59,11 +55,10 @@ def run_part(part: Part) -> tuple[int, str]:
         if -status in (signal.SIGINT, signal.SIGTERM):
             return 3, "stopped before all cases were finished; call again to go on"
         done = set(cases_of(part.folder / "results.csv"))
-        if len(done) == before and jobs == 1:
+        if len(done) == before:
             left_out.add(next(case for case in range(part.first, part.last + 1) if case not in done | left_out))
             if len(done | left_out) > part.last - part.first:
                 return 0, ""
-        jobs = part.jobs if len(done) > before else 1
         before = len(done)
 
 
@@ -76,16 +71,13 @@ def _wait_for(folder: Path) -> None:
         return
 
 
-def _run(part: Part, jobs: int, left_out: set[int]) -> tuple[int, str]:
+def _run(part: Part, left_out: set[int]) -> tuple[int, str]:
     """Run the program once: exit status, and what it printed on standard error."""
-    command = [str(part.dda), "run", str(part.deck), "--out", str(part.folder), "--resume", "--jobs", str(jobs)]
+    command = [str(part.dda), "run", str(part.deck), "--out", str(part.folder), "--resume", "--quiet"]
     command += ["--cases", ranges_of(part.first, part.last, left_out)]
     for setting in part.settings:
         command += ["--set", setting]
-    if part.shown:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-        return done.returncode, ""
-    done = subprocess.run([*command, "--quiet"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return done.returncode, done.stderr.strip()
 
 

@@ -6,6 +6,7 @@ import hashlib
 import shutil
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -14,6 +15,8 @@ from voussoir.campaign.merge import replace
 from voussoir.campaign.part import Part, run_part
 from voussoir.dda_program import Asked, DdaError, ask
 
+#: Most cases of a part, and parts a worker: all are to end at about the same time
+LARGEST_PART, PARTS_A_WORKER = 10000, 8
 #: Folders that this process has, with their open lock files
 _LOCKS: dict[Path, BinaryIO] = {}
 #: Status and message of a part
@@ -134,8 +137,9 @@ def unlock(out: Path) -> None:
         _LOCKS.pop(out).close()
 
 
-def parts_of(campaign: Campaign, cases: range, jobs: int, largest: int, shown: bool = False) -> list[Part]:
-    """Parts of which some of these cases are: those that were begun, and new ones, at most so large, of the rest."""
+def parts_of(campaign: Campaign, cases: range, workers: int) -> list[Part]:
+    """Parts of which some of these cases are: those that were begun, and new ones of the rest, equal parts of all."""
+    largest = max(1, min(LARGEST_PART, -(-len(cases) // (PARTS_A_WORKER * workers))))
     spans = begun(campaign)
     at, new = cases.start, []
     for first, last in [*sorted(spans), (cases.stop, cases.stop)]:
@@ -145,7 +149,7 @@ def parts_of(campaign: Campaign, cases: range, jobs: int, largest: int, shown: b
     return [
         Part(
             campaign.dda, campaign.deck, campaign.settings, spans.get(span, campaign.parts / f"{span[0]}-{span[1]}"),
-            *span, jobs, campaign.asked.record, shown)
+            *span, campaign.asked.record)
         for span in sorted([*mine, *new])
     ]
 
@@ -167,9 +171,19 @@ def share(total: int, index: int, of: int) -> range:
     return range((index - 1) * total // of + 1, index * total // of + 1)
 
 
-def local_engine(parts: list[Part]) -> Iterator[Outcome]:
-    """One part after the other on this machine; the program computes several cases at the same time."""
-    return map(run_part, parts)
+def local_engine(workers: int) -> Engine:
+    """Processes on this machine."""
+
+    def run(parts: list[Part]) -> Iterator[Outcome]:
+        with ThreadPoolExecutor(workers) as pool:
+            futures = [pool.submit(run_part, part) for part in parts]
+            try:
+                for future in as_completed(futures):
+                    yield future.result()
+            finally:
+                pool.shutdown(cancel_futures=True)
+
+    return run
 
 
 def run_parts(parts: list[Part], engine: Engine, shown: bool = False) -> Outcome:

@@ -20,8 +20,6 @@ from voussoir.command.options import add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.extras import load
 
-#: Most cases of a task on a cluster, and tasks a thread: all are to end at about the same time
-LARGEST_TASK, TASKS_A_THREAD = 10000, 8
 #: Of several exit statuses the first one counts
 _WORST_FIRST = (4, 2, 3, 0)
 
@@ -86,32 +84,31 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> tuple[int, str]:
     """Compute what is not finished: worst status, and its message."""
-    done = owners([*begun(campaign).values()], campaign.total)
+    done, _ = owners([*begun(campaign).values()], campaign.total)
     found = int(np.count_nonzero(done[cases.start:cases.stop] >= 0))
     if found and not arguments.quiet:
         print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
-    shown = sys.stderr.isatty() and not arguments.quiet
+    workers, engine = arguments.workers, local_engine(arguments.workers)
     if arguments.scheduler:
-        engine, threads = dask_engine(arguments.scheduler)
-        largest = max(1, min(LARGEST_TASK, -(-len(cases) // (TASKS_A_THREAD * threads))))
-        return run_parts(parts_of(campaign, cases, 1, largest), engine, shown)
-    parts = parts_of(campaign, cases, arguments.workers, max(1, len(cases)), shown)
+        engine, workers = dask_engine(arguments.scheduler)
+    parts = parts_of(campaign, cases, workers)
     if any(part.folder == campaign.out for part in parts):  # the program takes the folder itself
         unlock(campaign.out)
-    return run_parts(parts, local_engine)
+    return run_parts(parts, engine, sys.stderr.isatty() and not arguments.quiet)
 
 
 def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
     """Merge, unless other shares are still to come."""
     parts = [folder for _, folder in sorted(begun(campaign).items())]
-    done = owners(parts, campaign.total) >= 0
-    if arguments.index is not None and not done[1:].all():
-        if not arguments.quiet:
-            left = campaign.total - int(np.count_nonzero(done))
-            print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
-        return 0 if done[cases.start:cases.stop].all() else 3
-    merge(parts, campaign.out, campaign.total, campaign.asked.record, campaign.asked.headers)
-    if done[1:].all() and arguments.index is None:
+    if arguments.index is not None:
+        done = owners(parts, campaign.total)[0] >= 0
+        if not done[1:].all():
+            if not arguments.quiet:
+                left = campaign.total - int(np.count_nonzero(done))
+                print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
+            return 0 if done[cases.start:cases.stop].all() else 3
+    owner = merge(parts, campaign.total, campaign.out, campaign.asked.record, campaign.asked.headers)
+    if (owner[1:] >= 0).all() and arguments.index is None:
         shutil.rmtree(campaign.parts, ignore_errors=True)
     return _report(campaign, arguments, merged(campaign.out))
 
