@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import shutil
 import sys
@@ -112,8 +113,6 @@ def lock(out: Path, shared: bool) -> None:
 
     DdaError of status 4 if another campaign or run has it.
     """
-    import fcntl
-
     file = (out / "run.lock").open("ab")
     try:
         fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
