@@ -2,20 +2,8 @@
 !>
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
-submodule (dda_critical) dda_bracket
-   use dda_bar, only : bar_state_t
-   use dda_block_system, only : block_system_t
-   use dda_chain_decision, only : decide_chain
-   use dda_chain_unfold, only : unfold
-   use dda_contact_types, only : joint_springs_t
-   use dda_decision, only : decide
-   use dda_error, only : error_t
+submodule (dda_critical:dda_find_critical) dda_bracket
    use dda_friction_cone, only : joint_face_t
-   use dda_kinds, only : wp
-   use dda_scene, only : link_once, scene_t, searched_load
-   use dda_scene_graph, only : decides_as_graph
-   use dda_search, only : decision_t
-   use dda_verdict, only : verdict
    implicit none
 
    !> Most decisions of a search
@@ -32,59 +20,8 @@ submodule (dda_critical) dda_bracket
 
 contains
 
-   !> Search the critical value of a family of scenes
-   module procedure find_critical
-      type(search_t) :: part
-      logical :: done
-
-      done = search%in_time
-      part = search
-      if (done) call find_critical_in_time(family, search, critical)
-      if (.not. done .and. family%load /= searched_load%none) &
-         & call find_critical_load(family, part, critical, done)
-      if (done) return
-      call close_bracket(family, part, critical)
-      if (part%low > search%low) call find_other(family, search, part%low, critical)
-      if (family%load /= searched_load%none) call tell_fall(family, critical)
-      if (allocated(critical%standing) .and. .not. family%decides_chains) &
-         & call share_forces(family, critical)
-      if (allocated(critical%fallen)) call unfold(critical%fallen)
-      if (allocated(critical%standing)) call unfold(critical%standing)
-   end procedure find_critical
-
-   !> Search the other side of a value that stands: what is found there is told beside what was
-   !> found on this side, or instead of it
-   pure subroutine find_other(family, search, stands, critical)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      real(wp), intent(in) :: stands  !! The value that stands
-      type(critical_t), intent(inout) :: critical
-      type(search_t) :: part
-      type(critical_t) :: other
-      integer :: steps, passes, factorisations
-
-      part = search
-      part%high = stands
-      call close_bracket(family, part, other)
-      steps = critical%steps + other%steps
-      passes = critical%passes + other%passes
-      factorisations = critical%factorisations + other%factorisations
-      if (critical%verdict == verdict%found) then
-         critical%has_other = other%verdict == verdict%found
-         critical%other = merge(other%stop, middle(other%stands, other%falls), other%stops)
-      else if (critical%verdict /= verdict%undecided .and. other%verdict == verdict%found) then
-         critical = other
-      end if
-      critical%steps = steps
-      critical%passes = passes
-      critical%factorisations = factorisations
-   end subroutine find_other
-
    !> Close the bracket around the value
-   pure subroutine close_bracket(family, search, critical)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical  !! What was found; chains may be halves
+   module procedure close_bracket
       type(proposal_t) :: proposal
       type(joint_face_t), allocatable :: foreseen(:)
       real(wp) :: limit, start, value
@@ -138,7 +75,7 @@ contains
             undecided = 0
          end if
       end do
-   end subroutine close_bracket
+   end procedure close_bracket
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
    pure subroutine find_collapse(family, search, start, limit, critical)
@@ -187,109 +124,6 @@ contains
          if (answer /= verdict%undecided) return
       end do
    end subroutine ascend
-
-   !> Decide one value and keep the decision on its side of the bracket
-   pure subroutine decide_at(family, value, critical, answer)
-      class(family_t), intent(in) :: family
-      real(wp), intent(in) :: value
-      type(critical_t), intent(inout) :: critical
-      integer, intent(out) :: answer
-      type(decision_t), allocatable :: decision
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
-      logical :: decided
-
-      answer = verdict%undecided
-      critical%decisions = critical%decisions + 1
-      allocate (decision)
-      decided = family%decides_chains
-      if (decided) call link_once(family, value, critical%link)
-      if (decided) decided = critical%link%known
-      if (decided) call decide_chain(critical%link%settings, critical%link%chain, decision, &
-         & decided, critical%reaction)
-      if (.not. decided) then
-         call family%build(value, scene, error)
-         if (allocated(error)) then
-            critical%reason = error%message
-            critical%undecided_at = value
-            return
-         end if
-         critical%current = scene%settings%current
-         call decide(scene%settings, scene%system, scene%contacts, decision, verdict_only=.true.)
-      end if
-      critical%steps = critical%steps + decision%outcome%steps
-      critical%passes = critical%passes + decision%outcome%passes
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
-      answer = decision%outcome%verdict
-      call shed(decision)
-      if (answer == verdict%collapsed) then
-         critical%falls = value
-         call move_alloc(decision, critical%fallen)
-      else if (answer == verdict%stable) then
-         critical%stands = value
-         call move_alloc(decision, critical%standing)
-      else
-         critical%reason = decision%outcome%reason
-         critical%undecided_at = value
-      end if
-   end subroutine decide_at
-
-   !> How a load lets fall what falls nearest to critical, as the joint graph tells it: to follow it
-   !> in steps takes minutes
-   pure subroutine tell_fall(family, critical)
-      class(family_t), intent(in) :: family
-      !> What was found, its decision that falls among it
-      type(critical_t), intent(inout) :: critical
-      type(decision_t) :: decision
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
-
-      if (.not. allocated(critical%fallen)) return
-      if (critical%fallen%by_graph) return
-      call family%build(critical%falls, scene, error)
-      if (allocated(error)) return
-      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
-      call decide(scene%settings, scene%system, scene%contacts, decision)
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
-      if (decision%outcome%verdict /= verdict%collapsed) return
-      call shed(decision)
-      critical%fallen = decision
-   end subroutine tell_fall
-
-   !> Share out the forces of what stands nearest to critical, which its proof alone does not tell
-   pure subroutine share_forces(family, critical)
-      class(family_t), intent(in) :: family
-      !> What was found, its decision that stands among it
-      type(critical_t), intent(inout) :: critical
-      type(decision_t) :: decision
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
-
-      call family%build(critical%stands, scene, error)
-      if (allocated(error)) return
-      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
-      call decide(scene%settings, scene%system, scene%contacts, decision)
-      critical%steps = critical%steps + decision%outcome%steps
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
-      if (decision%outcome%verdict /= verdict%stable) return
-      call shed(decision)
-      critical%standing = decision
-   end subroutine share_forces
-
-   !> Give back what a search does not ask a kept decision for
-   module procedure shed
-      type(bar_state_t), allocatable :: bar(:)
-
-      if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
-      decision%system = block_system_t()
-      if (allocated(bar)) call move_alloc(bar, decision%system%bar)
-      decision%contacts%springs = joint_springs_t()
-      if (present(keeps_joints)) then
-         if (.not. keeps_joints) deallocate (decision%contacts%joint)
-      end if
-      if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
-         & deallocate (decision%outcome%motion)
-   end procedure shed
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit, in_vain) result(value)
@@ -345,15 +179,6 @@ contains
       share = 0.5_wp + 0.1_wp*real(merge(1, -1, mod(undecided, 2) == 0)*((undecided + 1)/2), wp)
       not_again = critical%falls + share*(critical%stands - critical%falls)
    end function not_again
-
-   !> Middle of a bracket; the geometric one where the ends are of different magnitude
-   pure real(wp) function middle(a, b)
-      real(wp), intent(in) :: a  !! One end
-      real(wp), intent(in) :: b  !! The other end
-
-      middle = (a + b)/2.0_wp
-      if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
-   end function middle
 
    !> Whether the last collapse is the one that the proposal asked for, at the tolerance, so that
    !> another trace would tell nothing new
