@@ -19,23 +19,19 @@ contains
       state%fineness = step%fineness
       state%unseen = step%unseen
       state%rates = step%rates
-      state%swept = step%swept
-      state%strayed = step%strayed
-      state%again = step%again
-      state%patient = step%patient
+      state%effort = step%effort
       state%passes = step%passes
       state%motion = step%motion
-      allocate (state%multiplier(3, more), state%start(3, more), source=0.0_wp)
-      allocate (state%trial, state%force, mold=state%start)
+      allocate (state%force(3, more), state%trial(3, more), source=0.0_wp)
       allocate (state%face(more))
-      state%multiplier(:, :n) = step%multiplier
-      state%start(:, :n) = step%start
+      state%force(:, :n) = step%force
+      state%trial(:, :n) = step%trial
       do i = 1, size(bars%trial)
          call make_joint(bars, i, n + i, springs, load)
-         state%multiplier(:, n + i) = max(-springs%shift(:, n + i), springs%rest(:, n + i))
-         state%multiplier(3, n + i) = max(-springs%cone(n + i)%limit, &
+         state%force(:, n + i) = max(-springs%shift(:, n + i), springs%rest(:, n + i))
+         state%force(3, n + i) = max(-springs%cone(n + i)%limit, &
             & min(springs%cone(n + i)%limit, springs%rest(3, n + i)))
-         state%start(:, n + i) = state%multiplier(:, n + i)
+         state%trial(:, n + i) = state%force(:, n + i)
       end do
    end procedure append_bars
 
@@ -73,7 +69,7 @@ contains
       springs%equation(:, j) = bars%equation(:, i)
       springs%shift(1:2, j) = unbounded
       bound = max(-unbounded, min(unbounded, bars%bound(:, i)))
-      bound = (1.0_wp - bars%share)*bars%start(i) + bars%share*bound
+      bound = (1.0_wp - bars%share)*bars%force(i) + bars%share*bound
       if (bars%stiffness(2, i) > 0.0_wp) then
          springs%row(:, 2, :, j) = -bars%row(:, 2, :, i)
          springs%soft(2, j) = 1.0_wp/(bars%share*bars%stiffness(2, i))
@@ -93,7 +89,7 @@ contains
       end if
       springs%row(:, k, :, j) = sign*bars%row(:, 1, :, i)
       springs%soft(k, j) = 1.0_wp/(bars%share*bars%stiffness(1, i))
-      springs%rest(k, j) = -sign*((1.0_wp - bars%share)*bars%start(i) &
+      springs%rest(k, j) = -sign*((1.0_wp - bars%share)*bars%force(i) &
          & + bars%share*bars%trial(i) - middle)
       do side = 1, 2
          e = bars%equation(side, i)
@@ -108,16 +104,12 @@ contains
       n = size(step%face)
       step%motion = state%motion
       step%increment = state%increment(:, :n)
-      step%multiplier = state%multiplier(:, :n)
-      step%start = state%start(:, :n)
       step%trial = state%trial(:, :n)
       step%force = state%force(:, :n)
       step%face = state%face(:n)
       step%passes = state%passes
       step%settled = state%settled
-      step%many = state%many
-      step%swept = state%swept
-      step%strayed = state%strayed
+      step%effort = state%effort
    end procedure drop_bars
 
 end submodule dda_bars_in_time

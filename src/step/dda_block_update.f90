@@ -102,9 +102,12 @@ contains
       integer :: j
 
       contacts%face = step%state%face
-      contacts%trial = step%state%trial
       contacts%force = step%state%force
       contacts%increment = step%state%increment
+      do j = 1, size(contacts%joint)
+         contacts%trial(:, j) = step%state%trial(:, j) &
+            & - contacts%springs%stiffness(j)*contacts%increment(:, j)
+      end do
       contacts%gap = contacts%gap + step%state%increment
       if (allocated(step%curve)) contacts%gap = contacts%gap + step%curve
       if (settings%current .and. settings%dynamic) then

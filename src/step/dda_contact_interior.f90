@@ -176,7 +176,7 @@ contains
       x%force = force(:, p%joint)
       allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
       call see_openings(springs, view, p, x%motion, opening)
-      where (p%follows) opening = opening + p%soft*(x%force - p%before)
+      where (p%follows) opening = opening + p%soft*(x%force - p%force_before)
       p%size = sum(max(x%force(1:2, :), -opening(1:2, :)/p%unit(1:2, :), 0.0_wp), &
          & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
       p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))

@@ -137,7 +137,7 @@ contains
 
       call see_joints(equations, springs, state, sweeps%view)
       call group_joints(springs, size(state%motion, 2), n, first, joint)
-      sweeps%force = state%multiplier
+      sweeps%force = state%force
       allocate (sweeps%moved, mold=state%motion)
       allocate (sweeps%motion(size(state%motion, 1), 0:size(state%motion, 2)))
       call move_blocks(equations, springs, sweeps%view, sweeps%force, sweeps%moved)
@@ -149,7 +149,7 @@ contains
       settled = .false.
       begun = state%passes
       most = 0
-      state%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%patient
+      state%effort%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%effort%patient
       do g = 1, n
          call settle_group(equations, springs, joint(first(g):first(g + 1) - 1), state, sweeps, &
             & settled(g))
@@ -185,14 +185,14 @@ contains
          & *state%unseen)
       call sweep_group(springs, joint, sweeps_for%a_look, enough, sweeps, settled)
       if (settled) return
-      hasty = size(joint) > vast .and. .not. state%patient
+      hasty = size(joint) > vast .and. .not. state%effort%patient
       if (asks_faces(sweeps%view, springs, joint, state)) then
          call keep_to_faces(equations, springs, sweeps%view, joint, size(joint) > many, hasty, &
-            & state%fineness, state%multiplier, sweeps%moved, sweeps%force, state%passes, settled)
+            & state%fineness, state%force, sweeps%moved, sweeps%force, state%passes, settled)
          if (settled .or. hasty) call move_group(equations, springs, joint, sweeps)
-         if (.not. settled) state%swept = hasty
-         state%strayed = state%strayed .or. .not. settled .and. size(joint) > many
-      else if (size(joint) <= many .or. state%patient) then
+         if (.not. settled) state%effort%swept = hasty
+         state%effort%strayed = state%effort%strayed .or. .not. settled .and. size(joint) > many
+      else if (size(joint) <= many .or. state%effort%patient) then
          enough = sweeps%enough
          call sweep_group(springs, joint, sweeps_for%haste, enough, sweeps, settled)
       end if
@@ -216,12 +216,12 @@ contains
       if (size(joint) > many) &
          & call sweep_group(springs, joint, sweeps_for%patience, enough, sweeps, settled)
       if (settled) return
-      call solve_interior(equations, springs, sweeps%view, joint, state%multiplier, sweeps%force, &
+      call solve_interior(equations, springs, sweeps%view, joint, state%force, sweeps%force, &
          & sweeps%motion(:, 1:), state%passes, settled)
       call move_group(equations, springs, joint, sweeps)
       if (settled) return
       purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)
-      if (state%patient) purpose = sweeps_for%the_end
+      if (state%effort%patient) purpose = sweeps_for%the_end
       call sweep_group(springs, joint, purpose, enough, sweeps, settled)
    end subroutine settle_by_springs
 
@@ -235,8 +235,8 @@ contains
       logical :: is_there(0:size(view%lower, 3))
       integer :: forces, i, k
 
-      asks_faces = .not. state%rates .and. .not. (state%strayed .and. size(joint) > many)
-      if (.not. asks_faces .or. state%again) return
+      asks_faces = .not. state%rates .and. .not. (state%effort%strayed .and. size(joint) > many)
+      if (.not. asks_faces .or. state%effort%again) return
       is_there = .false.
       forces = 0
       do i = 1, size(joint)
@@ -286,14 +286,12 @@ contains
 
       call move_blocks(equations, springs, sweeps%view, sweeps%force, state%motion)
       state%increment = relative_displacement(springs, state%motion)
-      state%multiplier = sweeps%force
       state%force = sweeps%force
       do j = 1, size(state%force, 2)
          state%face(j) = face_of(springs%cone(j), state%force(:, j), springs%shift(:, j))
          do k = 1, 3
-            state%start(k, j) = state%force(k, j) - springs%stiffness(j)*sweeps%view%gap(k, j)
+            state%trial(k, j) = state%force(k, j) - springs%stiffness(j)*sweeps%view%gap(k, j)
          end do
-         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
       end do
    end subroutine keep_forces
 

@@ -49,7 +49,7 @@ contains
       end do
       allocate (view%answer, mold=springs%row)
       allocate (view%give(3, 3, size(springs%stiffness)), source=0.0_wp)
-      allocate (view%gap, mold=state%start)
+      allocate (view%gap, mold=state%trial)
       allocate (view%soft(3, size(springs%stiffness)), view%rest(3, size(springs%stiffness)), &
          & source=0.0_wp)
       if (allocated(springs%soft)) view%soft = springs%soft
@@ -58,7 +58,7 @@ contains
          do k = 1, 3
             view%give(k, k, j) = view%soft(k, j)
          end do
-         view%gap(:, j) = (state%multiplier(:, j) - state%start(:, j))/springs%stiffness(j)
+         view%gap(:, j) = (state%force(:, j) - state%trial(:, j))/springs%stiffness(j)
          call see_joint(springs, inverse, j, view)
       end do
    end subroutine see_joints

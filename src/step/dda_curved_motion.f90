@@ -49,19 +49,19 @@ contains
       associate (step => run%step, state => run%step%state)
          do pass = 0, max_passes
             call see_curves(run, state%motion, error)
-            if (error <= max(left_over*size_of, merge(of_many, of_unseen, state%many &
-               & .and. .not. state%swept)*state%unseen) .or. pass == max_passes) return
+            if (error <= max(left_over*size_of, merge(of_many, of_unseen, state%effort%many &
+               & .and. .not. state%effort%swept)*state%unseen) .or. pass == max_passes) return
             last = state
             curve = step%curve
             springs = run%contacts%springs
-            state%multiplier = state%force
-            state%again = .true.
+            state%effort%again = .true.
+            state%effort%in_vain = error <= jammed*size_of
             call take_turned_rows(run, last%motion)
             call take_springs(run%equations)
             call settle_in_time(run%settings, (run%equations%fixed%target), run%equations, &
-               & run%contacts%springs, state, in_vain=error <= jammed*size_of)
+               & run%contacts%springs, state)
             if (state%settled) cycle
-            if (error > jammed*size_of) return
+            if (.not. state%effort%in_vain) return
             ! blocks that jam where they turn: what they lie in one another is left
             state = last
             step%curve = curve
@@ -129,7 +129,7 @@ contains
                step%curve(:, j) = 0.0_wp
                step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
             end associate
-            step%state%start(:, j) = step%state%multiplier(:, j) - springs%stiffness(j) &
+            step%state%trial(:, j) = step%state%force(:, j) - springs%stiffness(j) &
                & *([gap(1:2, j), 0.0_wp] + step%curve(:, j))
          end do
       end associate

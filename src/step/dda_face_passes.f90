@@ -63,11 +63,11 @@ contains
          call change_faces(springs, p, x, face, changes)
          held = changes == 0
          if (held) then
-            rest = maxval(p%soft/p%unit*abs(x%force - p%before), .not. p%follows)/p%size
+            rest = maxval(p%soft/p%unit*abs(x%force - p%force_before), .not. p%follows)/p%size
             agreed = rest <= p%fineness*merge(tolerance, remains, rest > falling*last_rest)
             if (agreed) return
             last_rest = rest
-            where (.not. p%follows) p%before = x%force
+            where (.not. p%follows) p%force_before = x%force
             changes = huge(changes)
          else if (2*changes > last) then
             return

@@ -54,9 +54,8 @@ contains
       real(wp) :: bound(size(springs%stiffness)), tolerance
 
       tolerance = 1.0e-11_wp*equations%force_scale
-      if (goes_on .and. any(abs(state%multiplier) > 0.0_wp)) then
+      if (goes_on .and. any(abs(state%force) > 0.0_wp)) then
          begun = state
-         state%force = state%multiplier
          bound = max(0.0_wp, coulomb_bound(springs, state))
          call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
          if (state%settled) return

@@ -20,7 +20,7 @@ contains
       ! strain that follows its load has no part in impulses
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       allocate (p%joint, source=joint)
-      allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
+      allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%force_before(3, n))
       allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%held(7, n))
       call number_blocks(springs, size(equations%load, 2), p)
       p%entry = 0
@@ -77,11 +77,11 @@ contains
             where (.not. given) p%unit(:, i) = 1.0_wp
             p%bounded(1:2, i) = given(1:2) .and. springs%shift(1:2, j) < unbounded
             p%bounded(3:4, i) = given(3) .and. springs%cone(j)%limit < huge(1.0_wp)
-            p%before(:, i) = force(:, j)
+            p%force_before(:, i) = force(:, j)
          end associate
       end do
       p%follows = view%soft(:, p%joint) > 0.0_wp
-      where (p%follows) p%before = view%rest(:, p%joint)
+      where (p%follows) p%force_before = view%rest(:, p%joint)
       p%soft = compliance*min(p%unit, count(p%given)/sum(1.0_wp/p%unit, p%given))
       where (p%follows) p%soft = view%soft(:, p%joint)
    end subroutine pose_springs
@@ -155,7 +155,7 @@ contains
       end do
       call push_blocks(springs, p, x%force, p%balance)
       call see_openings(springs, view, p, x%motion, p%opening)
-      p%opening = merge(-p%opening - p%soft*(x%force - p%before), 0.0_wp, p%given)
+      p%opening = merge(-p%opening - p%soft*(x%force - p%force_before), 0.0_wp, p%given)
    end procedure see_lack
 
    !> Forces and motion that give what is lacking

@@ -9,8 +9,8 @@ submodule (dda_step) dda_multipliers
    use dda_settle_in_time, only : settle_in_time
    implicit none
 
-   !> Most passes of the multipliers in one step
-   integer, parameter :: max_multiplier_passes = 100
+   !> Most passes of one step in which forces become multipliers
+   integer, parameter :: max_force_passes = 100
    !> Most changes of the conditions of bars in one step; after the few only the worst bar changes
    integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
@@ -52,30 +52,30 @@ contains
       end if
    end subroutine settle_with_bars
 
-   !> Settle the joints until neither the multipliers nor the forces at the held points change
+   !> Settle the joints until neither their forces nor those at the held points change
    pure subroutine settle_exactly(settings, equations, springs, state)
       type(settings_t), intent(in) :: settings
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
-      real(wp) :: multiplier(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
+      real(wp) :: force(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
       real(wp) :: change, scale
       integer :: pass
       logical :: has_multipliers
 
       has_multipliers = multiplies(settings, springs)
-      multiplier = state%multiplier
-      opening = state%start - multiplier
-      do pass = 1, max_multiplier_passes
-         if (has_multipliers) state%start = multiplier + opening
+      force = state%force
+      opening = state%trial - force
+      do pass = 1, max_force_passes
+         if (has_multipliers) state%trial = force + opening
          call settle_once(settings, equations, springs, state)
          if (.not. state%settled) return
          call correct_fixed_forces((equations%fixed%target), state%motion, equations%fixed, &
             & equations%load, change)
-         if (has_multipliers) change = max(change, maxval(abs(state%force - multiplier)))
+         if (has_multipliers) change = max(change, maxval(abs(state%force - force)))
          scale = equations%force_scale + sum(abs(equations%fixed%force))
          if (change <= force_tolerance*scale) return
-         multiplier = state%force
+         force = state%force
       end do
       state%settled = .false.
    end subroutine settle_exactly

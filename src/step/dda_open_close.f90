@@ -176,7 +176,7 @@ contains
       slope = line%slope + way*line%curvature
       do j = 1, size(line%rate, 2)
          shift = springs%shift(:, j)
-         call project(state%cone(j), shift + state%start(:, j) &
+         call project(state%cone(j), shift + state%trial(:, j) &
             & - springs%stiffness(j)*(line%from(:, j) + way*line%rate(:, j)), force, face)
          slope = slope - dot_product(force - shift, line%rate(:, j))
       end do
@@ -266,7 +266,7 @@ contains
       !> Face that each joint ought to have: (n_joint)
       type(joint_face_t), intent(out) :: wanted(:)
 
-      call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
+      call solve_faces(equations, springs, state%cone, state%face, state%trial, state%motion)
       state%passes = state%passes + 1
       state%settled = .false.
       if (.not. equations%factor%usable) return

@@ -101,8 +101,8 @@ contains
       if (.not. allocated(album%support)) return
       associate (system => run%system, joint => run%contacts%joint, step => run%step, &
          & fixed => run%equations%fixed)
-         if (allocated(step%impulse)) then
-            album%reaction_now = forces_of_blocks(system, joint, step%impulse, album%support)
+         if (allocated(step%mean_force)) then
+            album%reaction_now = forces_of_blocks(system, joint, step%mean_force, album%support)
          else
             album%reaction_now = forces_of_blocks(system, joint, run%contacts%force, album%support)
          end if
@@ -111,7 +111,7 @@ contains
             i = findloc(album%support(2, :), h, dim=1)
             force = 0.0_wp
             force(fixed%axis(k)) = fixed%force(k)
-            if (allocated(step%held_impulse)) force(fixed%axis(k)) = step%held_impulse(k)
+            if (allocated(step%held_mean_force)) force(fixed%axis(k)) = step%held_mean_force(k)
             associate (held => run%settings%boundary%held(h))
                place = held%point
                if (run%settings%current) place = moved_point(held%point, &

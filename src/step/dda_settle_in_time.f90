@@ -1,9 +1,9 @@
-!> Contacts of blocks that move in time: multipliers and friction of one step, or of its impulses
+!> Contacts of blocks that move in time: forces and friction of one step, or of its impacts
 !>
-!> With given bounds of the shear forces the problem is convex, and the passes of the multipliers
-!> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of
-!> the step before. Whatever the bounds are, friction takes energy and no momentum; so a step in
-!> which they change a little to the end counts.
+!> With given bounds of the shear forces the problem is convex, and the passes in which the forces
+!> become multipliers end quickly. Around them, the bounds follow the normal forces (Coulomb),
+!> beginning with those of the step before. Whatever the bounds are, friction takes energy and no
+!> momentum; so a step in which they change a little to the end counts.
 module dda_settle_in_time
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
    use dda_block_factor, only : block_factor_t
@@ -55,7 +55,7 @@ module dda_settle_in_time
       !> Which openings follow their forces for good: (3, n_joint)
       logical, allocatable :: follows(:, :)
       !> Forces of the step before, or those without opening: (3, n_joint) [N/m]
-      real(wp), allocatable :: before(:, :)
+      real(wp), allocatable :: force_before(:, :)
       !> Size of a force [N/m]
       real(wp) :: size = 0.0_wp
       !> How much smaller than usual forces must be that faces leave
@@ -84,7 +84,7 @@ module dda_settle_in_time
    !> end wherever they are, and only the firmest springs are tried before them
    integer, parameter :: vast = 2000
 
-   !> Most passes of the multipliers for given bounds
+   !> Most passes in which forces become multipliers, for given bounds
    integer, parameter :: max_passes = 100
    !> Most corrections of the bounds
    integer, parameter :: max_corrections = 40
@@ -122,8 +122,8 @@ module dda_settle_in_time
          type(equations_t), intent(in) :: equations
          !> The springs of the joints; their stiffness only measures gaps here
          type(joint_springs_t), intent(in) :: springs
-         !> Multipliers and trial forces to begin with in; motion, forces and faces out, as far as
-         !> they came
+         !> Forces and trial forces to begin with in; motion, forces and faces out, as far as they
+         !> came
          type(step_state_t), intent(inout) :: state
       end subroutine sweep_contacts
 
@@ -199,8 +199,8 @@ module dda_settle_in_time
 
 contains
 
-   !> Settle multipliers and bounds
-   pure subroutine settle_in_time(settings, target, equations, springs, state, in_vain)
+   !> Settle forces and bounds
+   pure subroutine settle_in_time(settings, target, equations, springs, state)
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
       real(wp), intent(in) :: target(:)
@@ -209,31 +209,27 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Forces and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      !> Whether it is no matter if this does not end; then little is tried
-      logical, intent(in), optional :: in_vain
       real(wp) :: opening(3, size(springs%stiffness))
 
-      opening = state%start - state%multiplier
+      opening = state%trial - state%force
       if (settings%flow == flow_rule%associated) then
-         call settle_multipliers(settings, target, opening, equations, springs, state)
+         call settle_forces(settings, target, opening, equations, springs, state)
          return
       end if
       ! glue hands on waves of strain, which are finer than what sweeps leave
       if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp)) then
          call sweep_with_bars(equations, springs, state)
          if (state%settled .or. size(springs%stiffness) > most_joints) return
-         if (present(in_vain)) then
-            if (in_vain) return
-         end if
+         if (state%effort%in_vain) return
       end if
       call settle_bounds(settings, target, opening, equations, springs, state)
    end subroutine settle_in_time
 
-   !> Settle the multipliers for bounds of friction that follow their normal forces
+   !> Settle the forces for bounds of friction that follow the normal ones
    pure subroutine settle_bounds(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: target(:)
-      !> Trial forces at the beginning without multipliers: (3, n_joint) [N/m]
+      !> Trial forces at the beginning without the forces themselves: (3, n_joint) [N/m]
       real(wp), intent(in) :: opening(:, :)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
@@ -245,13 +241,12 @@ contains
       integer :: correction
 
       glued = .not. springs%cone%limit < huge(1.0_wp)
-      state%force = state%multiplier
       bound = friction_of(springs, state)
       least = huge(least)
       do correction = 1, max_corrections
          state%cone%friction = 0.0_wp
          state%cone%limit = bound
-         call settle_multipliers(settings, target, opening, equations, springs, state)
+         call settle_forces(settings, target, opening, equations, springs, state)
          if (.not. state%settled) return
          now = friction_of(springs, state)
          change = now - bound
@@ -306,31 +301,31 @@ contains
       call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
    end subroutine sweep_with_bars
 
-   !> Settle the multipliers and the forces at the held points for given cones
-   pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)
+   !> Settle the forces of joints and held points for given cones
+   pure subroutine settle_forces(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: target(:)
       real(wp), intent(in) :: opening(:, :)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> Multipliers and faces to begin with in, motion and joints out
+      !> Forces and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, scale, noise(size(springs%stiffness))
+      real(wp) :: change, scale, noise(size(springs%stiffness)), force(3, size(springs%stiffness))
       integer :: pass
 
-      ! gaps that contradict one another by rounding let the multipliers grow without end
+      ! gaps that contradict one another by rounding let the forces grow without end
       noise = springs%stiffness*equations%gap_noise
       do pass = 1, max_passes
-         state%start = state%multiplier + opening
+         force = state%force
+         state%trial = force + opening
          call iterate_open_close(equations, springs, settings%max_changes, state)
          if (.not. state%settled) return
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
-         change = max(change, maxval(maxval(abs(state%force - state%multiplier), dim=1) - noise))
-         state%multiplier = state%force
+         change = max(change, maxval(maxval(abs(state%force - force), dim=1) - noise))
          ! without loads the forces of held points alone bear on the blocks
          scale = equations%force_scale + sum(abs(equations%fixed%force))
          if (change <= fine*scale) return
       end do
       state%settled = change <= coarse*scale
-   end subroutine settle_multipliers
+   end subroutine settle_forces
 end module dda_settle_in_time

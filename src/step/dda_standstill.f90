@@ -76,8 +76,8 @@ contains
          step%state%settled = .true.
          step%velocity = step%state%motion
          step%has_velocity = .true.
-         step%impulse = run%contacts%force
-         step%held_impulse = run%equations%fixed%force
+         step%mean_force = run%contacts%force
+         step%held_mean_force = run%equations%fixed%force
          step%impact = 0.0_wp
          step%farthest = 0.0_wp
          step%acceleration = 0.0_wp

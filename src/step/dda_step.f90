@@ -12,7 +12,7 @@ module dda_step
    use dda_settings, only : settings_t
    use dda_step_context, only : in_time, run_t, step_outcome_t
    use dda_step_reach, only : next_reach
-   use dda_step_state, only : equations_t, step_state_t
+   use dda_step_state, only : effort_t, equations_t, step_state_t
    use dda_verdict, only : measure_step
    implicit none
    private
@@ -179,7 +179,7 @@ contains
       do attempt = 0, max_retries
          if (is_too_short(run)) exit
          if (run%step%renews) call place_contacts(run)
-         run%step%state%patient = attempt > hasty_tries
+         run%step%state%effort%patient = attempt > hasty_tries
          outcome = step_outcome_t(accepted=run%step%is_solved)
          if (.not. outcome%accepted) then
             call assemble(run)
@@ -242,25 +242,21 @@ contains
       associate (state => run%step%state)
          if (.not. allocated(state%motion)) allocate (state%motion, mold=run%equations%weight)
          if (allocated(state%face)) then
-            if (size(state%face) /= n) deallocate (state%increment, state%start, state%trial, &
-               & state%force, state%face, state%cone, state%multiplier)
+            if (size(state%face) /= n) deallocate (state%increment, state%trial, state%force, &
+               & state%face, state%cone)
          end if
          if (.not. allocated(state%face)) then
-            allocate (state%increment(3, n), state%start(3, n))
-            allocate (state%trial(3, n), state%force(3, n), state%face(n), state%cone(n))
-            allocate (state%multiplier(3, n))
+            allocate (state%increment(3, n), state%trial(3, n), state%force(3, n))
+            allocate (state%face(n), state%cone(n))
          end if
          state%motion = 0.0_wp
-         state%multiplier = run%contacts%force
-         state%start = run%contacts%trial
+         state%force = run%contacts%force
+         state%trial = run%contacts%trial
          state%face = run%contacts%face
          state%cone = run%contacts%springs%cone
          state%unsettled_work = 0.0_wp
          state%settled = .false.
-         state%many = .false.
-         state%swept = .false.
-         state%strayed = .false.
-         state%again = .false.
+         state%effort = effort_t(patient=state%effort%patient)
          state%passes = 0
       end associate
    end subroutine begin_step

@@ -93,7 +93,7 @@ contains
          call predict(run)
          call place_contacts(run)
          run%step%state%fineness = of_try
-         run%step%state%patient = .true.
+         run%step%state%effort%patient = .true.
          call assemble(run)
          call solve_contacts(run)
          if (.not. run%step%state%settled) return

@@ -71,11 +71,11 @@ module dda_step_context
       type(joint_t), allocatable :: joint(:)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
-      !> Mean forces of the joints that change the velocities, where blocks move in time:
-      !> (3, n_joint) [N/m]
-      real(wp), allocatable :: impulse(:, :)
+      !> Mean forces of the joints, impacts among them, that change the velocities where blocks move
+      !> in time: (3, n_joint) [N/m]
+      real(wp), allocatable :: mean_force(:, :)
       !> Likewise those of the springs at held points: (n_spring) [N/m]
-      real(wp), allocatable :: held_impulse(:)
+      real(wp), allocatable :: held_mean_force(:)
       !> Energy that impacts took from the velocities [J/m]
       real(wp) :: impact = 0.0_wp
       !> Contacts that meet more slowly do not rebound [m/s]

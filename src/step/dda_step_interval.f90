@@ -89,7 +89,7 @@ contains
             & /real(size(equations%mass, 3), wp)), stiffest)
          march%dt = march%longest
          call assemble_first_loads(run)
-         call solve_faces(equations, springs, glued, closed, state%start, state%motion)
+         call solve_faces(equations, springs, glued, closed, state%trial, state%motion)
          if (.not. equations%factor%usable) then
             call fatal_error(error, "stiffness matrix is singular even with all joints closed")
             return

@@ -11,7 +11,25 @@ module dda_step_state
    implicit none
    private
 
-   public :: step_state_t, joint_forces, disagreement, force_noise, equations_t
+   public :: effort_t, step_state_t, joint_forces, disagreement, force_noise, equations_t
+
+   !> What a step spends on the forces of its joints, and what has been tried of it
+   type :: effort_t
+      !> Whether longer steps have failed: then very many joints get all the time that they take
+      logical :: patient = .false.
+      !> Whether many joints hang together, so that less than what is unseen is no matter
+      logical :: many = .false.
+      !> Whether very many joints were swept in this step since their faces did not agree: once more
+      !> these would not either
+      logical :: swept = .false.
+      !> Whether the faces of many joints did not agree in this step: rather than once more they are
+      !> swept
+      logical :: strayed = .false.
+      !> Whether the forces to begin with are those of a try of this step
+      logical :: again = .false.
+      !> Whether it is no matter if this does not end; then little is tried
+      logical :: in_vain = .false.
+   end type effort_t
 
    !> The motion of the step and the joints at its end
    type :: step_state_t
@@ -19,13 +37,9 @@ module dda_step_state
       real(wp), allocatable :: motion(:, :)
       !> Opening at the two contacts and slip of each joint: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
-      !> Forces at the beginning of the step: (3, n_joint) [N/m]
-      real(wp), allocatable :: multiplier(:, :)
-      !> Trial forces at the beginning of the step: (3, n_joint) [N/m]
-      real(wp), allocatable :: start(:, :)
-      !> Trial forces at its end: (3, n_joint) [N/m]
+      !> Trial forces where the motion begins: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
-      !> Admissible forces at its end: (3, n_joint) [N/m]
+      !> Admissible forces, those of the step before to begin with: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
       !> Faces that they lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
@@ -38,18 +52,8 @@ module dda_step_state
       !> Whether velocities are sought: then it does not matter which of all forces that stop the
       !> blocks are found, in a motion those nearest to the ones before count
       logical :: rates = .false.
-      !> Whether longer steps have failed: then very many joints get all the time that they take
-      logical :: patient = .false.
-      !> Whether many joints hang together, so that less than that is no matter
-      logical :: many = .false.
-      !> Whether very many joints were swept in this step since their faces did not agree: once more
-      !> these would not either
-      logical :: swept = .false.
-      !> Whether the faces of many joints did not agree in this step: rather than once more they are
-      !> swept
-      logical :: strayed = .false.
-      !> Whether the forces to begin with are those of a try of this step
-      logical :: again = .false.
+      !> What is spent on the forces
+      type(effort_t) :: effort
       !> Work of what the bounds of the shear forces would still change by [J/m]
       real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
@@ -130,27 +134,27 @@ contains
    !> How far the force that each joint's face gives is from the admissible one, beyond rounding
    pure subroutine disagreement(springs, state, gap, wanted)
       type(joint_springs_t), intent(in) :: springs
-      !> The step; its increments and trial forces are set
+      !> The step; its increments are set
       type(step_state_t), intent(inout) :: state
       !> Length of the difference: (n_joint) [N/m]
       real(wp), intent(out) :: gap(:)
       !> Face that each joint ought to have: (n_joint)
       type(joint_face_t), intent(out) :: wanted(:)
-      real(wp) :: admissible(3), constant(3), held(3), shift(3), tangent(3, 3)
+      real(wp) :: admissible(3), constant(3), held(3), shift(3), tangent(3, 3), trial(3)
       integer :: j
 
       state%increment = relative_displacement(springs, state%motion)
       do j = 1, size(gap)
          shift = springs%shift(:, j)
-         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
-         call project(state%cone(j), state%trial(:, j) + shift, admissible, wanted(j))
-         held = state%trial(:, j) + shift
+         trial = state%trial(:, j) - springs%stiffness(j)*state%increment(:, j)
+         call project(state%cone(j), trial + shift, admissible, wanted(j))
+         held = trial + shift
          if (.not. is_stuck(state%face(j))) then
             call apply_face(state%cone(j), state%face(j), tangent, constant)
             held = matmul(tangent, held) + constant
          end if
          gap(j) = sqrt(sum((held - admissible)**2)) &
-            & - 16.0_wp*epsilon(1.0_wp)*maxval(abs(state%trial(:, j)))
+            & - 16.0_wp*epsilon(1.0_wp)*maxval(abs(trial))
       end do
    end subroutine disagreement
 
@@ -158,14 +162,14 @@ contains
    pure subroutine joint_forces(springs, state)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state  !! The step; everything but the motion is set
-      real(wp) :: shift(3)
+      real(wp) :: shift(3), trial(3)
       integer :: j
 
       state%increment = relative_displacement(springs, state%motion)
       do j = 1, size(state%face)
          shift = springs%shift(:, j)
-         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
-         call project(state%cone(j), state%trial(:, j) + shift, state%force(:, j), state%face(j))
+         trial = state%trial(:, j) - springs%stiffness(j)*state%increment(:, j)
+         call project(state%cone(j), trial + shift, state%force(:, j), state%face(j))
          state%force(:, j) = state%force(:, j) - shift
       end do
    end subroutine joint_forces

@@ -7,7 +7,7 @@
 !>
 !>    M (v1 - v) = dt B1' (N - f),   B1 v1 >= -e B1 v,   N in its cone,   N = 0 where it is more
 !>
-!> At the end of a step that an impact ends, contacts that were closed before have borne f up to it:
+!> At the end of a step that an impact ends, f has acted up to it where contacts were closed before:
 !> that is not taken back, and N is what the impact adds. So a closed contact ends at rest if e = 0,
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
@@ -45,9 +45,8 @@ submodule (dda_step) dda_velocity
       logical, allocatable :: closed(:, :)
       !> Speeds at which they must part: (2, n_joint) [m/s]
       real(wp), allocatable :: part(:, :)
-      !> Forces borne up to an impact that ends the step; none where there is none: (3, n_joint)
-      !> [N/m]
-      real(wp), allocatable :: borne(:, :)
+      !> Forces up to an impact that ends the step; none where there is none: (3, n_joint) [N/m]
+      real(wp), allocatable :: force_before(:, :)
       !> Velocities by constant acceleration: (n_dof, n_equation)
       real(wp), allocatable :: steady(:, :)
       !> Blocks without strain rates: (n_block)
@@ -79,15 +78,15 @@ contains
          share = 0.0_wp
          if (any(impact%closed)) &
             & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
-         step%impulse = (1.0_wp - share)*step%impulse + share*step%state%force
-         step%held_impulse = (1.0_wp - share)*step%held_impulse + share*equations%fixed%force
+         step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
+         step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          step%impact = before - kinetic_energy(equations, step%velocity)
       end associate
    end procedure solve_impacts
 
    !> Which contacts are closed at the end of a step, and which of them have met there, faster than
    !> weight makes resting contacts meet: they must part with restitution times that speed, and up
-   !> to then contacts that were closed before the step have borne their forces
+   !> to then the forces of contacts that were closed before the step have acted
    pure subroutine see_impacts(run, impact)
       type(run_t), intent(in) :: run
       type(impact_t), intent(out) :: impact
@@ -103,7 +102,8 @@ contains
          & - packed_velocity(run%system, size(run%step%state%motion, 1))
       impact%follows = strain_follows(run%system, run%step%longest)
       opening = relative_displacement(impact%springs, impact%steady)
-      allocate (impact%part(2, size(opening, 2)), impact%borne(3, size(opening, 2)), source=0.0_wp)
+      allocate (impact%part(2, size(opening, 2)), source=0.0_wp)
+      allocate (impact%force_before(3, size(opening, 2)), source=0.0_wp)
       has_impact = .false.
       do j = 1, size(opening, 2)
          do k = 1, 2
@@ -114,11 +114,11 @@ contains
                impact%part(k, j) = -run%settings%restitution*opening(k, j)
             else if (run%contacts%gap(k, j) &
                & <= near_gap(run%system, run%contacts%joint(j)%block)) then
-               impact%borne([k, 3], j) = run%step%state%force([k, 3], j)
+               impact%force_before([k, 3], j) = run%step%state%force([k, 3], j)
             end if
          end do
       end do
-      if (.not. has_impact) impact%borne = 0.0_wp
+      if (.not. has_impact) impact%force_before = 0.0_wp
    end subroutine see_impacts
 
    !> Contacts that are closed at the end of a step: those that carry a force, and those without a
@@ -152,9 +152,9 @@ contains
       call begin_rates(run, impact, springs, state)
       associate (step => run%step, fixed => run%equations%fixed)
          call settle_in_time(run%settings, step%dt*fixed%rate, run%equations, springs, state)
-         step%impulse = state%force + impact%borne
+         step%mean_force = state%force + impact%force_before
          ! half of the forces of the motion have acted as they did
-         step%held_impulse = fixed%force + held_force/2.0_wp
+         step%held_mean_force = fixed%force + held_force/2.0_wp
          fixed%force = held_force
          step%has_velocity = state%settled
          if (.not. step%has_velocity) return
@@ -178,7 +178,7 @@ contains
          end do
          do j = 1, size(run%contacts%joint)
             call add_load(springs, springs%cone(j), joint_face_t(), &
-               & impact%borne(:, j) - run%step%state%force(:, j), j, equations%load)
+               & impact%force_before(:, j) - run%step%state%force(:, j), j, equations%load)
          end do
          do i = 1, size(equations%fixed%point)
             e = equations%fixed%equation(i)
@@ -225,13 +225,14 @@ contains
       state%fineness = state%fineness*finer*run%step%dt/run%step%longest
       state%unseen = 10.0_wp*state%unseen
       state%rates = .true.
-      state%multiplier = state%force - impact%borne
+      state%effort%in_vain = .false.
+      state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
          associate (pair => run%contacts%joint(j)%block)
             springs%stiffness(j) = over_inertia*joint_mass(run%system, pair)/run%step%dt**2
             call keep_closed(impact%closed(:, j), impact%follows(pair), j, springs, state)
          end associate
-         state%start(1:2, j) = state%start(1:2, j) &
+         state%trial(1:2, j) = state%trial(1:2, j) &
             & + springs%stiffness(j)*run%step%dt*impact%part(:, j)
       end do
    end subroutine begin_rates
@@ -250,19 +251,19 @@ contains
       type(step_state_t), intent(inout) :: state
       integer :: k, side
 
-      state%start(:, j) = state%multiplier(:, j)
+      state%trial(:, j) = state%force(:, j)
       do k = 1, 2
          state%face(j)%open(k) = .not. closed(k)
          if (closed(k)) cycle
          springs%row(:, k, :, j) = 0.0_wp
          springs%shift(k, j) = 0.0_wp
-         state%multiplier(k, j) = 0.0_wp
-         state%start(k, j) = -1.0_wp
+         state%force(k, j) = 0.0_wp
+         state%trial(k, j) = -1.0_wp
       end do
       if (.not. any(closed)) then
          springs%row(:, 3, :, j) = 0.0_wp
-         state%multiplier(3, j) = 0.0_wp
-         state%start(3, j) = 0.0_wp
+         state%force(3, j) = 0.0_wp
+         state%trial(3, j) = 0.0_wp
       end if
       do side = 1, 2
          if (follows(side)) springs%row(4:, :, side, j) = 0.0_wp
@@ -272,7 +273,7 @@ contains
    !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
    !> may lie off one line. The two blocks give back what that brings in by one change of spin
    pure subroutine keep_moment(run, after)
-      !> The run, with the springs that half of the impulses have acted by; spins are changed
+      !> The run, with the springs that half of the forces have acted by; spins are changed
       type(run_t), intent(inout) :: run
       !> The springs after the step, which the other half acts by
       type(joint_springs_t), intent(in) :: after
@@ -287,7 +288,7 @@ contains
             if (any(pair == 0)) cycle
             moment = step%dt/sum(run%equations%mass(3, 3, pair)) &
                & *(excess(run, run%contacts%springs, j, step%state%force(:, j), half_way) &
-               & + excess(run, after, j, step%impulse(:, j) - step%state%force(:, j), &
+               & + excess(run, after, j, step%mean_force(:, j) - step%state%force(:, j), &
                & step%after%motion))
             change(pair) = change(pair) - moment
          end do

@@ -28,7 +28,7 @@ module dda_bar_springs
       !> Force that the bar would have at the beginning of the step without bounds: (n) [N]
       real(wp), allocatable :: trial(:)
       !> Force at the beginning: (n) [N]
-      real(wp), allocatable :: start(:)
+      real(wp), allocatable :: force(:)
       !> Least and largest force: (2, n) [N]
       real(wp), allocatable :: bound(:, :)
       !> One of bar_condition: (n)
@@ -51,7 +51,7 @@ contains
       allocate (bars%equation(2, n), source=0)
       allocate (bars%entry(n), bars%condition(n), source=0)
       allocate (bars%row(n_dof, 2, 2, n), bars%stiffness(2, n), bars%bound(2, n), source=0.0_wp)
-      allocate (bars%trial(n), bars%start(n), source=0.0_wp)
+      allocate (bars%trial(n), bars%force(n), source=0.0_wp)
       do i = 1, n
          do side = 1, 2
             associate (b => settings%boundary%bar(i)%block(side))
@@ -79,8 +79,8 @@ contains
             if (settings%dynamic .and. bar%pushes) bars%bound(1, i) = -huge(1.0_wp)
             if (state%condition == bar_condition%broken) bars%bound(:, i) = 0.0_wp
             bars%trial(i) = bar%prestress + bar%stiffness*(elongation - state%plastic)
-            bars%start(i) = min(max(bars%trial(i), bars%bound(1, i)), bars%bound(2, i))
-            bars%stiffness(2, i) = max(0.0_wp, bars%start(i))*bars%stiffness(2, i)
+            bars%force(i) = min(max(bars%trial(i), bars%bound(1, i)), bars%bound(2, i))
+            bars%stiffness(2, i) = max(0.0_wp, bars%force(i))*bars%stiffness(2, i)
             bars%condition(i) = condition_of(bars%trial(i), bars%bound(:, i))
          end associate
       end do
@@ -120,7 +120,7 @@ contains
       case default
          force = bars%bound(2, i)
       end select
-      force = bars%share*force + (1.0_wp - bars%share)*bars%start(i)
+      force = bars%share*force + (1.0_wp - bars%share)*bars%force(i)
    end function acting_force
 
    !> Add the bars to matrix and load of the blocks, or take them away

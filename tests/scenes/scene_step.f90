@@ -13,7 +13,7 @@ module scene_step
    implicit none
    private
 
-   public :: begin, begin_run, energy, unbalance, wall
+   public :: begin, begin_run, energy, largest_trial, unbalance, wall
 
 contains
 
@@ -33,11 +33,11 @@ contains
       call assemble_blocks(scene%system, scene%settings, dt, equations)
       n = size(scene%contacts%joint)
       allocate (state%motion(size(equations%weight, 1), size(equations%weight, 2)))
-      allocate (state%increment(3, n), state%start(3, n), state%trial(3, n), state%force(3, n))
-      allocate (state%multiplier(3, n), state%face(n), state%cone(n))
+      allocate (state%increment(3, n), state%trial(3, n), state%force(3, n))
+      allocate (state%face(n), state%cone(n))
       state%motion = 0.0_wp
-      state%start = scene%contacts%trial
-      state%multiplier = scene%contacts%force
+      state%trial = scene%contacts%trial
+      state%force = scene%contacts%force
       state%face = scene%contacts%face
       state%cone = scene%contacts%springs%cone
    end subroutine begin
@@ -57,6 +57,21 @@ contains
       run%step%dt = dt
       call begin(scene, dt, run%equations, run%step%state)
    end subroutine begin_run
+
+   !> Largest trial force at the end of a step [N/m]
+   pure real(wp) function largest_trial(springs, state)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The solved step
+      type(step_state_t), intent(in) :: state
+      integer :: j
+
+      largest_trial = 0.0_wp
+      do j = 1, size(state%face)
+         largest_trial = max(largest_trial, maxval(abs(state%trial(:, j) &
+            & - springs%stiffness(j)*state%increment(:, j))))
+      end do
+   end function largest_trial
 
    !> What a step minimises: half the motion's stiffness and inertia, less the work of the loads,
    !> and for each joint the function of the trial force whose gradient is the admissible force,
@@ -88,7 +103,7 @@ contains
             if (e > 0) increment = increment + matmul(motion(:, e), springs%row(:, :, side, j))
          end do
          associate (shift => springs%shift(:, j), p => springs%stiffness(j))
-            trial = state%start(:, j) + shift - p*increment
+            trial = state%trial(:, j) + shift - p*increment
             call project(state%cone(j), trial, force, face)
             energy = energy + dot_product(force, trial - force/2.0_wp)/p &
                & + dot_product(shift, increment)
