@@ -245,13 +245,15 @@ contains
       is_free = maxval(abs(rate)*(rays%bounded + rays%free)) <= free*maxval(abs(velocity))
    end function is_free
 
-   !> Forces that are equal along all rays, of the size of a load
+   !> Forces that are equal along all rays, several times as large as a load: nearer to the borders
+   !> of the cones the first steps are short
    pure subroutine begin_inside(rays, load, point)
       type(joint_rays_t), intent(in) :: rays
       real(wp), intent(in) :: load(:, 0:)
       type(interior_point_t), intent(out) :: point  !! Has these forces
+      real(wp), parameter :: several = 5.0_wp
 
-      point%x = max(1.0_wp, sqrt(size_of_load(load)))*rays%bounded
+      point%x = several*max(1.0_wp, sqrt(size_of_load(load)))*rays%bounded
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one

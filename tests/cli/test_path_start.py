@@ -139,6 +139,17 @@ def test_a_fall_of_very_rough_piers_takes_few_factorisations(tmp_path: Path) -> 
     assert max(int(row["factorisations"]) for row in found) <= 40
 
 
+@pytest.mark.parametrize(("seed", "limit"), [(94252, 0.660545399), (96428, 3.719716430), (96680, 6.202530221),
+                                             (96682, 0.473189627), (96718, 0.815632907)])
+def test_the_first_mechanism_of_a_fall_takes_few_factorisations(tmp_path: Path, seed: int, limit: float) -> None:
+    """Rings and Voronoi cuts beside their limits by HiGHS: iterations begin well inside the cones."""
+    loads = ", ".join(repr(limit * share) for share in (0.5, 0.99, 1.003, 1.01, 1.03, 1.1, 5.0))
+    found = rows(tmp_path, block_text(*make_pushed(seed)), f"&analysis flow = 'associated' /\n"
+                 f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
+    assert [row["verdict"] for row in found] == [*2 * ["stable"], *5 * ["collapsed"]]
+    assert max(int(row["factorisations"]) for row in found) <= 30
+
+
 def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> None:
     """Piers that jump 58 times on their way: decisions beside the collapse agree with the search."""
     text = block_text(*make_pushed(45045))
