@@ -138,7 +138,7 @@ contains
       real(wp), parameter :: inside = 10.0_wp
 
       allocate (point%v, mold=path%dead)
-      allocate (point%x, point%s, mold=rays%bounded)
+      allocate (point%x, point%s, mold=springs%stiffness)
       springs%stiffness = rays%bounded + rays%free
       call set_springs(rays, path%mass, lift, springs)
       call solve_springs(rays, springs, path%dead, point%v, point%s)

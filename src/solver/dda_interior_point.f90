@@ -46,7 +46,7 @@ contains
       type(interior_point_t), intent(out) :: point  !! Where the iteration begins
       real(wp) :: product, power
 
-      allocate (point%x, point%s, mold=rays%bounded)
+      allocate (point%x, point%s, mold=springs%stiffness)
       allocate (point%v, mold=path%dead)
       springs%stiffness = rays%bounded + rays%free
       call set_springs(rays, path%mass, lift, springs)
@@ -57,9 +57,9 @@ contains
          point%v = point%v/power
          point%s = point%s/power
       end if
-      if (any(rays%bounded > 0.0_wp)) then
-         point%x = point%x + 1.5_wp*max(0.0_wp, -minval(point%x, rays%bounded > 0.0_wp)) + inside
-         point%s = point%s + 1.5_wp*max(0.0_wp, -minval(point%s, rays%bounded > 0.0_wp)) &
+      if (any(rays%bounded > 0)) then
+         point%x = point%x + 1.5_wp*max(0.0_wp, -minval(point%x, rays%bounded > 0)) + inside
+         point%s = point%s + 1.5_wp*max(0.0_wp, -minval(point%s, rays%bounded > 0)) &
             & + inside*maxval(abs(point%v))
          product = sum(point%x*point%s*rays%bounded)
          power = sum(point%s*rays%bounded)

@@ -68,7 +68,8 @@ contains
       turn%unit_response = 0.0_wp
       turn%response = 0.0_wp
       turn%dv = 0.0_wp
-      allocate (turn%aim, turn%unit_rate, turn%rate, turn%dx, turn%ds, mold=rays%bounded)
+      allocate (turn%aim(n_side, size(rays%block, 2)))
+      allocate (turn%unit_rate, turn%rate, turn%dx, turn%ds, mold=turn%aim)
       turn%least_factor = path%negligible/goal%tolerance
    end subroutine begin_turns
 
@@ -320,7 +321,7 @@ contains
       real(wp) :: per(n_side, 2)    !! Of forces, of rates: (n_side, 2)
       logical :: is_bounded(n_side)
 
-      is_bounded = rays%bounded(:, j) > 0.0_wp
+      is_bounded = rays%bounded(:, j) > 0
       per(:, 1) = rays%bounded(:, j)/merge(point%x(:, j), 1.0_wp, is_bounded)
       per(:, 2) = rays%bounded(:, j)/merge(point%s(:, j), 1.0_wp, is_bounded)
    end function one_over

@@ -8,6 +8,7 @@ module dda_joint_rays
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
    use dda_limit_certificate, only : unit_of_length
+   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -15,6 +16,8 @@ module dda_joint_rays
 
    !> Rays of a joint
    integer, parameter :: n_side = 4
+   !> Kind of the numbers that say what a ray is: one byte each
+   integer, parameter :: byte = int8
 
    !> The rays of all joints
    type :: joint_rays_t
@@ -27,9 +30,9 @@ module dda_joint_rays
       real(wp), allocatable :: arm(:, :, :)
       !> One for rays whose factor may not be negative, zero for free and for empty ones:
       !> (n_side, n_joint)
-      real(wp), allocatable :: bounded(:, :)
+      integer(byte), allocatable :: bounded(:, :)
       !> One for rays of any sign: (n_side, n_joint)
-      real(wp), allocatable :: free(:, :)
+      integer(byte), allocatable :: free(:, :)
       !> Number of rays whose factor may not be negative
       integer :: n_bounded = 0
       !> Unit of length: [m]
@@ -66,7 +69,7 @@ contains
             end do
          end do
       end do
-      rays%n_bounded = nint(sum(rays%bounded))
+      rays%n_bounded = count(rays%bounded > 0)
    end subroutine set_rays
 
    !> The rays of one joint
@@ -74,47 +77,49 @@ contains
       integer, intent(in) :: kind           !! What it can carry, one of joint_kind
       real(wp), intent(in) :: friction      !! Coefficient of friction
       real(wp), intent(out) :: force(:, :)  !! N1, N2, T of each ray: (3, n_side)
-      real(wp), intent(out) :: bounded(:)   !! One where the factor may not be negative: (n_side)
-      real(wp), intent(out) :: free(:)      !! One where it may have any sign: (n_side)
+      !> One where the factor may not be negative: (n_side)
+      integer(byte), intent(out) :: bounded(:)
+      !> One where it may have any sign: (n_side)
+      integer(byte), intent(out) :: free(:)
       real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
       real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
       real(wp) :: long
 
       force = 0.0_wp
-      bounded = 0.0_wp
-      free = 0.0_wp
+      bounded = 0
+      free = 0
       select case (kind)
       case (joint_kind%contact, joint_kind%corner)
          ! rays of joints with much friction are as long as the others
          long = max(1.0_wp, friction)
          force(:, 1) = (first + friction*shear)/long
-         bounded(1) = 1.0_wp
+         bounded(1) = 1
          if (friction > 0.0_wp) then
             force(:, 2) = (first - friction*shear)/long
-            bounded(2) = 1.0_wp
+            bounded(2) = 1
          end if
          if (kind == joint_kind%contact) then
             force(:, 3) = (second + friction*shear)/long
             force(:, 4) = (second - friction*shear)/long
-            bounded(3) = 1.0_wp
+            bounded(3) = 1
             bounded(4) = bounded(2)
             if (.not. friction > 0.0_wp) force(:, 4) = 0.0_wp
          end if
       case (joint_kind%no_slip)
          force(:, 1:3) = reshape([first, second, shear], [3, 3])
-         bounded(1:2) = 1.0_wp
-         free(3) = 1.0_wp
+         bounded(1:2) = 1
+         free(3) = 1
       case (joint_kind%corner_no_slip)
          force(:, 1:2) = reshape([first, shear], [3, 2])
-         bounded(1) = 1.0_wp
-         free(2) = 1.0_wp
+         bounded(1) = 1
+         free(2) = 1
       case (joint_kind%pin)
          force(:, 1:2) = reshape([first, shear], [3, 2])
-         free(1:2) = 1.0_wp
+         free(1:2) = 1
       case (joint_kind%mirror)
          force(:, 1:2) = reshape([first, second], [3, 2])
-         free(1:2) = 1.0_wp
+         free(1:2) = 1
       end select
    end subroutine span_joint
 
@@ -181,7 +186,8 @@ contains
       real(wp), intent(in) :: x(:, :)       !! Their factors: (n_side, n_joint)
       real(wp), intent(in) :: unit
       real(wp), intent(out) :: force(:, :)  !! N1, N2, T: (3, n_joint) [N/m]
-      real(wp) :: ray(3, n_side), bounded(n_side), free(n_side)
+      real(wp) :: ray(3, n_side)
+      integer(byte) :: bounded(n_side), free(n_side)
       integer :: j
 
       do j = 1, size(x, 2)
