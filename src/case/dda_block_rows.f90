@@ -2,8 +2,8 @@
 !> openings and what joints do in the collapse; the joints of a picture
 module dda_block_rows
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_t, place_joint, same_joint
-   use dda_contacts, only : contacts_t
+   use dda_contact_types, only : joint_place_t, joint_t, place_joint, same_joint
+   use dda_contacts, only : contacts_t, joint_place
    use dda_deformation, only : displacement_matrix
    use dda_frames, only : frame_t
    use dda_friction_cone, only : contact_state
@@ -107,7 +107,8 @@ contains
    end function small_displacements
 
    !> Rows of all joints
-   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
+   pure function joint_rows(system, contacts, joint_angle_deg, origin) result(row)
+      type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
@@ -115,12 +116,14 @@ contains
       real(wp), intent(in) :: origin(2)
       !> The rows, without the number of the case: (n_joint)
       type(joint_row_t) :: row(size(contacts%joint))
+      type(joint_place_t) :: place
       integer :: j
 
       do j = 1, size(row)
+         place = joint_place(system, contacts, j)
          row(j)%joint = j
          if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
-         call tell_forces(contacts%joint(j), contacts%force(:, j), origin, row(j))
+         call tell_forces(contacts%joint(j), place, contacts%force(:, j), origin, row(j))
          row(j)%opening_intrados = contacts%gap(1, j)
          if (contacts%joint(j)%n_contact > 1) &
             & row(j)%opening_extrados = some_number(contacts%gap(2, j))
@@ -132,23 +135,24 @@ contains
          if (all(contacts%face(j)%open)) row(j)%state = "open"
          if (row(j)%state == "sliding") row(j)%slides = &
             & some_number(way_against(contacts%force(3, j), contacts%gap(3, j)) &
-            & *contacts%joint(j)%tangent)
+            & *place%tangent)
       end do
    end function joint_rows
 
    !> Where a joint is, and the force that its first block puts on its second
-   pure subroutine tell_forces(joint, force, origin, row)
+   pure subroutine tell_forces(joint, place, force, origin, row)
       type(joint_t), intent(in) :: joint
+      type(joint_place_t), intent(in) :: place
       real(wp), intent(in) :: force(3)  !! Its force N1, N2, T: (3) [N/m]
       real(wp), intent(in) :: origin(2)
       type(joint_row_t), intent(inout) :: row
 
       row%block = joint%block
-      row%intrados = joint%contact(1)%point + origin
-      row%extrados = joint%contact(joint%n_contact)%point + origin
+      row%intrados = place%point(:, 1) + origin
+      row%extrados = place%point(:, joint%n_contact) + origin
       row%normal_force = force(1) + force(2)
       row%shear_force = force(3)
-      row%force = row%normal_force*joint%normal + row%shear_force*joint%tangent
+      row%force = row%normal_force*place%normal + row%shear_force*place%tangent
       row%point = (row%intrados + row%extrados)/2.0_wp
       if (.not. row%normal_force > 0.0_wp) return
       if (joint%n_contact > 1) &
@@ -167,11 +171,13 @@ contains
    end function way_against
 
    !> Tell what each joint does in a collapse; its motion is that of the last step
-   pure subroutine tell_roles(fallen, joint, row, motion)
+   pure subroutine tell_roles(fallen, system, contacts, row, motion)
       !> Contacts at the end of the collapse; without joints they are those of the rows
       type(contacts_t), intent(in) :: fallen
-      !> The joints of the rows: of the same run, or of one that stands beside it: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
+      !> The blocks of the rows, where these or those have not been placed
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the rows: of the same run, or of one that stands beside it
+      type(contacts_t), intent(in) :: contacts
       !> The rows: (n_joint)
       type(joint_row_t), intent(inout) :: row(:)
       !> Motion of the blocks in the last step, where it is known: (n_dof, n_equation)
@@ -179,6 +185,7 @@ contains
       integer :: role(size(fallen%face)), j, k
       logical :: slip(size(fallen%face))
       real(wp) :: largest
+      type(joint_place_t) :: place
 
       largest = largest_of(fallen)
       if (present(motion)) largest = largest_of(fallen, motion)
@@ -187,55 +194,57 @@ contains
       do j = 1, size(row)
          row(j)%slides%known = .false.
          k = j
-         if (allocated(fallen%joint)) k = place_in(fallen%joint, joint(j), j)
+         if (allocated(fallen%joint)) k = number_in(fallen%joint, contacts%joint(j), j)
          if (k == 0) cycle
          row(j)%mechanism = role_word(role(k))
          if (.not. slip(k)) cycle
-         row(j)%slides = some_number(sign(1.0_wp, fallen%increment(3, k))*joint(j)%tangent)
-         if (allocated(fallen%joint)) row(j)%slides = &
-            & some_number(sign(1.0_wp, fallen%increment(3, k))*fallen%joint(k)%tangent)
+         if (allocated(fallen%joint)) then
+            place = joint_place(system, fallen, k)
+         else
+            place = joint_place(system, contacts, j)
+         end if
+         row(j)%slides = some_number(sign(1.0_wp, fallen%increment(3, k))*place%tangent)
       end do
    end subroutine tell_roles
 
    !> Number of a joint among those of another run: of the same corners and edges, else between the
    !> same blocks; 0 if there is none
-   pure integer function place_in(joints, joint, guess)
+   pure integer function number_in(joints, joint, guess)
       type(joint_t), intent(in) :: joints(:)  !! The joints of the other run
       type(joint_t), intent(in) :: joint
       integer, intent(in) :: guess            !! Where it may be
       integer :: k
 
-      place_in = 0
+      number_in = 0
       if (guess <= size(joints)) then
-         if (same_joint(joints(guess), joint)) place_in = guess
+         if (same_joint(joints(guess), joint)) number_in = guess
       end if
-      if (place_in > 0) return
+      if (number_in > 0) return
       do k = 1, size(joints)
          if (any(joints(k)%block /= joint%block)) cycle
-         if (place_in == 0) place_in = k
+         if (number_in == 0) number_in = k
          if (.not. same_joint(joints(k), joint)) cycle
-         place_in = k
+         number_in = k
          return
       end do
-   end function place_in
+   end function number_in
 
    !> Rows of all joints of a picture
    pure function frame_joint_rows(system, frame) result(row)
       type(block_system_t), intent(in) :: system
       type(frame_t), intent(in) :: frame
       type(frame_joint_row_t) :: row(size(frame%joint))  !! The rows: (n_joint)
-      type(joint_t) :: joint
+      type(joint_place_t) :: place
       real(wp) :: gap(3), normal_force
       integer :: j, states(2)
 
       do j = 1, size(row)
-         joint = frame%joint(j)
-         call place_joint(system, frame%moved, joint, gap)
+         call place_joint(system, frame%moved, frame%joint(j), place, gap)
          row(j)%joint = j
-         row(j)%contact(:, 1) = joint%contact(1)%point
-         row(j)%contact(:, 2) = joint%contact(joint%n_contact)%point
+         row(j)%contact(:, 1) = place%point(:, 1)
+         row(j)%contact(:, 2) = place%point(:, frame%joint(j)%n_contact)
          normal_force = sum(frame%force(1:2, j))
-         row(j)%force = normal_force*joint%normal + frame%force(3, j)*joint%tangent
+         row(j)%force = normal_force*place%normal + frame%force(3, j)*place%tangent
          row(j)%point = (row(j)%contact(:, 1) + row(j)%contact(:, 2))/2.0_wp
          if (normal_force > 0.0_wp) row(j)%point = (frame%force(1, j)*row(j)%contact(:, 1) &
             & + frame%force(2, j)*row(j)%contact(:, 2))/normal_force

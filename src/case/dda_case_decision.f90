@@ -4,7 +4,7 @@ submodule (dda_compute_case) dda_case_decision
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
-   use dda_contacts, only : contacts_t
+   use dda_contacts, only : contacts_t, place_all_joints
    use dda_decision, only : decide_in_stages
    use dda_deck, only : parameter_t
    use dda_deck_set, only : put_number
@@ -95,9 +95,9 @@ contains
          & this%critical%standing%contacts)
       if (this%limerick .or. allocated(this%error)) return
       if (.not. this%searches) then
-         call take_joints(this%scene%contacts, this%decision%contacts)
+         call take_joints(this%scene, this%decision%contacts)
       else if (allocated(this%critical%fallen)) then
-         call take_joints(this%scene%contacts, this%critical%fallen%contacts)
+         call take_joints(this%scene, this%critical%fallen%contacts)
       end if
    end procedure place_joints
 
@@ -108,17 +108,21 @@ contains
       type(contacts_t), intent(inout) :: contacts  !! Those of the assembly
 
       if (allocated(contacts%joint)) return
-      if (this%family%load /= searched_load%none) call take_joints(this%scene%contacts, contacts)
+      if (this%family%load /= searched_load%none) call take_joints(this%scene, contacts)
       if (allocated(contacts%joint) .or. .not. this%family%deck%value(output_joints)%flag) return
       call build_once(this%family, this%critical%stands, this%standing)
       contacts%joint = this%standing%contacts%joint
+      call place_all_joints(this%standing%system, contacts)
    end subroutine place_standing
 
    !> Take the joints of a scene that needs them no more
    pure subroutine take_joints(from, to)
-      type(contacts_t), intent(inout) :: from, to
+      type(scene_t), intent(inout) :: from
+      type(contacts_t), intent(inout) :: to
 
-      if (.not. allocated(to%joint)) call move_alloc(from%joint, to%joint)
+      if (allocated(to%joint) .or. .not. allocated(from%contacts%joint)) return
+      call move_alloc(from%contacts%joint, to%joint)
+      call place_all_joints(from%system, to)
    end subroutine take_joints
 
 end submodule dda_case_decision

@@ -195,11 +195,12 @@ contains
             & .and. .not. this%plan%velocities .and. source_of(this%family%deck) /= "arch") &
             & remark = fall_remark(this%scene%system, outcome%motion, remark)
          if (allocated(this%decision%contacts%joint)) joint_row = &
-            & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
+            & joint_rows(this%decision%system, this%decision%contacts, &
+            & this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then
             call tell_mechanism(this%decision, this%scene%joint_angle_deg, row)
             if (size(joint_row) > 0) call tell_roles(fallen_contacts(this%decision), &
-               & this%decision%contacts%joint, joint_row, outcome%motion)
+               & this%decision%system, this%decision%contacts, joint_row, outcome%motion)
          end if
          if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
          row%steps = outcome%steps

@@ -45,9 +45,10 @@ contains
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
 
       if (.not. allocated(contacts%joint)) return
-      joint_row = joint_rows(contacts, scene%joint_angle_deg, scene%origin)
+      joint_row = joint_rows(scene%system, contacts, scene%joint_angle_deg, scene%origin)
       if (size(joint_row) > 0 .and. allocated(critical%fallen)) call tell_roles( &
-         & critical%fallen%contacts, contacts%joint, joint_row, critical%fallen%outcome%motion)
+         & critical%fallen%contacts, scene%system, contacts, joint_row, &
+         & critical%fallen%outcome%motion)
    end subroutine tell_joints
 
    !> Displacements of the blocks in the collapse nearest to critical

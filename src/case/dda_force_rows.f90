@@ -132,7 +132,7 @@ contains
       integer :: first, i
 
       associate (system => this%decision%system, contacts => this%decision%contacts)
-         allocate (reaction(3, size(support, 2)), source=forces_of_blocks(system, contacts%joint, &
+         allocate (reaction(3, size(support, 2)), source=forces_of_blocks(system, contacts, &
             & contacts%force, support))
          first = count(support(2, :) == 0) + 1
          do i = first, size(support, 2)

@@ -169,8 +169,10 @@ contains
       integer :: j
 
       deepest = max(0.0_wp, -minval(run%contacts%item(:run%contacts%n)%gap))
+      allocate (contacts%place(size(contacts%joint)))
       do j = 1, size(contacts%joint)
-         call place_joint(scene%system, now, contacts%joint(j), contacts%gap(:, j))
+         call place_joint(scene%system, now, contacts%joint(j), contacts%place(j), &
+            & contacts%gap(:, j))
       end do
       call tell_forces(model, run, contacts)
       do j = 1, size(contacts%joint)
@@ -204,7 +206,7 @@ contains
                & run%blocks%vertex(:, contact%vertex(1, 1)), j, corner)
             if (j == 0) cycle
             force = contact_force(model, run, contact)
-            along = dot_product(contacts%joint(j)%tangent, &
+            along = dot_product(contacts%place(j)%tangent, &
                & run%blocks%vertex(:, contact%vertex(3, 1)) &
                & - run%blocks%vertex(:, contact%vertex(2, 1)))
             ! of the contact's force, what its edge's block does to the other block
@@ -233,7 +235,7 @@ contains
          if (minval(block) /= minval(contacts%joint(j)%block)) cycle
          if (maxval(block) /= maxval(contacts%joint(j)%block)) cycle
          do k = 1, contacts%joint(j)%n_contact
-            distance = norm2(contacts%joint(j)%contact(k)%point - point)
+            distance = norm2(contacts%place(j)%point(:, k) - point)
             if (.not. distance < nearest) cycle
             nearest = distance
             joint = j

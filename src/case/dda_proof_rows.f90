@@ -1,6 +1,7 @@
 !> Proofs of a case as rows of proof_forces.csv and proof_motion.csv
 module dda_proof_rows
    use dda_bar_joints, only : bar_joint
+   use dda_contacts, only : joint_place
    use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_search, only : proof_t
@@ -37,10 +38,11 @@ contains
       start = to_text(number)//","//value//","
       n = size(proof%scene%contacts%joint)
       do j = 1, n
-         associate (joint => proof%scene%contacts%joint(j))
+         associate (joint => proof%scene%contacts%joint(j), &
+            & place => joint_place(proof%scene%system, proof%scene%contacts, j))
             call add_line(rows, start//"contact,"//to_text(joint%block(1))//"," &
-               & //to_text(joint%block(2))//","//fields([joint%contact(1)%point &
-               & + proof%scene%origin, joint%contact(joint%n_contact)%point &
+               & //to_text(joint%block(2))//","//fields([place%point(:, 1) &
+               & + proof%scene%origin, place%point(:, joint%n_contact) &
                & + proof%scene%origin, proof%force(:, j)]))
          end associate
       end do

@@ -1,5 +1,6 @@
 !> Reactions of one block shared among the points that hold it
 submodule (dda_force_rows) dda_reaction_shares
+   use dda_contacts, only : joint_place
    use dda_deformation, only : moved_point
    use dda_outer_loads, only : outer_loads
    use dda_reactions, only : force_on
@@ -19,13 +20,15 @@ contains
       real(wp) :: wanted(3), place(2), size_of
       real(wp), allocatable :: column(:, :), force(:)
       integer, allocatable :: owner(:)
-      integer :: axis, i, n
+      integer :: axis, i, n, side
 
       wanted = -outer_force(settings, system, time, block)
       do i = 1, size(contacts%joint)
          associate (joint => contacts%joint(i))
-            if (joint%block(1) == block) wanted = wanted - force_on(joint, contacts%force(:, i), 1)
-            if (joint%block(2) == block) wanted = wanted - force_on(joint, contacts%force(:, i), 2)
+            do side = 1, 2
+               if (joint%block(side) == block) wanted = wanted &
+                  & - force_on(joint_place(system, contacts, i), contacts%force(:, i), side)
+            end do
          end associate
       end do
       allocate (column(3, 2*size(support, 2)), owner(2*size(support, 2)))

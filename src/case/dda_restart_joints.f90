@@ -32,6 +32,7 @@ contains
       type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)
       real(wp), allocatable :: ignored(:, :)
+      real(wp) :: gap(3)
       integer :: j
 
       sound = all(whole(8:9, :) == 0 .or. whole(8:9, :) == 1) .and. all(abs(whole(10, :)) <= 1) &
@@ -40,8 +41,13 @@ contains
       if (contacts%searched .and. settings%current) then
          allocate (joint(size(whole, 2)))
          call make_joints(system, contacts, whole, number, joint, sound)
-         if (sound) call set_joints(joint, contacts)
-         if (sound) call begin_memory(contacts)
+         if (.not. sound) return
+         call set_joints(joint, contacts)
+         call begin_memory(contacts)
+         allocate (contacts%place(size(contacts%joint)))
+         do j = 1, size(contacts%joint)
+            call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
+         end do
       else
          call begin_memory(contacts)
          sound = size(contacts%joint) == size(whole, 2)
@@ -71,7 +77,6 @@ contains
       type(joint_t), intent(out) :: joint(:)  !! The joints: (n_joint)
       logical, intent(out) :: sound
       type(outline_t) :: outline
-      real(wp) :: gap(3)
       integer :: j, k
 
       outline = outline_of(system)
@@ -99,7 +104,6 @@ contains
          joint(j)%contact%share = number(4:5, j)
          joint(j)%contact%lock = number(6:7, j)
          joint(j)%contact%closed_at = number(8:9, j)
-         call place_joint(system, system%moved, joint(j), gap)
       end do
    end subroutine make_joints
 

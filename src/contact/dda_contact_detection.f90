@@ -3,7 +3,7 @@ module dda_contact_detection
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : edge_to_edge_joint, joint_springs_t, joint_t, mohr_coulomb, &
       & new_joint_springs, place_joint
-   use dda_contacts, only : contacts_t
+   use dda_contacts, only : contacts_t, place_all_joints
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_settings, only : settings_t
@@ -36,7 +36,7 @@ contains
 
    !> Take these joints, closed and free of force, without springs and without memory
    pure subroutine set_joints(joint, contacts)
-      !> The joints, placed: (n_joint); they become those of the contacts
+      !> The joints: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
       !> The contacts; their search is kept
       type(contacts_t), intent(inout) :: contacts
@@ -44,6 +44,7 @@ contains
 
       n = size(joint)
       call move_alloc(joint, contacts%joint)
+      if (allocated(contacts%place)) deallocate (contacts%place)
       if (allocated(contacts%face)) deallocate (contacts%face)
       if (allocated(contacts%force)) deallocate (contacts%force, contacts%gap, contacts%increment)
       if (allocated(contacts%trial)) deallocate (contacts%trial, contacts%past_slip)
@@ -73,8 +74,10 @@ contains
 
       call begin_memory(contacts)
       if (allocated(contacts%springs%row)) return
+      call place_all_joints(system, contacts)
       call new_joint_springs(system, merge(1.0_wp, 0.0_wp, settings%current)*system%motion, &
-         & contacts%joint, settings%penalty_ratio, settings%n_dof, contacts%springs)
+         & contacts%joint, contacts%place, settings%penalty_ratio, settings%n_dof, &
+         & contacts%springs)
       call set_strength(contacts)
    end subroutine raise_springs
 
@@ -94,6 +97,7 @@ contains
          joint(j) = old%joint(k(j))
       end do
       call set_joints(joint, contacts)
+      if (allocated(old%place)) contacts%place = old%place(k)
       contacts%face = old%face(k)
       contacts%force = old%force(:, k)
       contacts%gap = old%gap(:, k)
@@ -130,12 +134,12 @@ contains
       integer :: j
 
       do j = 1, size(contacts%joint)
-         call place_joint(system, system%moved, contacts%joint(j), gap)
+         call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
          contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
       end do
       before = contacts%springs
-      call new_joint_springs(system, system%motion, contacts%joint, penalty_ratio, n_dof, &
-         & contacts%springs)
+      call new_joint_springs(system, system%motion, contacts%joint, contacts%place, &
+         & penalty_ratio, n_dof, contacts%springs)
       contacts%springs%cone = before%cone
       contacts%springs%shift = before%shift
       do j = 1, size(contacts%joint)

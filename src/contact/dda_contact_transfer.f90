@@ -5,8 +5,8 @@ module dda_contact_transfer
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : begin_memory, set_joints, set_strength
    use dda_contact_search, only : look_around, near_joints, touching_joints
-   use dda_contact_types, only : contact_t, joint_t, new_joint_springs, place_joint, &
-      & slip_at, vertex_number
+   use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
+      & place_joint, slip_at, vertex_number
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_sort, only : rising_order
@@ -69,13 +69,14 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is set
       type(joint_t), allocatable :: joint(:)
+      type(joint_place_t) :: place
       real(wp) :: gap(3)
       integer :: j
 
       call touching_joints(contacts%search, system, joint)
       do j = 1, size(joint)
          call lock_joint(system, system%vertex, joint(j))
-         call place_joint(system, system%vertex, joint(j), gap)
+         call place_joint(system, system%vertex, joint(j), place, gap)
          joint(j)%contact%closed_at = gap(1:2)
       end do
       call set_joints(joint, contacts)
@@ -100,6 +101,7 @@ contains
       type(past_contact_t), allocatable :: past(:)
       type(contacts_t) :: before
       type(joint_t), allocatable :: joint(:)
+      type(joint_place_t), allocatable :: place(:)
       integer(int64), allocatable :: closed(:)
       integer :: taken(2), j
       integer, allocatable :: source(:, :)
@@ -109,23 +111,24 @@ contains
       call look_around(contacts%search, system, reach)
       call near_joints(contacts%search, system, travel, closed, reach, &
          & .not. contacts%remember, joint)
-      allocate (source(2, size(joint)))
+      allocate (source(2, size(joint)), place(size(joint)))
       call match_contacts(system, joint, reach, past, source)
       do j = 1, size(joint)
          taken = source(:, j)
-         call take_over_slip(system, past, taken, .not. contacts%remember, joint(j))
+         call take_over_slip(system, past, taken, .not. contacts%remember, joint(j), place(j))
       end do
       call move_alloc(contacts%face, before%face)
       call move_alloc(contacts%intact, before%intact)
       call set_joints(joint, contacts)
+      call move_alloc(place, contacts%place)
       call begin_memory(contacts)
-      call new_joint_springs(system, system%motion, contacts%joint, penalty_ratio, n_dof, &
-         & contacts%springs)
+      call new_joint_springs(system, system%motion, contacts%joint, contacts%place, &
+         & penalty_ratio, n_dof, contacts%springs)
       do j = 1, size(contacts%joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))
-         call place_joint(system, system%moved, contacts%joint(j), gap)
+         call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
          if (.not. contacts%remember) call stay_inside(contacts%joint(j), gap)
          contacts%gap(:, j) = gap
          contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
@@ -183,7 +186,7 @@ contains
    end subroutine list_past
 
    !> Let a joint start with the slip that its contacts had, and measure it where it is closed
-   pure subroutine take_over_slip(system, past, source, in_time, joint)
+   pure subroutine take_over_slip(system, past, source, in_time, joint, place)
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
@@ -192,11 +195,12 @@ contains
       !> Whether blocks move in time: then each step allows anew for what lies inside
       logical, intent(in) :: in_time
       type(joint_t), intent(inout) :: joint
+      type(joint_place_t), intent(out) :: place
       real(wp) :: gap(3), apart(2), length
       integer :: k
 
       call lock_joint(system, system%moved, joint)
-      call place_joint(system, system%moved, joint, gap)
+      call place_joint(system, system%moved, joint, place, gap)
       do k = 1, joint%n_contact
          if (source(k) == 0) then
             ! what begins inside, as a corner that meets a corner does, is not pushed out
@@ -214,7 +218,7 @@ contains
          apart = max(gap(1:2), 0.0_wp) + closeness*joint%length
          joint%contact%share = apart([2, 1])/sum(apart)
       end if
-      call place_joint(system, system%moved, joint, gap)
+      call place_joint(system, system%moved, joint, place, gap)
    end subroutine take_over_slip
 
    !> Let the shear force stay the same where the stiffness does not

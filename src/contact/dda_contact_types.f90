@@ -15,7 +15,7 @@ module dda_contact_types
    implicit none
    private
 
-   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, same_joint, slip_at
+   public :: contact_t, joint_t, joint_place_t, edge_to_edge_joint, place_joint, same_joint, slip_at
    public :: vertex_number, joint_springs_t, rows_of_joint, new_joint_springs, place_rows
    public :: mohr_coulomb, unbounded
 
@@ -31,12 +31,6 @@ module dda_contact_types
       integer :: edge = 0
       !> Which of the joint's two blocks owns the edge
       integer :: edge_side = 1
-      !> Where the vertex is: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
-      !> Foot of its perpendicular on the edge: (2) [m]
-      real(wp) :: foot(2) = 0.0_wp
-      !> Unit normal of the edge, turned to point from the joint's first block to its second: (2)
-      real(wp) :: normal(2) = 0.0_wp
       !> Part of the joint's length that the contact stands for [m]
       real(wp) :: length = 0.0_wp
       !> Part of the joint's shear force that is felt here; the parts of a joint make one
@@ -57,12 +51,6 @@ module dda_contact_types
       type(contact_t) :: contact(2)
       !> Number of contacts, 1 or 2
       integer :: n_contact = 0
-      !> Points of the two blocks where the shear force acts: (2, 2) [m]
-      real(wp) :: middle(2, 2) = 0.0_wp
-      !> Unit normal, from the first block to the second: (2)
-      real(wp) :: normal(2) = 0.0_wp
-      !> Unit vector along the joint; edges of the first block run along it: (2)
-      real(wp) :: tangent(2) = 0.0_wp
       !> Length over which the blocks touch [m]
       real(wp) :: length = 0.0_wp
       !> Whether a search has found it; otherwise it was given and is kept
@@ -70,6 +58,22 @@ module dda_contact_types
       !> Bounds of the joint force
       type(joint_law_t) :: law
    end type joint_t
+
+   !> Where a joint is
+   type :: joint_place_t
+      !> Where the vertex of each contact is: (2, 2) [m]
+      real(wp) :: point(2, 2) = 0.0_wp
+      !> Foot of its perpendicular on the edge: (2, 2) [m]
+      real(wp) :: foot(2, 2) = 0.0_wp
+      !> Unit normal of the edge, turned to point from the joint's first block to its second: (2, 2)
+      real(wp) :: across(2, 2) = 0.0_wp
+      !> Points of the two blocks where the shear force acts: (2, 2) [m]
+      real(wp) :: middle(2, 2) = 0.0_wp
+      !> Unit normal of the joint, from the first block to the second: (2)
+      real(wp) :: normal(2) = 0.0_wp
+      !> Unit vector along the joint; edges of the first block run along it: (2)
+      real(wp) :: tangent(2) = 0.0_wp
+   end type joint_place_t
 
    !> Springs of all joints, as the solver wants them
    type :: joint_springs_t
@@ -137,7 +141,7 @@ contains
       integer, intent(in) :: edge_pair(4)
       !> Law of the joint
       type(joint_law_t), intent(in) :: law
-      real(wp) :: start(2), finish(2), gap(3)
+      real(wp) :: start(2), finish(2)
 
       start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
       finish = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2) + 1))
@@ -151,16 +155,15 @@ contains
       joint%contact%edge = edge_pair(2)
       joint%contact%length = joint%length/2.0_wp
       joint%contact%lock = [0.0_wp, 1.0_wp]
-      call place_joint(system, system%vertex, joint, gap)
    end function edge_to_edge_joint
 
    !> Where a joint is, and how far it is open
-   pure subroutine place_joint(system, vertex, joint, gap)
+   pure subroutine place_joint(system, vertex, joint, place, gap)
       type(block_system_t), intent(in) :: system
       !> Their corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The joint; normals, tangent and points are set
-      type(joint_t), intent(inout) :: joint
+      type(joint_t), intent(in) :: joint
+      type(joint_place_t), intent(out) :: place
       !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
       !> [m]
       real(wp), intent(out) :: gap(3)
@@ -168,36 +171,34 @@ contains
       integer :: k
 
       gap = 0.0_wp
-      joint%tangent = 0.0_wp
-      joint%middle = 0.0_wp
       do k = 1, joint%n_contact
-         associate (c => joint%contact(k))
+         associate (c => joint%contact(k), point => place%point(:, k), across => place%across(:, k))
             start = vertex(:, vertex_number(system, c%edge_block, c%edge))
             finish = vertex(:, vertex_number(system, c%edge_block, c%edge + 1))
             tangent = along(start, finish)
-            c%normal = right_normal(tangent)
-            c%point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
-            gap(k) = dot_product(c%normal, c%point - start)
-            c%foot = c%point - gap(k)*c%normal
+            across = right_normal(tangent)
+            point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
+            gap(k) = dot_product(across, point - start)
+            place%foot(:, k) = point - gap(k)*across
             gap(k) = gap(k) - c%closed_at
             slip = slip_at(system, vertex, c)
             gap(3) = gap(3) + c%share*slip
             ! both blocks feel the shear force on the line of the edge: off it, an open joint would
             ! turn them
             lock = c%share*((1.0_wp - c%lock)*start + c%lock*finish)
-            joint%middle(:, c%edge_side) = joint%middle(:, c%edge_side) + lock
+            place%middle(:, c%edge_side) = place%middle(:, c%edge_side) + lock
             lock = lock + c%share*slip*tangent
-            joint%middle(:, 3 - c%edge_side) = joint%middle(:, 3 - c%edge_side) + lock
+            place%middle(:, 3 - c%edge_side) = place%middle(:, 3 - c%edge_side) + lock
             if (c%edge_side == 2) then
-               c%normal = -c%normal
+               across = -across
                tangent = -tangent
             end if
-            joint%tangent = joint%tangent + c%share*tangent
+            place%tangent = place%tangent + c%share*tangent
          end associate
       end do
       if (any(joint%contact%edge_side /= joint%contact(1)%edge_side)) &
-         & joint%tangent = joint%tangent/norm2(joint%tangent)
-      joint%normal = right_normal(joint%tangent)
+         & place%tangent = place%tangent/norm2(place%tangent)
+      place%normal = right_normal(place%tangent)
    end subroutine place_joint
 
    !> How far the joint's second block has slipped at a contact, along the edges of the first
@@ -215,12 +216,14 @@ contains
    end function slip_at
 
    !> Springs of all joints
-   pure subroutine new_joint_springs(system, motion, joint, penalty_ratio, n_dof, springs)
+   pure subroutine new_joint_springs(system, motion, joint, place, penalty_ratio, n_dof, springs)
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
+      !> Where they are: (n_joint)
+      type(joint_place_t), intent(in) :: place(:)
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
@@ -234,10 +237,11 @@ contains
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
       springs%give = any(joint%found)
-      call place_rows(system, motion, joint, springs%row)
+      call place_rows(system, motion, joint, place, springs%row)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
-         springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
+         springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j), &
+            & place(j))
          call mohr_coulomb(joint(j), [1.0_wp, 1.0_wp], springs%cone(j), springs%shift(:, j))
       end do
       if (n > 0 .and. .not. springs%give) &
@@ -245,11 +249,13 @@ contains
    end subroutine new_joint_springs
 
    !> Rows of the springs of joints that have been placed
-   pure subroutine place_rows(system, motion, joint, row)
+   pure subroutine place_rows(system, motion, joint, place, row)
       type(block_system_t), intent(in) :: system
       !> How the blocks have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(joint_t), intent(in) :: joint(:)
+      !> Where they are: (n_joint)
+      type(joint_place_t), intent(in) :: place(:)
       !> The rows: (n_dof, 3, 2, n_joint)
       real(wp), intent(out) :: row(:, :, :, :)
       integer :: j, side
@@ -257,16 +263,17 @@ contains
       do j = 1, size(joint)
          do side = 1, 2
             associate (b => joint(j)%block(side))
-               row(:, :, side, j) = rows_of_joint(joint(j), side, system%centroid(:, b) &
-                  & + motion(1:2, b), motion(:, b), size(row, 1))
+               row(:, :, side, j) = rows_of_joint(joint(j), place(j), side, &
+                  & system%centroid(:, b) + motion(1:2, b), motion(:, b), size(row, 1))
             end associate
          end do
       end do
    end subroutine place_rows
 
    !> What the joint sees of one block's unknowns
-   pure function rows_of_joint(joint, side, centroid, motion, n_dof) result(row)
+   pure function rows_of_joint(joint, place, side, centroid, motion, n_dof) result(row)
       type(joint_t), intent(in) :: joint
+      type(joint_place_t), intent(in) :: place
       integer, intent(in) :: side          !! 1 or 2, which of the joint's blocks
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: motion(6)    !! How the block has moved: (6)
@@ -277,24 +284,23 @@ contains
 
       row = 0.0_wp
       do k = 1, joint%n_contact
-         associate (contact => joint%contact(k))
-            t = tangent_matrix(merge(contact%foot, contact%point, side == contact%edge_side), &
-               & centroid, motion)
-            row(:, k) = contact%normal(1)*t(1, :n_dof) + contact%normal(2)*t(2, :n_dof)
-         end associate
+         t = tangent_matrix(merge(place%foot(:, k), place%point(:, k), &
+            & side == joint%contact(k)%edge_side), centroid, motion)
+         row(:, k) = place%across(1, k)*t(1, :n_dof) + place%across(2, k)*t(2, :n_dof)
       end do
-      t = tangent_matrix(joint%middle(:, side), centroid, motion)
-      row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
+      t = tangent_matrix(place%middle(:, side), centroid, motion)
+      row(:, 3) = place%tangent(1)*t(1, :n_dof) + place%tangent(2)*t(2, :n_dof)
       row = real(2*side - 3, wp)*row
    end function rows_of_joint
 
    !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's
    !> size across it, t that along it; of given edges t is their length, of found ones l is twice
    !> the way from the centre
-   pure function block_stiffness(system, centroid, joint) result(stiffness)
+   pure function block_stiffness(system, centroid, joint, place) result(stiffness)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: centroid(:, :)  !! Their centres of gravity: (2, n_block) [m]
       type(joint_t), intent(in) :: joint
+      type(joint_place_t), intent(in) :: place
       real(wp) :: stiffness                   !! The stiffness [N/m per metre depth]
       real(wp) :: young, size_across
       integer :: side
@@ -306,7 +312,7 @@ contains
             young = system%materials(system%material(b))%young
             if (joint%found) then
                size_across = max(least_size*sqrt(system%area(b)), &
-                  & 2.0_wp*abs(dot_product(joint%normal, joint%middle(:, side) - centroid(:, b))))
+                  & 2.0_wp*abs(dot_product(place%normal, place%middle(:, side) - centroid(:, b))))
                stiffness = min(stiffness, young*system%area(b)/size_across**2)
             else
                size_across = system%area(b)/joint%length

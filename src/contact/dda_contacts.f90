@@ -1,6 +1,7 @@
 !> Contacts of a system, what they carry from step to step, and how they are looked for
 module dda_contacts
-   use dda_contact_types, only : joint_springs_t, joint_t
+   use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_place_t, joint_springs_t, joint_t, place_joint
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
@@ -8,7 +9,8 @@ module dda_contacts
    implicit none
    private
 
-   public :: edge_pairs_t, joint_search_t, contacts_t, move_contacts
+   public :: edge_pairs_t, joint_search_t, contacts_t, move_contacts, place_all_joints
+   public :: joint_place
 
    !> Pairs of edges that were near, and how far their corners can go before others may be
    type :: edge_pairs_t
@@ -36,6 +38,9 @@ module dda_contacts
    type :: contacts_t
       !> The joints: (n_joint)
       type(joint_t), allocatable :: joint(:)
+      !> Where they are; unallocated before the first step, where they are where the blocks began:
+      !> (n_joint)
+      type(joint_place_t), allocatable :: place(:)
       !> Their springs
       type(joint_springs_t) :: springs
       !> Face of the friction cone that each joint's force lies on: (n_joint)
@@ -63,6 +68,30 @@ module dda_contacts
 
 contains
 
+   !> Place joints that have not been placed yet
+   pure subroutine place_all_joints(system, contacts)
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(inout) :: contacts
+      integer :: j
+
+      if (allocated(contacts%joint) .and. .not. allocated(contacts%place)) &
+         & contacts%place = [(joint_place(system, contacts, j), j=1, size(contacts%joint))]
+   end subroutine place_all_joints
+
+   !> Where a joint is
+   pure type(joint_place_t) function joint_place(system, contacts, j) result(place)
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: gap(3)
+
+      if (allocated(contacts%place)) then
+         place = contacts%place(j)
+      else
+         call place_joint(system, system%vertex, contacts%joint(j), place, gap)
+      end if
+   end function joint_place
+
    !> Hand contacts over without a copy of what is large
    pure subroutine move_contacts(from, to)
       type(contacts_t), intent(inout) :: from  !! The contacts; what is large is gone
@@ -79,6 +108,7 @@ contains
       type(contacts_t), intent(inout) :: from, to
 
       call move_alloc(from%joint, to%joint)
+      call move_alloc(from%place, to%place)
       call move_alloc(from%face, to%face)
       call move_alloc(from%trial, to%trial)
       call move_alloc(from%force, to%force)

@@ -4,6 +4,7 @@ module dda_shape_scene
    use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
+   use dda_contacts, only : joint_place
    use dda_deck, only : deck_t
    use dda_key_names, only : arch_abutment_overhang, arch_abutment_size, arch_buttress_height, &
       & arch_buttress_width, arch_crown_thickness, arch_facet_deg, arch_half_angle_deg, &
@@ -197,10 +198,11 @@ contains
 
       least = huge(least)
       do j = 1, size(scene%contacts%joint)
-         associate (joint => scene%contacts%joint(j))
+         associate (joint => scene%contacts%joint(j), &
+            & place => joint_place(scene%system, scene%contacts, j))
             if (any(joint%block > assembly%n_voussoir) &
                & .or. abs(joint%block(1) - joint%block(2)) /= 1) cycle
-            off = abs(0.5_wp*sum(joint%middle(1, :)) + scene%origin(1) - assembly%crown_x(1))
+            off = abs(0.5_wp*sum(place%middle(1, :)) + scene%origin(1) - assembly%crown_x(1))
          end associate
          if (off >= least) cycle
          least = off

@@ -7,6 +7,7 @@ submodule (dda_critical) dda_collapse_trace
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_unfold, only : fold
    use dda_contact_types, only : joint_springs_t, new_joint_springs, same_joint
+   use dda_contacts, only : joint_place
    use dda_error, only : error_t
    use dda_scene, only : link_once
    use dda_settings, only : flow_rule, settings_t
@@ -255,6 +256,7 @@ contains
       settings = scene%settings
       settings%n_dof = 3
       call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
+         & [(joint_place(scene%system, scene%contacts, b), b=1, size(scene%contacts%joint))], &
          & settings%penalty_ratio, settings%n_dof, springs)
       call new_equations(scene%system, springs, settings, equations)
       allocate (motion, source=mechanism%motion)

@@ -90,9 +90,8 @@ module dda_critical
       !> for their bars, which the family makes anew at any value
       pure module subroutine shed(decision, keeps_joints)
          type(decision_t), intent(inout) :: decision
-         !> Whether it keeps its joints, as it does if this is not given: a load coefficient moves
-         !> none
-         logical, intent(in), optional :: keeps_joints
+         !> Whether it keeps its joints: a load coefficient moves none
+         logical, intent(in) :: keeps_joints
       end subroutine shed
 
       !> Search the critical value of a family of scenes

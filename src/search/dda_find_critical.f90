@@ -6,6 +6,7 @@ submodule (dda_critical) dda_find_critical
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
    use dda_contact_types, only : joint_springs_t
+   use dda_contacts, only : place_all_joints
    use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_scene, only : link_once, searched_load
@@ -174,7 +175,7 @@ contains
       critical%passes = critical%passes + decision%outcome%passes
       critical%factorisations = critical%factorisations + decision%outcome%factorisations
       answer = decision%outcome%verdict
-      call shed(decision)
+      call shed(decision, keeps_joints=.true.)
       if (answer == verdict%collapsed) then
          critical%falls = value
          call move_alloc(decision, critical%fallen)
@@ -208,7 +209,7 @@ contains
       critical%steps = critical%steps + decision%outcome%steps
       critical%factorisations = critical%factorisations + decision%outcome%factorisations
       if (decision%outcome%verdict /= wanted) return
-      call shed(decision)
+      call shed(decision, keeps_joints=.true.)
       if (wanted == verdict%collapsed) then
          call move_alloc(decision, critical%fallen)
       else
@@ -220,13 +221,12 @@ contains
    module procedure shed
       type(bar_state_t), allocatable :: bar(:)
 
+      if (keeps_joints) call place_all_joints(decision%system, decision%contacts)
+      if (.not. keeps_joints) deallocate (decision%contacts%joint)
       if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
       decision%system = block_system_t()
       if (allocated(bar)) call move_alloc(bar, decision%system%bar)
       decision%contacts%springs = joint_springs_t()
-      if (present(keeps_joints)) then
-         if (.not. keeps_joints) deallocate (decision%contacts%joint)
-      end if
       if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
          & deallocate (decision%outcome%motion)
    end procedure shed

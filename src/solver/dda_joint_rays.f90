@@ -16,8 +16,6 @@ module dda_joint_rays
 
    !> Rays of a joint
    integer, parameter :: n_side = 4
-   !> Kind of the numbers that say what a ray is: one byte each
-   integer, parameter :: byte = int8
 
    !> The rays of all joints
    type :: joint_rays_t
@@ -30,9 +28,9 @@ module dda_joint_rays
       real(wp), allocatable :: arm(:, :, :)
       !> One for rays whose factor may not be negative, zero for free and for empty ones:
       !> (n_side, n_joint)
-      integer(byte), allocatable :: bounded(:, :)
+      integer(int8), allocatable :: bounded(:, :)
       !> One for rays of any sign: (n_side, n_joint)
-      integer(byte), allocatable :: free(:, :)
+      integer(int8), allocatable :: free(:, :)
       !> Number of rays whose factor may not be negative
       integer :: n_bounded = 0
       !> Unit of length: [m]
@@ -78,9 +76,9 @@ contains
       real(wp), intent(in) :: friction      !! Coefficient of friction
       real(wp), intent(out) :: force(:, :)  !! N1, N2, T of each ray: (3, n_side)
       !> One where the factor may not be negative: (n_side)
-      integer(byte), intent(out) :: bounded(:)
+      integer(int8), intent(out) :: bounded(:)
       !> One where it may have any sign: (n_side)
-      integer(byte), intent(out) :: free(:)
+      integer(int8), intent(out) :: free(:)
       real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
       real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -187,7 +185,7 @@ contains
       real(wp), intent(in) :: unit
       real(wp), intent(out) :: force(:, :)  !! N1, N2, T: (3, n_joint) [N/m]
       real(wp) :: ray(3, n_side)
-      integer(byte) :: bounded(n_side), free(n_side)
+      integer(int8) :: bounded(n_side), free(n_side)
       integer :: j
 
       do j = 1, size(x, 2)

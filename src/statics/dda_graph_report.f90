@@ -3,8 +3,8 @@ module dda_graph_report
    use dda_bar_joints, only : keep_bar_forces
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
-   use dda_contact_types, only : rows_of_joint
-   use dda_contacts, only : contacts_t
+   use dda_contact_types, only : joint_place_t, rows_of_joint
+   use dda_contacts, only : contacts_t, joint_place
    use dda_coulomb_law, only : face
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_motion
@@ -117,14 +117,16 @@ contains
       !> The blocks; their strains and stresses are set
       type(block_system_t), intent(inout) :: system
       real(wp), parameter :: no_motion(6) = 0.0_wp
+      type(joint_place_t) :: place
       real(wp) :: moment(6, size(system%equation)), d(3, 3), stress(3)
       integer :: b, i, j, side
 
       moment = 0.0_wp
       do j = 1, size(force, 2)
+         place = joint_place(system, contacts, j)
          do side = 1, 2
             b = contacts%joint(j)%block(side)
-            moment(:, b) = moment(:, b) + matmul(rows_of_joint(contacts%joint(j), side, &
+            moment(:, b) = moment(:, b) + matmul(rows_of_joint(contacts%joint(j), place, side, &
                & system%centroid(:, b), no_motion, 6), force(:, j))
          end do
       end do

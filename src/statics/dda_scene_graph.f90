@@ -3,8 +3,8 @@ module dda_scene_graph
    use dda_bar_joints, only : add_bar_joints, add_nodes, n_bar_joints
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_contact_types, only : joint_t, place_rows
-   use dda_contacts, only : contacts_t
+   use dda_contact_types, only : joint_place_t, joint_t, rows_of_joint
+   use dda_contacts, only : contacts_t, joint_place
    use dda_coulomb_law, only : coulomb_state_t
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_kind, rubs
@@ -76,6 +76,8 @@ contains
       type(contacts_t), intent(in) :: contacts
       type(joint_graph_t), intent(out) :: graph
       type(held_point_t), allocatable :: pin(:)
+      real(wp), parameter :: no_motion(6) = 0.0_wp
+      type(joint_place_t) :: place
       real(wp) :: full(6, 6), compliance
       integer :: b, e, i, j, k, n
 
@@ -86,14 +88,14 @@ contains
       call add_nodes(settings, graph)
       call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
          & graph)
-      call place_rows(system, 0.0_wp*system%motion, contacts%joint, graph%row(:, :, :, :n))
       do j = 1, n
+         place = joint_place(system, contacts, j)
          associate (single => contacts%joint(j)%n_contact == 1, law => contacts%joint(j)%law)
             graph%block(:, j) = system%equation(contacts%joint(j)%block)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
             if (law%strength < huge(1.0_wp)) graph%crush(j) = law%strength*contacts%joint(j)%length
-            graph%compliance(:, j) = block_compliance(system, contacts%joint(j))
+            graph%compliance(:, j) = block_compliance(system, contacts%joint(j), place)
             if (law%no_slip) then
                graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, single)
             else
@@ -101,7 +103,9 @@ contains
             end if
          end associate
          do k = 1, 2
-            if (graph%block(k, j) == 0) graph%row(:, :, k, j) = 0.0_wp
+            if (graph%block(k, j) == 0) cycle
+            graph%row(:, :, k, j) = rows_of_joint(contacts%joint(j), place, k, &
+               & system%centroid(:, contacts%joint(j)%block(k)), no_motion, n_rigid)
          end do
       end do
       compliance = 1.0_wp
@@ -189,9 +193,10 @@ contains
 
    !> Compliance l/(E t) of what lies between two centres of gravity, l across the joint and t along
    !> it: rigid blocks have that of their halves in the joints
-   pure real(wp) function block_compliance(system, joint) result(compliance)
+   pure real(wp) function block_compliance(system, joint, place) result(compliance)
       type(block_system_t), intent(in) :: system
       type(joint_t), intent(in) :: joint
+      type(joint_place_t), intent(in) :: place
       real(wp) :: across, least, length
       integer :: side
 
@@ -200,7 +205,7 @@ contains
          associate (b => joint%block(side))
             if (system%equation(b) == 0) cycle
             least = least_size*sqrt(system%area(b))
-            across = abs(dot_product(joint%normal, joint%middle(:, side) - system%centroid(:, b)))
+            across = abs(dot_product(place%normal, place%middle(:, side) - system%centroid(:, b)))
             length = max(joint%length, least)
             compliance = compliance + max(across, least) &
                & /(system%materials(system%material(b))%young*length)

@@ -2,7 +2,8 @@
 !> balances, in translation and rotation and in strain, each against the load that it is part of
 module dda_balance
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_springs_t, joint_t
+   use dda_contact_types, only : joint_springs_t
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_step_context, only : step_context_t
    use dda_step_state, only : equations_t
@@ -47,29 +48,29 @@ contains
 
    !> Whether rounded coordinates press a block with far more than its load: its contacts then tell
    !> nothing of it
-   pure logical function is_drowned(system, joint, springs, equations)
+   pure logical function is_drowned(system, contacts, equations)
       type(block_system_t), intent(in) :: system
-      type(joint_t), intent(in) :: joint(:)  !! The joints, placed: (n_joint)
-      type(joint_springs_t), intent(in) :: springs
+      type(contacts_t), intent(in) :: contacts  !! The joints, placed, and their springs
       type(equations_t), intent(in) :: equations
       real(wp) :: least, own(size(equations%felt, 2)), rounding
       integer :: j, k, side
 
       is_drowned = .false.
       own = own_load(system, equations)
-      do j = 1, size(joint)
+      do j = 1, size(contacts%joint)
          rounding = 0.0_wp
-         do k = 1, joint(j)%n_contact
-            associate (contact => joint(j)%contact(k))
-               rounding = max(rounding, dot_product(abs(contact%normal), abs(contact%point)))
-            end associate
+         do k = 1, contacts%joint(j)%n_contact
+            rounding = max(rounding, dot_product(abs(contacts%place(j)%across(:, k)), &
+               & abs(contacts%place(j)%point(:, k))))
          end do
          least = huge(least)
          do side = 1, 2
-            if (springs%equation(side, j) > 0) least = min(least, own(springs%equation(side, j)))
+            associate (e => contacts%springs%equation(side, j))
+               if (e > 0) least = min(least, own(e))
+            end associate
          end do
          is_drowned = is_drowned .or. least > 0.0_wp &
-            & .and. epsilon(rounding)*rounding*springs%stiffness(j) > noise*least
+            & .and. epsilon(rounding)*rounding*contacts%springs%stiffness(j) > noise*least
       end do
    end function is_drowned
 

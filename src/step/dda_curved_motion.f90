@@ -8,7 +8,7 @@ submodule (dda_step) dda_curved_motion
    use dda_assembly, only : take_springs
    use dda_block_inertia, only : packed_velocity
    use dda_block_update, only : displaced_blocks
-   use dda_contact_types, only : joint_springs_t, joint_t, place_joint, place_rows
+   use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
    use dda_settle_in_time, only : settle_in_time
    use dda_spring_products, only : relative_displacement
    implicit none
@@ -84,12 +84,13 @@ contains
 
       associate (step => run%step)
          step%after = displaced_blocks(run%system, run%settings, motion)
-         step%joint = run%contacts%joint
+         step%place = run%contacts%place
          step%end_gap = 0.0_wp*run%contacts%gap
          error = 0.0_wp
-         do j = 1, size(step%joint)
-            call place_joint(step%after, step%after%moved, step%joint(j), step%end_gap(:, j))
-            do k = 1, step%joint(j)%n_contact
+         do j = 1, size(step%place)
+            call place_joint(step%after, step%after%moved, run%contacts%joint(j), &
+               & step%place(j), step%end_gap(:, j))
+            do k = 1, run%contacts%joint(j)%n_contact
                told = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
                associate (gap => step%end_gap(k, j))
                   error = max(error, merge(min(-gap, told - gap), abs(gap - told), &
@@ -106,17 +107,17 @@ contains
       !> The run, with joints and gaps after the motion; curves and trial forces are set
       type(run_t), intent(inout) :: run
       real(wp), intent(in) :: motion(:, :)
-      type(joint_t) :: joint(size(run%contacts%joint))
-      real(wp) :: told(3, size(joint))
+      type(joint_place_t) :: place(size(run%contacts%place))
+      real(wp) :: told(3, size(place))
       integer :: e, j, side
 
       associate (step => run%step, springs => run%contacts%springs, gap => run%contacts%gap)
-         do j = 1, size(joint)
-            joint(j) = half_way(run%contacts%joint(j), step%joint(j))
+         do j = 1, size(place)
+            place(j) = half_way(run%contacts%place(j), step%place(j))
          end do
-         call place_rows(run%system, (run%system%motion + step%after%motion)/2.0_wp, joint, &
-            & springs%row)
-         do j = 1, size(joint)
+         call place_rows(run%system, (run%system%motion + step%after%motion)/2.0_wp, &
+            & run%contacts%joint, place, springs%row)
+         do j = 1, size(place)
             do side = 1, 2
                e = springs%equation(side, j)
                if (e > 0) springs%row(3, :, side, j) = springs%row(3, :, side, j) &
@@ -124,8 +125,8 @@ contains
             end do
          end do
          told = relative_displacement(springs, motion)
-         do j = 1, size(joint)
-            associate (n => joint(j)%n_contact)
+         do j = 1, size(place)
+            associate (n => run%contacts%joint(j)%n_contact)
                step%curve(:, j) = 0.0_wp
                step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
             end associate
@@ -135,20 +136,16 @@ contains
       end associate
    end subroutine take_turned_rows
 
-   !> A joint half way between where it is before and after a step
-   pure type(joint_t) function half_way(before, after) result(joint)
-      type(joint_t), intent(in) :: before  !! The joint before the step
-      type(joint_t), intent(in) :: after   !! The joint after it
-      integer :: k
+   !> Half way between where a joint is before and after a step
+   pure type(joint_place_t) function half_way(before, after) result(place)
+      type(joint_place_t), intent(in) :: before  !! The place before the step
+      type(joint_place_t), intent(in) :: after   !! The place after it
 
-      joint = before
-      do k = 1, joint%n_contact
-         joint%contact(k)%normal = (before%contact(k)%normal + after%contact(k)%normal)/2.0_wp
-         joint%contact(k)%point = (before%contact(k)%point + after%contact(k)%point)/2.0_wp
-         joint%contact(k)%foot = (before%contact(k)%foot + after%contact(k)%foot)/2.0_wp
-      end do
-      joint%tangent = (before%tangent + after%tangent)/2.0_wp
-      joint%middle = (before%middle + after%middle)/2.0_wp
+      place%across = (before%across + after%across)/2.0_wp
+      place%point = (before%point + after%point)/2.0_wp
+      place%foot = (before%foot + after%foot)/2.0_wp
+      place%tangent = (before%tangent + after%tangent)/2.0_wp
+      place%middle = (before%middle + after%middle)/2.0_wp
    end function half_way
 
    !> 2 tan(t/2)/t of a turn t

@@ -2,7 +2,8 @@
 module dda_reactions
    use dda_block_system, only : block_system_t
    use dda_boundary, only : boundary_t
-   use dda_contact_types, only : joint_t
+   use dda_contact_types, only : joint_place_t
+   use dda_contacts, only : contacts_t, joint_place
    use dda_deformation, only : moved_point
    use dda_frames, only : album_t
    use dda_kinds, only : wp
@@ -45,47 +46,45 @@ contains
    end function supports_of
 
    !> Force of a joint on one of its blocks, and its moment about the origin of coordinates
-   pure function force_on(joint, force, side) result(wrench)
-      type(joint_t), intent(in) :: joint
+   pure function force_on(place, force, side) result(wrench)
+      type(joint_place_t), intent(in) :: place
       real(wp), intent(in) :: force(3)  !! Its force N1, N2, T: (3) [N/m]
       integer, intent(in) :: side       !! Which of its blocks, 1 or 2
       real(wp) :: wrench(3)             !! Components along x and y, and moment: (3) [N/m, N/m, N]
       integer :: k
 
-      wrench(1:2) = force(3)*joint%tangent
-      wrench(3) = cross(joint%middle(:, side), wrench(1:2))
-      do k = 1, joint%n_contact
-         associate (contact => joint%contact(k))
-            wrench(1:2) = wrench(1:2) + force(k)*contact%normal
-            wrench(3) = wrench(3) + force(k)*cross(contact%point, contact%normal)
-         end associate
+      wrench(1:2) = force(3)*place%tangent
+      wrench(3) = cross(place%middle(:, side), wrench(1:2))
+      do k = 1, 2
+         wrench(1:2) = wrench(1:2) + force(k)*place%across(:, k)
+         wrench(3) = wrench(3) + force(k)*cross(place%point(:, k), place%across(:, k))
       end do
       if (side == 1) wrench = -wrench
    end function force_on
 
    !> What fixed blocks put on those that move
-   pure function forces_of_blocks(system, joint, force, support) result(reaction)
+   pure function forces_of_blocks(system, contacts, force, support) result(reaction)
       type(block_system_t), intent(in) :: system
-      !> The joints: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
+      type(contacts_t), intent(in) :: contacts
       !> Their forces N1, N2, T: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> The supports; points get nothing: (2, n)
       integer, intent(in) :: support(:, :)
       !> Force, and moment about the origin of coordinates: (3, n) [N/m, N/m, N]
       real(wp) :: reaction(3, size(support, 2))
-      integer :: i, j, place(size(system%equation)), side
+      integer :: i, j, number(size(system%equation)), side
 
       reaction = 0.0_wp
-      place = 0
+      number = 0
       do i = 1, size(support, 2)
-         if (support(2, i) == 0) place(support(1, i)) = i
+         if (support(2, i) == 0) number(support(1, i)) = i
       end do
-      do j = 1, size(joint)
+      do j = 1, size(contacts%joint)
          do side = 1, 2
-            i = place(joint(j)%block(3 - side))
-            if (i == 0 .or. system%equation(joint(j)%block(side)) == 0) cycle
-            reaction(:, i) = reaction(:, i) + force_on(joint(j), force(:, j), side)
+            i = number(contacts%joint(j)%block(3 - side))
+            if (i == 0 .or. system%equation(contacts%joint(j)%block(side)) == 0) cycle
+            reaction(:, i) = reaction(:, i) &
+               & + force_on(joint_place(system, contacts, j), force(:, j), side)
          end do
       end do
    end function forces_of_blocks
@@ -99,12 +98,12 @@ contains
       integer :: h, i, k
 
       if (.not. allocated(album%support)) return
-      associate (system => run%system, joint => run%contacts%joint, step => run%step, &
+      associate (system => run%system, contacts => run%contacts, step => run%step, &
          & fixed => run%equations%fixed)
          if (allocated(step%mean_force)) then
-            album%reaction_now = forces_of_blocks(system, joint, step%mean_force, album%support)
+            album%reaction_now = forces_of_blocks(system, contacts, step%mean_force, album%support)
          else
-            album%reaction_now = forces_of_blocks(system, joint, run%contacts%force, album%support)
+            album%reaction_now = forces_of_blocks(system, contacts, contacts%force, album%support)
          end if
          do k = 1, size(fixed%point)
             h = fixed%point(k)

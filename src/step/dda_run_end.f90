@@ -24,8 +24,7 @@ contains
       if (run%settings%dynamic) then
          call audit_step(run)
       else if (run%settings%current .and. run%contacts%springs%give) then
-         run%march%drowned = is_drowned(run%system, run%contacts%joint, run%contacts%springs, &
-            & run%equations)
+         run%march%drowned = is_drowned(run%system, run%contacts, run%equations)
       end if
    end procedure begin_run
 

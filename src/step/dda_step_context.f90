@@ -2,7 +2,7 @@
 !> step finds out
 module dda_step_context
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_t
+   use dda_contact_types, only : joint_place_t
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_load_clock, only : load_clock_t
@@ -67,8 +67,8 @@ module dda_step_context
       real(wp), allocatable :: end_gap(:, :)
       !> The blocks at its end, but for their velocities, likewise
       type(block_system_t) :: after
-      !> The joints there: (n_joint)
-      type(joint_t), allocatable :: joint(:)
+      !> Where the joints are there: (n_joint)
+      type(joint_place_t), allocatable :: place(:)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
       !> Mean forces of the joints, impacts among them, that change the velocities where blocks move

@@ -95,7 +95,7 @@ contains
       integer :: j, k
 
       impact%springs = run%contacts%springs
-      call place_rows(run%system, run%step%after%motion, run%step%joint, &
+      call place_rows(run%system, run%step%after%motion, run%contacts%joint, run%step%place, &
          & impact%springs%row)
       impact%closed = closed_contacts(run)
       impact%steady = 2.0_wp/run%step%dt*run%step%state%motion &
