@@ -17,7 +17,8 @@ module dda_block_factor
    implicit none
    private
 
-   public :: block_factor_t, factorise, plan_factor, substitute, factored_condition
+   public :: block_factor_t, factorise, factorise_in_place, plan_factor, substitute
+   public :: factored_condition
 
    include "dda_panel_type.inc"
 
@@ -72,10 +73,19 @@ contains
             end do
          end associate
       end if
-      call eliminate(factor%plan, matrix%diagonal, matrix%coupling, matrix%upper, anew, &
-         & factor%panels)
+      call eliminate(factor%plan, anew, factor%panels, matrix%diagonal, matrix%coupling, &
+         & matrix%upper)
       factor%usable = factor%panels%usable
    end subroutine factorise
+
+   !> Factor what has been added up in the panels
+   pure subroutine factorise_in_place(factor)
+      type(block_factor_t), intent(inout) :: factor
+      integer :: p
+
+      call eliminate(factor%plan, [(.true., p=1, size(factor%plan%first) - 1)], factor%panels)
+      factor%usable = factor%panels%usable
+   end subroutine factorise_in_place
 
    !> Solve for one right-hand side
    pure subroutine substitute(factor, x)

@@ -12,7 +12,7 @@ module dda_block_plan
    implicit none
    private
 
-   public :: elimination_plan_t, most_columns, plan_panels, choose_order
+   public :: elimination_plan_t, most_columns, plan_panels, choose_order, list_places
 
    !> Panels; a place is one in the order of elimination
    type :: elimination_plan_t
@@ -269,4 +269,21 @@ contains
          end do
       end do
    end subroutine list_given
+
+   !> Where matrices of three unknowns a block have their numbers in the panels: the first number of
+   !> each diagonal block and of each coupling, negative for one that is transposed
+   pure subroutine list_places(plan, diagonal, coupling)
+      type(elimination_plan_t), intent(in) :: plan
+      integer, intent(out) :: diagonal(:)  !! Of diagonal blocks: (n_block)
+      integer, intent(out) :: coupling(:)  !! Of couplings: (n_entry)
+      integer :: c, height, p, width
+
+      do p = 1, size(plan%first) - 1
+         width = plan%first(p + 1) - plan%first(p)
+         height = width + plan%first_row(p + 1) - plan%first_row(p)
+         diagonal(plan%block(plan%first(p):plan%first(p + 1) - 1)) = &
+            & [(plan%start(p) + 9*c*(height + 1), c=0, width - 1)]
+      end do
+      coupling(abs(plan%given(1, :))) = sign(plan%given(2, :), plan%given(1, :))
+   end subroutine list_places
 end module dda_block_plan

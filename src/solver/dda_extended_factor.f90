@@ -1,7 +1,6 @@
 !> Factor of the stiffness matrix of springs in numbers of some more digits that the processor has,
 !> for springs whose stiffness spreads over more decades than working precision has
 module dda_extended_factor
-   use dda_block_matrix, only : block_matrix_t
    use dda_block_plan, only : elimination_plan_t, most_columns
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp

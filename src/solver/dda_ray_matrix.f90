@@ -7,8 +7,9 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
-   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
+   use dda_block_factor, only : block_factor_t, factorise_in_place, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_plan, only : list_places
    use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
    use dda_joint_rays, only : joint_rays_t, n_side, ray_rates
    use dda_kinds, only : wp
@@ -29,11 +30,9 @@ module dda_ray_matrix
    !> Names of these numbers
    type(digits_enum), parameter :: digits_of = digits_enum()
 
-   !> The matrix, its factor, and what work on them needs
+   !> The factor, in whose place the matrix is assembled, and what work on them needs
    type :: ray_matrix_t
-      !> The matrix
-      type(block_matrix_t) :: matrix
-      !> Its factor
+      !> The factor
       type(block_factor_t) :: factor
       !> Factors with more digits
       type(extended_factor_t) :: extended
@@ -42,9 +41,12 @@ module dda_ray_matrix
       integer :: digits = digits_of%working
       !> Whether one can be used
       logical :: usable = .false.
-      !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
-      integer, allocatable :: entry(:)
-      !> Whether the second block of a joint has the rows of its entry: (n_joint)
+      !> First number of the diagonal block of each block: (n_block)
+      integer, allocatable :: diagonal(:)
+      !> First number of what each joint couples, negative for what is transposed there, 0 for
+      !> nothing: (n_joint)
+      integer, allocatable :: coupling(:)
+      !> Whether the second block of a joint has the rows of what it couples: (n_joint)
       logical, allocatable :: second_is_row(:)
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
@@ -60,23 +62,27 @@ contains
    pure subroutine plan_matrix(rays, springs)
       type(joint_rays_t), intent(in) :: rays
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
-      integer :: j, n, pair(2, size(rays%block, 2))
+      type(block_matrix_t) :: matrix
+      integer, allocatable :: place(:)
+      logical :: couples(size(rays%block, 2))
+      integer :: e, j
 
-      allocate (springs%entry(size(rays%block, 2)), springs%second_is_row(size(rays%block, 2)))
-      springs%entry = 0
-      n = 0
-      do j = 1, size(springs%entry)
-         if (any(rays%block(:, j) == 0)) cycle
-         n = n + 1
-         springs%entry(j) = n
-         pair(:, n) = rays%block(:, j)
-      end do
-      call set_pattern(springs%matrix, 3, rays%n_block, pair(:, :n))
-      call plan_factor(springs%matrix, springs%factor)
-      do j = 1, size(springs%entry)
-         springs%second_is_row(j) = .false.
-         if (springs%entry(j) == 0) cycle
-         springs%second_is_row(j) = springs%matrix%pair(1, springs%entry(j)) == rays%block(2, j)
+      couples = all(rays%block /= 0, 1)
+      call set_pattern(matrix, 3, rays%n_block, reshape(pack(rays%block, spread(couples, 1, 2)), &
+         & [2, count(couples)]))
+      ! numbers are assembled in the factor
+      deallocate (matrix%diagonal, matrix%coupling)
+      call plan_factor(matrix, springs%factor)
+      allocate (springs%diagonal(rays%n_block), place(count(couples)))
+      call list_places(springs%factor%plan, springs%diagonal, place)
+      allocate (springs%coupling(size(couples)), source=0)
+      allocate (springs%second_is_row(size(couples)), source=.false.)
+      e = 0
+      do j = 1, size(couples)
+         if (.not. couples(j)) cycle
+         e = e + 1
+         springs%coupling(j) = place(e)
+         springs%second_is_row(j) = matrix%pair(1, e) == rays%block(2, j)
       end do
       allocate (springs%stiffness(n_side, size(rays%block, 2)))
    end subroutine plan_matrix
@@ -95,18 +101,20 @@ contains
       integer :: b, k
 
       call assemble(rays, springs)
-      do b = 1, rays%n_block
-         largest = maxval([(springs%matrix%diagonal(k, k, b) + mass(k, b), k=1, 3)])
-         if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
-         do k = 1, 3
-            associate (d => springs%matrix%diagonal(k, k, b))
-               d = d + mass(k, b)
-               d = merge(d*(1.0_wp + lift), lift*largest, d > 0.0_wp)
+      associate (number => springs%factor%panels%lower)
+         do b = 1, rays%n_block
+            associate (own => number(springs%diagonal(b):springs%diagonal(b) + 8:4))
+               largest = maxval(own + mass(:, b))
+               if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
+               do k = 1, 3
+                  own(k) = own(k) + mass(k, b)
+                  own(k) = merge(own(k)*(1.0_wp + lift), lift*largest, own(k) > 0.0_wp)
+               end do
             end associate
          end do
-      end do
+      end associate
       springs%digits = digits_of%working
-      call factorise(springs%matrix, springs%factor)
+      call factorise_in_place(springs%factor)
       springs%usable = springs%factor%usable
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine set_springs
@@ -122,12 +130,12 @@ contains
 
       associate (plan => springs%factor%plan)
          if (digits == digits_of%extended) then
-            call factorise_extended(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
-               & plan, springs%extended%panels)
+            call factorise_extended(rays, springs%stiffness, mass, springs%diagonal, &
+               & springs%coupling, springs%second_is_row, plan, springs%extended%panels)
             usable = springs%extended%panels%usable
          else
-            call factorise_wide(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
-               & plan, springs%wide%panels)
+            call factorise_wide(rays, springs%stiffness, mass, springs%diagonal, &
+               & springs%coupling, springs%second_is_row, plan, springs%wide%panels)
             usable = springs%wide%panels%usable
          end if
       end associate
@@ -140,31 +148,41 @@ contains
    pure subroutine assemble(rays, springs)
       type(joint_rays_t), intent(in) :: rays
       type(ray_matrix_t), intent(inout) :: springs
-      real(wp) :: pushed(n_side, 6)
+      real(wp) :: pushed(n_side, 6), product(3, 3)
       integer :: a, b, j, k
 
-      springs%matrix%diagonal = 0.0_wp
+      springs%factor%panels%lower = 0.0_wp
       do j = 1, size(rays%block, 2)
          a = rays%block(1, j)
          b = rays%block(2, j)
          do k = 1, 6
             pushed(:, k) = springs%stiffness(:, j)*rays%arm(:, k, j)
          end do
-         if (a /= 0) call add_product(pushed(1, 1), rays%arm(1, 1, j), &
-            & springs%matrix%diagonal(1, 1, a))
-         if (b /= 0) call add_product(pushed(1, 4), rays%arm(1, 4, j), &
-            & springs%matrix%diagonal(1, 1, b))
-         if (springs%entry(j) == 0) cycle
-         associate (e => springs%entry(j))
-            springs%matrix%coupling(:, :, e) = 0.0_wp
+         associate (number => springs%factor%panels%lower)
+            if (a /= 0) call add_product(pushed(1, 1), rays%arm(1, 1, j), &
+               & number(springs%diagonal(a)))
+            if (b /= 0) call add_product(pushed(1, 4), rays%arm(1, 4, j), &
+               & number(springs%diagonal(b)))
+            if (springs%coupling(j) == 0) cycle
+            product = 0.0_wp
             if (springs%second_is_row(j)) then
-               call add_product(pushed(1, 4), rays%arm(1, 1, j), springs%matrix%coupling(1, 1, e))
+               call add_product(pushed(1, 4), rays%arm(1, 1, j), product)
             else
-               call add_product(pushed(1, 1), rays%arm(1, 4, j), springs%matrix%coupling(1, 1, e))
+               call add_product(pushed(1, 1), rays%arm(1, 4, j), product)
             end if
+            if (springs%coupling(j) < 0) product = transpose(product)
+            call add_block(product, number(abs(springs%coupling(j))))
          end associate
       end do
    end subroutine assemble
+
+   !> sum = sum + block
+   pure subroutine add_block(block, sum)
+      real(wp), intent(in) :: block(3, 3)   !! What is added
+      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
+
+      sum = sum + block
+   end subroutine add_block
 
    !> sum = sum + a' b
    pure subroutine add_product(a, b, sum)

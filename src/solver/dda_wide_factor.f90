@@ -1,7 +1,6 @@
 !> Factor of the stiffness matrix of springs in numbers of twice the digits: each operation takes as
 !> long as dozens in numbers that the processor has
 module dda_wide_factor
-   use dda_block_matrix, only : block_matrix_t
    use dda_block_plan, only : elimination_plan_t, most_columns
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
