@@ -87,7 +87,7 @@ contains
       graph%n_dof = n_rigid
       call add_nodes(settings, graph)
       call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
-         & graph)
+         & any(contacts%joint%law%strength < huge(1.0_wp)), graph)
       do j = 1, n
          place = joint_place(system, contacts, j)
          associate (single => contacts%joint(j)%n_contact == 1, law => contacts%joint(j)%law)
@@ -253,14 +253,15 @@ contains
    end function pin_rows
 
    !> Joints without numbers
-   pure subroutine allocate_joints(n, graph)
-      integer, intent(in) :: n  !! How many
+   pure subroutine allocate_joints(n, crush, graph)
+      integer, intent(in) :: n      !! How many
+      logical, intent(in) :: crush  !! Whether some crush
       type(joint_graph_t), intent(inout) :: graph
 
       allocate (graph%block(2, n), graph%kind(n))
       allocate (graph%row(n_rigid, 3, 2, n), source=0.0_wp)
       allocate (graph%friction(n), graph%length(n), source=0.0_wp)
-      allocate (graph%crush(n), source=huge(1.0_wp))
+      if (crush) allocate (graph%crush(n), source=huge(1.0_wp))
       allocate (graph%compliance(3, n), source=1.0_wp)
       allocate (graph%gap(2, n), source=0.0_wp)
    end subroutine allocate_joints
