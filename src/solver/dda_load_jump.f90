@@ -49,7 +49,7 @@ module dda_load_jump
    !> share of what is far
    real(wp), parameter :: driven = 0.01_wp
    !> That share is one over this
-   integer, parameter :: brief = 4
+   integer, parameter :: brief = 10
    !> Pivots after which rates are looked for with more damping
    integer, parameter :: few_pivots = 16
    !> An event no further off than this makes no way
@@ -57,7 +57,7 @@ module dda_load_jump
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
    !> Steps of a jump: at least so many, and so many more for each joint
-   integer, parameter :: least_patience = 2000, patience = 10
+   integer, parameter :: least_patience = 6000, patience = 10
    !> Change of damping after a step that meets no event, and its inverse where there are no rates
    real(wp), parameter :: calmer = 0.1_wp
    !> Damping that is tried first where there are no rates along a path

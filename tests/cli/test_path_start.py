@@ -161,6 +161,18 @@ def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> Non
     assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
 
 
+@pytest.mark.parametrize(("seed", "value"), [(94436, 0.6150628), (96362, 0.5623422)])
+def test_rings_that_creep_on_by_sticking_and_slipping_fall(tmp_path: Path, seed: int, value: float) -> None:
+    """Each slip is followed by another one, equally far: thousands of them lead to what counts as far."""
+    text = block_text(*make_pushed(seed))
+    (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 1e4 /")
+    assert found["verdict"] == "found"
+    assert float(found["critical"]) == pytest.approx(value, rel=1e-6)
+    loads = ", ".join(repr(value * share) for share in (0.9, 0.999, 1.001, 1.1))
+    decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
+    assert [row["verdict"] for row in decided] == [*2 * ["stable"], *2 * ["collapsed"]]
+
+
 def test_a_jump_that_settles_by_no_small_push_is_a_fall(tmp_path: Path) -> None:
     """A slope of 21 blocks, friction 43.8 degrees: a push of 1e-6 never settles, one of 2.5e-6 falls without end."""
     text = block_text(*make_pushed(94067))
