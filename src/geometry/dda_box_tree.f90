@@ -9,7 +9,7 @@ module dda_box_tree
    private
 
    public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, least_nearby
-   public :: least_values, max_levels, new_box_tree
+   public :: least_values, max_levels, new_box_tree, segment_tree
 
    !> Levels that a tree can have
    integer, parameter :: max_levels = 64
@@ -207,9 +207,18 @@ contains
       meets_line = abs(along(1)*arm(2) - along(2)*arm(1)) <= room
    end function meets_line
 
+   !> A tree of segments, each in the box around it
+   pure subroutine segment_tree(segment, tree)
+      real(wp), intent(in) :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]
+      type(box_tree_t), intent(out) :: tree
+
+      call new_box_tree(min(segment(1:2, :), segment(3:4, :)), &
+         & max(segment(1:2, :), segment(3:4, :)), tree)
+   end subroutine segment_tree
+
    !> A tree of boxes: each node is cut in two across its longer side, as many boxes on either side
    pure subroutine new_box_tree(low, high, tree)
-      real(wp), intent(in) :: low(:, :)  !! Lower left corners: (2, n), n >= 1 [m]
+      real(wp), intent(in) :: low(:, :)  !! Lower left corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)
       type(box_tree_t), intent(out) :: tree
       real(wp), allocatable :: centre(:, :)
@@ -274,7 +283,8 @@ contains
          return
       end if
       half = (size(item) + 1)/2
-      axis = maxloc(maxval(centre, dim=2) - minval(centre, dim=2), dim=1)
+      axis = merge(1, 2, maxval(centre(1, :)) - minval(centre(1, :)) &
+         & >= maxval(centre(2, :)) - minval(centre(2, :)))
       call part_at(centre, item, axis, half)
       call fill_leaves(centre(:, :half), item(:half), 2*node, tree)
       call fill_leaves(centre(:, half + 1:), item(half + 1:), 2*node + 1, tree)
@@ -287,7 +297,7 @@ contains
       integer, intent(inout) :: item(:)
       integer, intent(in) :: axis              !! Which coordinate counts
       integer, intent(in) :: n                 !! How many come to the front
-      real(wp) :: middle
+      real(wp) :: kept(2), middle
       integer(int64) :: lot
       integer :: first, last, i, j
 
@@ -307,7 +317,9 @@ contains
                j = j - 1
             end do
             if (i <= j) then
-               centre(:, [i, j]) = centre(:, [j, i])
+               kept = centre(:, i)
+               centre(:, i) = centre(:, j)
+               centre(:, j) = kept
                item([i, j]) = item([j, i])
                i = i + 1
                j = j - 1

@@ -5,7 +5,7 @@ module dda_segment
    implicit none
    private
 
-   public :: segment_distance, meeting_points, crossing_parameters
+   public :: segment_distance, meeting_points, crossing_parameters, overshoot
 
    !> How far beyond its ends a segment still meets another, over its length
    real(wp), parameter :: overshoot = 1.0e-7_wp

@@ -1,13 +1,13 @@
 !> Where lines meet, and the network of nodes and edges that they make (Shi: dc04, dc05)
 module dda_line_network
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_cell_grid, only : cell_grid_t, cell_of, new_cell_grid
+   use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
    use dda_cut_report, only : add_remark, cut_reason, cut_remarks_t
    use dda_cut_scale, only : cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_segment, only : meeting_points
-   use dda_sort, only : sorted_order
+   use dda_segment, only : meeting_points, overshoot
+   use dda_sort, only : sort_numbers, sorted_order
    use dda_text, only : to_text
    implicit none
    private
@@ -61,53 +61,31 @@ contains
       real(wp), intent(in) :: reach                     !! Distance within which things touch [m]
       type(crossings_t), intent(out) :: crossings
       type(error_t), allocatable, intent(out) :: error  !! Allocated if there are too many
-      type(cell_grid_t) :: grid
-      integer, allocatable :: order(:)
-      integer :: cell
+      type(box_tree_t) :: tree
+      integer, allocatable :: near(:)
+      real(wp) :: point(2, 2), margin
+      integer :: i, k, m, n, n_near
 
-      call new_cell_grid(line, 2.0_wp*reach, grid)
+      call segment_tree(line, tree)
+      margin = reach + overshoot*norm2(tree%high(:, 1) - tree%low(:, 1))
       allocate (crossings%line(2, 64), crossings%point(2, 64))
-      do cell = 1, grid%n(1)*grid%n(2)
-         call cross_in_cell(line, reach, grid, cell, crossings)
+      do i = 1, size(line, 2)
+         call find_boxes(tree, min(line(1:2, i), line(3:4, i)) - reach, &
+            & max(line(1:2, i), line(3:4, i)) + reach, near, n_near, above=i, segment=line(:, i), &
+            & margin=margin)
+         call sort_numbers(near(:n_near))
+         do k = 1, n_near
+            call meeting_points(line(:, i), line(:, near(k)), reach, n, point)
+            do m = 1, n
+               call add_crossing(crossings, i, near(k), point(:, m))
+            end do
+         end do
          if (crossings%n <= max_crossings) cycle
          call fatal_error(error, "expected fewer than "//to_text(max_crossings) &
             & //" crossings of lines, got more; remove lines")
          return
       end do
-      associate (n => crossings%n)
-         allocate (order, source=sorted_order(crossings%line(1, :n), &
-            & real(crossings%line(2, :n), wp)))
-         crossings%line = crossings%line(:, order)
-         crossings%point = crossings%point(:, order)
-      end associate
    end subroutine find_crossings
-
-   !> Crossings that lie in one cell: each point belongs to one cell, so that none is found twice
-   pure subroutine cross_in_cell(line, reach, grid, cell, crossings)
-      real(wp), intent(in) :: line(:, :), reach
-      type(cell_grid_t), intent(in) :: grid
-      integer, intent(in) :: cell  !! Number of the cell
-      type(crossings_t), intent(inout) :: crossings
-      real(wp) :: point(2, 2), low(2), high(2)
-      integer :: a, b, i, j, k, n
-
-      do a = grid%first(cell), grid%first(cell + 1) - 2
-         i = grid%item(a)
-         low = min(line(1:2, i), line(3:4, i)) - reach
-         high = max(line(1:2, i), line(3:4, i)) + reach
-         do b = a + 1, grid%first(cell + 1) - 1
-            j = grid%item(b)
-            if (any(max(line(1:2, j), line(3:4, j)) < low)) cycle
-            if (any(min(line(1:2, j), line(3:4, j)) > high)) cycle
-            call meeting_points(line(:, i), line(:, j), reach, n, point)
-            do k = 1, n
-               if (cell_of(grid, point(:, k)) == cell) &
-                  & call add_crossing(crossings, i, j, point(:, k))
-            end do
-         end do
-         if (crossings%n > max_crossings) return
-      end do
-   end subroutine cross_in_cell
 
    !> Add a crossing
    pure subroutine add_crossing(crossings, i, j, point)

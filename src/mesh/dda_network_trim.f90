@@ -1,10 +1,10 @@
 !> Edges that bound nothing or stand in the way are taken out of a network (Shi: dc05, dc06)
 submodule (dda_cutting) dda_network_trim
-   use dda_cell_grid, only : cell_grid_t, cell_of, new_cell_grid
+   use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
    use dda_cut_report, only : cut_reason
    use dda_line_network, only : drop_edge, edge_place
    use dda_segment, only : crossing_parameters, segment_distance
-   use dda_sort, only : sorted_order
+   use dda_sort, only : sort_numbers
    implicit none
 
 contains
@@ -69,81 +69,42 @@ contains
 
    !> Drop one of two edges that cross between their nodes, as happens when nodes were merged
    module procedure drop_crossing_edges
-      type(cell_grid_t) :: grid
+      type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
-      integer, allocatable :: number(:), pair(:, :), order(:)
-      integer :: k, e, f
+      integer, allocatable :: number(:), near(:)
+      integer :: edge(2), i, k, n
 
       crossing = 0
       call living_edges(network, number, place)
-      call new_cell_grid(place, 2.0_wp*scale%reach, grid)
-      call crossing_pairs(network, scale%reach, number, place, grid, pair)
-      allocate (order, source=sorted_order(pair(1, :), real(pair(2, :), wp)))
-      do k = 1, size(order)
-         e = pair(1, order(k))
-         f = pair(2, order(k))
-         if (.not. all(network%alive([e, f]))) cycle
-         if (network%line(f) < network%line(e)) then
-            e = pair(2, order(k))
-            f = pair(1, order(k))
-         end if
-         if (network%line(f) <= network%n_boundary) then
-            crossing = network%line([e, f])
-         else
-            call drop_edge(network, f, cut_reason%crossing, network%line(e), remarks)
-         end if
-      end do
-   end procedure drop_crossing_edges
-
-   !> Pairs of edges that cross between their nodes; a pair may come several times
-   pure subroutine crossing_pairs(network, reach, number, place, grid, pair)
-      type(network_t), intent(in) :: network
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
-      !> Numbers of the living edges: (n)
-      integer, intent(in) :: number(:)
-      !> Their ends: (4, n) [m]
-      real(wp), intent(in) :: place(:, :)
-      type(cell_grid_t), intent(in) :: grid
-      !> Edges, the smaller number first: (2, n_pair)
-      integer, allocatable, intent(out) :: pair(:, :)
-      integer, allocatable :: longer(:, :)
-      integer :: cell, a, b, n
-
-      allocate (pair(2, 16))
-      n = 0
-      do cell = 1, grid%n(1)*grid%n(2)
-         do a = grid%first(cell), grid%first(cell + 1) - 2
-            do b = a + 1, grid%first(cell + 1) - 1
-               if (.not. edges_cross(network, reach, number(grid%item([a, b])), &
-                  & place(:, grid%item(a)), place(:, grid%item(b)))) cycle
-               if (n == size(pair, 2)) then
-                  allocate (longer(2, 2*n))
-                  longer(:, :n) = pair
-                  call move_alloc(longer, pair)
-               end if
-               n = n + 1
-               pair(:, n) = number(grid%item([a, b]))
-            end do
+      call segment_tree(place, tree)
+      do i = 1, size(number)
+         call find_boxes(tree, min(place(1:2, i), place(3:4, i)), &
+            & max(place(1:2, i), place(3:4, i)), near, n, above=i)
+         call sort_numbers(near(:n))
+         do k = 1, n
+            edge = number([i, near(k)])
+            if (.not. all(network%alive(edge))) cycle
+            if (.not. edges_cross(network, scale%reach, edge, place(:, i), place(:, near(k)))) cycle
+            if (network%line(edge(2)) < network%line(edge(1))) edge = edge([2, 1])
+            if (network%line(edge(2)) <= network%n_boundary) then
+               crossing = network%line(edge)
+            else
+               call drop_edge(network, edge(2), cut_reason%crossing, network%line(edge(1)), remarks)
+            end if
          end do
       end do
-      pair = pair(:, :n)
-   end subroutine crossing_pairs
+   end procedure drop_crossing_edges
 
    !> Whether two edges cross between their nodes
    pure logical function edges_cross(network, reach, edge, first, second)
       type(network_t), intent(in) :: network
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: reach      !! Distance within which things touch [m]
       integer, intent(in) :: edge(2)     !! Numbers of the edges: (2)
       real(wp), intent(in) :: first(4)   !! Ends of the first: (4) [m]
       real(wp), intent(in) :: second(4)  !! Ends of the second: (4) [m]
       real(wp) :: share(2), rim(2)
 
       edges_cross = .false.
-      if (max(first(1), first(3)) < min(second(1), second(3))) return
-      if (min(first(1), first(3)) > max(second(1), second(3))) return
-      if (max(first(2), first(4)) < min(second(2), second(4))) return
-      if (min(first(2), first(4)) > max(second(2), second(4))) return
       if (any(network%edge(:, edge(1)) == network%edge(1, edge(2)))) return
       if (any(network%edge(:, edge(1)) == network%edge(2, edge(2)))) return
       call crossing_parameters(first, second, share, edges_cross)
@@ -153,26 +114,27 @@ contains
 
    !> Drop joints that pass a node of other lines closer than e00 w0 (Shi
    module procedure drop_close_edges
-      type(cell_grid_t) :: grid
+      type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
-      integer, allocatable :: number(:), blocker(:), line_of(:)
-      integer :: k, a, cell, node
+      real(wp) :: point(2)
+      integer, allocatable :: number(:), blocker(:), line_of(:), near(:)
+      integer :: i, k, n, node
 
       call living_edges(network, number, place)
-      call new_cell_grid(place, scale%clearance, grid)
+      call segment_tree(place, tree)
       allocate (line_of(size(network%node, 2)), blocker(size(number)), source=0)
       do k = size(number), 1, -1
          line_of(network%edge(:, number(k))) = network%line(number(k))
       end do
       do node = 1, size(line_of)
          if (line_of(node) == 0) cycle
-         cell = cell_of(grid, network%node(:, node))
-         do a = grid%first(cell), grid%first(cell + 1) - 1
-            k = grid%item(a)
+         point = network%node(:, node)
+         call find_boxes(tree, point - scale%clearance, point + scale%clearance, near, n)
+         do i = 1, n
+            k = near(i)
             if (network%line(number(k)) <= network%n_boundary .or. blocker(k) > 0) cycle
             if (any(network%edge(:, number(k)) == node)) cycle
-            if (segment_distance(network%node(:, node), place(:, k)) < scale%clearance) &
-               & blocker(k) = line_of(node)
+            if (segment_distance(point, place(:, k)) < scale%clearance) blocker(k) = line_of(node)
          end do
       end do
       do k = 1, size(number)
@@ -184,19 +146,13 @@ contains
    !> Edges that were not dropped
    pure subroutine living_edges(network, number, place)
       type(network_t), intent(in) :: network
-      integer, allocatable, intent(out) :: number(:)
-      real(wp), allocatable, intent(out) :: place(:, :)
-      integer :: e, n
+      integer, allocatable, intent(out) :: number(:)     !! Their numbers: (n)
+      real(wp), allocatable, intent(out) :: place(:, :)  !! Their ends: (4, n) [m]
+      integer :: e
 
-      allocate (number(count(network%alive)))
-      n = 0
-      do e = 1, size(network%line)
-         if (.not. network%alive(e)) cycle
-         n = n + 1
-         number(n) = e
-      end do
-      allocate (place(4, n))
-      do e = 1, n
+      number = pack([(e, e=1, size(network%line))], network%alive)
+      allocate (place(4, size(number)))
+      do e = 1, size(number)
          place(:, e) = edge_place(network, number(e))
       end do
    end subroutine living_edges
