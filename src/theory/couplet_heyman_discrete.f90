@@ -16,54 +16,12 @@
 !> eta they never lie above the truth, hence a few rounds suffice.
 module couplet_heyman_discrete
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_kernels, only : versine
+   use couplet_heyman_ring, only : limit_thrust, make_ring, pinch_t, ring_t, solve_pinch, widest_gap
    implicit none
    private
 
    public :: discrete_critical, discrete_critical_equal, equal_voussoir_joints, chords
-   public :: discrete_solution_t, discrete_status, joint_role, pinch_t, widest_gap, solve_pinch
-   public :: ring_t, make_ring, limit_thrust
-
-   !> One half of an arch, joint by joint; nothing here depends on eta
-   type :: ring_t
-      !> Cosine of the joint's angle: (:)
-      real(wp), allocatable :: cosine(:)
-      !> 1 - cosine: (:)
-      real(wp), allocatable :: versine(:)
-      !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
-      real(wp), allocatable :: form(:)
-      !> M, moment of the weights above the joint: (:)
-      real(wp), allocatable :: moment(:)
-      !> n, normal force at the joint for H = 1: (:)
-      real(wp), allocatable :: normal(:)
-      !> Angle less weight above the joint, t - W: (:)
-      real(wp), allocatable :: lightness(:)
-      !> Deficits that friction allows: from lowest
-      real(wp) :: lowest = -huge(1.0_wp)
-      !> ... to highest
-      real(wp) :: highest = huge(1.0_wp)
-      !> Joint whose friction sets lowest; 0 if none
-      integer :: lowest_joint = 0
-      !> Joint whose friction sets highest; 0 if none
-      integer :: highest_joint = 0
-   end type ring_t
-
-   !> Where the gap is widest at one eta, and the joints that keep it from being wider
-   type :: pinch_t
-      !> Deficit of the thrust there
-      real(wp) :: deficit = 0.0_wp
-      !> The gap there
-      real(wp) :: gap = 0.0_wp
-      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
-      logical :: unbounded = .false.
-      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
-      integer :: left(2) = 0
-      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
-      !> sliding joint: (2)
-      integer :: right(2) = 0
-      !> Joint whose friction holds the deficit; 0 if none
-      integer :: sliding = 0
-   end type pinch_t
+   public :: discrete_solution_t, discrete_status, joint_role
 
    !> Outcome of a critical thickness
    type :: discrete_status_enum
@@ -96,55 +54,6 @@ module couplet_heyman_discrete
       integer :: joint(5) = 0      !! Joints that bind, as indices of joint_angle: (5)
       integer :: role(5) = 0       !! What each of them does, one of `joint_role`: (5)
    end type discrete_solution_t
-
-   interface
-
-      !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave
-      !> polygon
-      pure module subroutine widest_gap(ring, eta, pinch)
-         type(ring_t), intent(in) :: ring
-         !> Thickness ratio [-]
-         real(wp), intent(in) :: eta
-         !> Where the gap is widest, and the joints that make it so
-         type(pinch_t), intent(out) :: pinch
-      end subroutine widest_gap
-
-      !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method
-      !> in eta and deficit
-      pure module subroutine solve_pinch(ring, start, pinch, eta, solved)
-         type(ring_t), intent(in) :: ring
-         real(wp), intent(in) :: start          !! Thickness ratio at which the pinch was found [-]
-         type(pinch_t), intent(inout) :: pinch  !! The joints; its deficit is carried along
-         real(wp), intent(out) :: eta           !! Thickness ratio at which their gaps vanish [-]
-         logical, intent(out) :: solved         !! Whether the iteration has come to rest
-      end subroutine solve_pinch
-
-      !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
-      !> form
-      pure module subroutine make_ring(joint_angle, facets, ring)
-         !> Joints of one half, from the crown: (n) [rad]
-         real(wp), intent(in) :: joint_angle(:)
-         !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
-         integer, intent(in) :: facets(:)
-         type(ring_t), intent(out) :: ring
-      end subroutine make_ring
-
-      !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W
-      !> cos(t - phi) at each joint
-      !>
-      !> A joint at the crown carries no shear, by symmetry.
-      pure module subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
-         !> Joints of one half, from the crown: (:) [rad]
-         real(wp), intent(in) :: joint_angle(:)
-         !> Friction angle; pi/2 or more means that no joint slides [rad]
-         real(wp), intent(in) :: friction
-         !> Whether the last joint cannot slide
-         logical, intent(in) :: springing_no_slip
-         !> The ring: its limits of the deficit are set
-         type(ring_t), intent(inout) :: ring
-      end subroutine limit_thrust
-
-   end interface
 
 contains
 

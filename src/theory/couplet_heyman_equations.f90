@@ -7,33 +7,20 @@
 !> beta < pi, h >= 0 the results mean nothing.
 module couplet_heyman_equations
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
+   use couplet_heyman_kernels, only : arc_excess, embrace_deficit, versine
    use couplet_heyman_theories, only : theory, tangency_flag, weight_arm, weight_flag
    implicit none
    private
 
-   public :: heyman_embrace, heyman_thickness, heyman_thrust
-   public :: chunk_weight, chunk_centre, eccentricity
-   public :: thrust_through, lower_thrust, springing_thrust, tangent_thrust
+   public :: heyman_thickness, heyman_thrust, eccentricity
+   public :: thrust_through, springing_thrust, tangent_thrust
 
 contains
 
-   !> Left side of eq. (1), Heyman: the A at which the hinge is at beta
-   elemental function heyman_embrace(beta) result(a)
-      !> Inner hinge, (0, pi/2] [rad]
-      real(wp), intent(in) :: beta
-      !> A = h + 2/(2 + eta) with eqs. (2) and (3), which is eq. (1) without its cancelling factors
-      real(wp) :: a
-      real(wp) :: eta
-
-      eta = heyman_thickness(beta)
-      a = 2.0_wp - arm_excess(beta)/sin(beta) - eta/(2.0_wp + eta)
-   end function heyman_embrace
-
    !> Eq. (2), Heyman: eta = 2 (beta - S)(1 - C)/(beta (1 + C))
    elemental function heyman_thickness(beta) result(eta)
-      real(wp), intent(in) :: beta
-      real(wp) :: eta  !! Thickness ratio [-]
+      real(wp), intent(in) :: beta  !! Inner hinge, (0, pi/2] [rad]
+      real(wp) :: eta               !! Thickness ratio [-]
 
       eta = 2.0_wp*arc_excess(beta)/beta*tan(0.5_wp*beta)**2
    end function heyman_thickness
@@ -47,33 +34,13 @@ contains
       if (beta > 0.0_wp) h = beta*cos(beta)/sin(beta)
    end function heyman_thrust
 
-   !> Eq. (5): weight of the chunk between the crown and beta
-   elemental function chunk_weight(beta) result(weight)
-      real(wp), intent(in) :: beta  !! Angle from the crown [rad]
-      real(wp) :: weight            !! W1 [w r]
-
-      weight = beta
-   end function chunk_weight
-
-   !> Eq. (5): centre of gravity of the chunk between the crown and beta
-   pure function chunk_centre(beta, eta, which) result(centre)
-      real(wp), intent(in) :: beta  !! Angle from the crown, (0, pi) [rad]
-      real(wp), intent(in) :: eta   !! Thickness ratio [-]
-      integer, intent(in) :: which  !! One of `theory`
-      real(wp) :: centre(2)         !! x1 from the crown and y1 from the arch's centre: (2) [r]
-
-      centre = weight_arm(eta, which)*[versine(beta), sin(beta)]/beta
-   end function chunk_centre
-
    !> Eq. (6): thrust that makes the line of thrust pass through the crown's extrados and a given
    !> point of a joint
    elemental function thrust_through(beta, eccentricity_ratio, eta, which) result(h)
-      !> Angle of the joint, (0, pi) [rad]
-      real(wp), intent(in) :: beta
-      !> 2e/t, from -1 at the extrados to 1 at the intrados
-      real(wp), intent(in) :: eccentricity_ratio
-      real(wp), intent(in) :: eta
-      integer, intent(in) :: which
+      real(wp), intent(in) :: beta                !! Angle of the joint, (0, pi) [rad]
+      real(wp), intent(in) :: eccentricity_ratio  !! 2e/t, -1 at the extrados, 1 at the intrados
+      real(wp), intent(in) :: eta                 !! Thickness ratio [-]
+      integer, intent(in) :: which                !! One of `theory`
       real(wp) :: h
       real(wp) :: reach, numerator, denominator
 
@@ -82,16 +49,6 @@ contains
       denominator = eta*(1.0_wp + eccentricity_ratio) + reach*versine(beta)
       h = versine(beta)*numerator/denominator
    end function thrust_through
-
-   !> Eq. (7): h1, the lower thrust, through the crown's extrados and the intrados at beta
-   elemental function lower_thrust(beta, eta, which) result(h)
-      real(wp), intent(in) :: beta  !! Inner hinge, (0, pi) [rad]
-      real(wp), intent(in) :: eta
-      integer, intent(in) :: which
-      real(wp) :: h                 !! h1 [w r]
-
-      h = thrust_through(beta, 1.0_wp, eta, which)
-   end function lower_thrust
 
    !> Eq. (8): h2 = A - 2 m/(2 + eta), through the extrados of crown and springing
    elemental function springing_thrust(alpha, eta, which) result(h)

@@ -11,10 +11,8 @@ module couplet_heyman_printed
    implicit none
    private
 
-   public :: equilibrium_polynomial, stationary_polynomial, growth_polynomial, crown_polynomial
-   public :: embrace_polynomial, embrace_cubic, embrace_quadratic, thickness_polynomial
-   public :: heyman_quotient
-   public :: singular_embrace, singular_polynomial, printed_thickness, printed_critical
+   public :: equilibrium_polynomial, growth_polynomial, embrace_cubic, embrace_quadratic
+   public :: heyman_quotient, printed_thickness, printed_critical
 
 contains
 
@@ -43,17 +41,6 @@ contains
             + 12.0_wp*(c - a)*eta + 12.0_wp*(beta*s - (1.0_wp - c)*a)
    end function equilibrium_polynomial
 
-   !> Eq. (18): derivative of eq. (14) by beta; vanishes at the least thickness
-   elemental real(wp) function stationary_polynomial(eta, beta, a, which) result(value)
-      real(wp), intent(in) :: eta, beta, a
-      integer, intent(in) :: which
-      real(wp) :: s, arm
-
-      s = sin(beta)
-      arm = s + beta*cos(beta) - s*a
-      value = -weight_flag(which)*s*eta**3 - 3.0_wp*arm*eta**2 - 12.0_wp*s*eta + 12.0_wp*arm
-   end function stationary_polynomial
-
    !> Denominator of eq. (19): derivative of eq. (14) by eta
    elemental real(wp) function growth_polynomial(eta, beta, a, which) result(value)
       real(wp), intent(in) :: eta, beta, a
@@ -65,52 +52,6 @@ contains
       value = 3.0_wp*weight_flag(which)*c*eta**2 - 6.0_wp*(beta*s + (1.0_wp + c)*a)*eta &
             + 12.0_wp*(c - a)
    end function growth_polynomial
-
-   !> Eq. (20): the A at which eq. (19) has no slope
-   elemental real(wp) function singular_embrace(eta, beta, which)
-      real(wp), intent(in) :: eta, beta
-      integer, intent(in) :: which
-      real(wp) :: c
-
-      c = cos(beta)
-      singular_embrace = weight_flag(which)*c*eta**2 - 2.0_wp*beta*sin(beta)*eta + 4.0_wp*c
-      singular_embrace = singular_embrace/(4.0_wp + 2.0_wp*(1.0_wp + c)*eta)
-   end function singular_embrace
-
-   !> Eq. (21): eq. (27) at A = A_sing
-   elemental real(wp) function singular_polynomial(eta, which) result(value)
-      real(wp), intent(in) :: eta
-      integer, intent(in) :: which
-      real(wp) :: flag
-
-      flag = weight_flag(which)
-      value = -(flag*eta**2 + 4.0_wp*flag*eta - 12.0_wp)*eta**2/(2.0_wp*(1.0_wp + eta))
-   end function singular_polynomial
-
-   !> Eq. (27): eq. (14) at beta = 0
-   elemental real(wp) function crown_polynomial(eta, a, which)
-      real(wp), intent(in) :: eta, a
-      integer, intent(in) :: which
-
-      crown_polynomial = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
-   end function crown_polynomial
-
-   !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those
-   !> of eq. (24)
-   elemental real(wp) function embrace_polynomial(beta, a, which) result(value)
-      real(wp), intent(in) :: beta  !! Critical hinge [rad]
-      real(wp), intent(in) :: a
-      integer, intent(in) :: which  !! CCR or Milankovitch of `theory`
-      real(wp) :: s, c, g, rest, head
-
-      s = sin(beta)
-      c = cos(beta)
-      g = beta + s*c
-      head = 0.5_wp*(3.0_wp + weight_flag(which))
-      rest = 0.5_wp*(1.0_wp - weight_flag(which))*s
-      value = s**2*(3.0_wp*g - head*s)*a**3 + 3.0_wp*((1.0_wp - c)*(beta - s) - rest)*g*s*a**2 &
-            - 3.0_wp*(s + beta*c - rest)*g**2*a + head*g**3
-   end function embrace_polynomial
 
    !> Eq. (23): eq. (22) for Milankovitch
    elemental real(wp) function embrace_cubic(beta, a)
@@ -134,19 +75,6 @@ contains
       g = beta + s*c
       embrace_quadratic = s*(2.0_wp*g - s)*a**2 - 2.0_wp*(s + beta*c)*g*a + g**2
    end function embrace_quadratic
-
-   !> Eq. (25): A eliminated; for one hinge it has two thicknesses, one on either side of beta_max
-   elemental real(wp) function thickness_polynomial(eta, beta, which)
-      real(wp), intent(in) :: eta  !! Critical thickness ratio [-]
-      real(wp), intent(in) :: beta
-      integer, intent(in) :: which
-      real(wp) :: s, c
-
-      s = sin(beta)
-      c = cos(beta)
-      thickness_polynomial = weight_flag(which)*s*eta**3 + 3.0_wp*(1.0_wp + c)*(beta + s)*eta**2 &
-            - 12.0_wp*(beta + s*c - s)*eta + 12.0_wp*(1.0_wp - c)*(beta - s)
-   end function thickness_polynomial
 
    !> Eq. (16): the equilibrium curve of Heyman and CCR in closed form
    elemental function printed_thickness(beta, a) result(eta)

@@ -1,17 +1,69 @@
-!> The ring of joints behind couplet_heyman_discrete: its shape, and the thrusts that friction
-!> allows
+!> The ring of joints behind couplet_heyman_discrete: its shape, the thrusts that friction allows,
+!> the widest gap at one thickness, and the thickness at which that gap closes
 !>
 !> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n
 !> - d cos t with n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only
-!> differences of z and M between joints matter, so both are counted from the first joint.
-submodule (couplet_heyman_discrete) couplet_heyman_ring
-   use couplet_heyman_kernels, only : arc_excess, arm_excess
+!> differences of z and M between joints matter, so both are counted from the first joint. The gap
+!> of a pair of joints (j, k) is the room between the extrados of j and the intrados of k; the gap
+!> of the ring is that of its narrowest pair.
+module couplet_heyman_ring
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_kernels, only : arc_excess, arm_excess, versine
    implicit none
+   private
+
+   public :: ring_t, pinch_t, make_ring, limit_thrust, widest_gap, solve_pinch
+
+   !> One half of an arch, joint by joint; nothing here depends on eta
+   type :: ring_t
+      !> Cosine of the joint's angle: (:)
+      real(wp), allocatable :: cosine(:)
+      !> 1 - cosine: (:)
+      real(wp), allocatable :: versine(:)
+      !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
+      real(wp), allocatable :: form(:)
+      !> M, moment of the weights above the joint: (:)
+      real(wp), allocatable :: moment(:)
+      !> n, normal force at the joint for H = 1: (:)
+      real(wp), allocatable :: normal(:)
+      !> Angle less weight above the joint, t - W: (:)
+      real(wp), allocatable :: lightness(:)
+      !> Deficits that friction allows: from lowest
+      real(wp) :: lowest = -huge(1.0_wp)
+      !> ... to highest
+      real(wp) :: highest = huge(1.0_wp)
+      !> Joint whose friction sets lowest; 0 if none
+      integer :: lowest_joint = 0
+      !> Joint whose friction sets highest; 0 if none
+      integer :: highest_joint = 0
+   end type ring_t
+
+   !> Where the gap is widest at one eta, and the joints that keep it from being wider
+   type :: pinch_t
+      !> Deficit of the thrust there
+      real(wp) :: deficit = 0.0_wp
+      !> The gap there
+      real(wp) :: gap = 0.0_wp
+      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
+      logical :: unbounded = .false.
+      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
+      integer :: left(2) = 0
+      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
+      !> sliding joint: (2)
+      integer :: right(2) = 0
+      !> Joint whose friction holds the deficit; 0 if none
+      integer :: sliding = 0
+   end type pinch_t
 
 contains
 
-   !> Shape of the ring from its joints
-   module procedure make_ring
+   !> Shape of the ring from its joints; docs/theory.md has the identity behind the steps of form
+   pure subroutine make_ring(joint_angle, facets, ring)
+      !> Joints of one half, from the crown: (n) [rad]
+      real(wp), intent(in) :: joint_angle(:)
+      !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
+      integer, intent(in) :: facets(:)
+      type(ring_t), intent(out) :: ring
       real(wp) :: span, chord, middle, half_sine, chord_loss
       real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
       integer :: n, j, above
@@ -44,7 +96,7 @@ contains
          call add_exactly(form_rise, ring%form(j - 1), form_carry, ring%form(j))
       end do
       ring%normal = ring%cosine + (joint_angle - ring%lightness)*sin(joint_angle)
-   end procedure make_ring
+   end subroutine make_ring
 
    !> One step of a compensated sum: ten thousand voussoirs lose no digit
    pure subroutine add_exactly(term, before, carry, after)
@@ -59,8 +111,13 @@ contains
       carry = corrected - (after - before)
    end subroutine add_exactly
 
-   !> Thrusts that friction allows
-   module procedure limit_thrust
+   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t -
+   !> phi) at each joint; one at the crown carries no shear, by symmetry
+   pure subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
+      real(wp), intent(in) :: joint_angle(:)
+      real(wp), intent(in) :: friction          !! Friction angle, pi/2 or more: none slides [rad]
+      logical, intent(in) :: springing_no_slip  !! Whether the last joint cannot slide
+      type(ring_t), intent(inout) :: ring       !! The ring: its limits of the deficit are set
       !> A quarter of a turn [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
       integer :: j, last
@@ -73,7 +130,7 @@ contains
          call limit_deficit(joint_angle(j) + friction, ring%lightness(j) + friction, +1, j, ring)
          call limit_deficit(joint_angle(j) - friction, ring%lightness(j) - friction, -1, j, ring)
       end do
-   end procedure limit_thrust
+   end subroutine limit_thrust
 
    !> Keep the deficit where side (H sin x - W cos x) >= 0
    !>
@@ -104,4 +161,181 @@ contains
       end if
    end subroutine limit_deficit
 
-end submodule couplet_heyman_ring
+   !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
+   pure subroutine widest_gap(ring, eta, pinch)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta          !! Thickness ratio [-]
+      type(pinch_t), intent(out) :: pinch  !! Where it is widest, and the joints that make it so
+      integer :: pair(2), last
+      real(wp) :: peak, previous_peak, slope
+      logical :: too_low, too_high, rises_for_ever, falls_for_ever
+
+      last = size(ring%form)
+      pinch%left = [last, 1]
+      pinch%right = [1, last]
+      falls_for_ever = gap_slope(ring, eta, pinch%left) <= 0.0_wp
+      rises_for_ever = gap_slope(ring, eta, pinch%right) >= 0.0_wp
+      pinch%unbounded = (falls_for_ever .and. ring%lowest_joint == 0) &
+                   .or. (rises_for_ever .and. ring%highest_joint == 0)
+      if (pinch%unbounded) return
+      previous_peak = huge(peak)
+      do
+         call meet(ring, eta, pinch%left, pinch%right, pinch%deficit, peak)
+         too_low = pinch%deficit < ring%lowest .or. falls_for_ever
+         too_high = pinch%deficit > ring%highest .or. rises_for_ever
+         if (too_low) pinch%deficit = ring%lowest
+         if (too_high) pinch%deficit = ring%highest
+         call narrowest_pair(ring, eta, pinch%deficit, pair, pinch%gap)
+         slope = gap_slope(ring, eta, pair)
+         if ((too_low .and. slope <= 0.0_wp) .or. (too_high .and. slope >= 0.0_wp)) then
+            pinch%left = pair
+            pinch%right = pair
+            pinch%sliding = merge(ring%lowest_joint, ring%highest_joint, too_low)
+            return
+         end if
+         if (all(pair == pinch%left) .or. all(pair == pinch%right)) return
+         if (.not. (too_low .or. too_high)) then
+            if (pinch%gap >= peak .or. peak >= previous_peak) return
+            previous_peak = peak
+         end if
+         if (slope > 0.0_wp) pinch%left = pair
+         if (slope <= 0.0_wp) pinch%right = pair
+      end do
+   end subroutine widest_gap
+
+   !> The joints that leave the least room for the thrust at one deficit
+   pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta
+      real(wp), intent(in) :: deficit  !! 1 - H
+      integer, intent(out) :: pair(2)  !! Lowest extrados and highest intrados joint: (2)
+      real(wp), intent(out) :: gap     !! Room between them
+      real(wp) :: roof, floor, centre, reach
+      integer :: j
+
+      roof = huge(roof)
+      floor = -huge(floor)
+      pair = 1
+      do j = 1, size(ring%form)
+         centre = deficit*ring%versine(j) + ring%form(j) - eta*eta/12.0_wp*ring%moment(j)
+         reach = 0.5_wp*eta*(ring%normal(j) - deficit*ring%cosine(j))
+         if (centre + reach < roof) then
+            roof = centre + reach
+            pair(1) = j
+         end if
+         if (centre - reach > floor) then
+            floor = centre - reach
+            pair(2) = j
+         end if
+      end do
+      gap = roof - floor
+   end subroutine narrowest_pair
+
+   !> Gap between the extrados of one joint and the intrados of another
+   pure real(wp) function pair_gap(ring, eta, deficit, pair)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta, deficit
+      integer, intent(in) :: pair(2)
+      real(wp) :: reach
+
+      associate (j => pair(1), k => pair(2))
+         reach = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
+         pair_gap = deficit*(ring%versine(j) - ring%versine(k)) + (ring%form(j) - ring%form(k)) &
+             + 0.5_wp*eta*reach - eta*eta/12.0_wp*(ring%moment(j) - ring%moment(k))
+      end associate
+   end function pair_gap
+
+   !> Derivative of a pair's gap by the deficit
+   pure real(wp) function gap_slope(ring, eta, pair) result(slope)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta
+      integer, intent(in) :: pair(2)
+
+      associate (j => pair(1), k => pair(2))
+         slope = ring%versine(j) - ring%versine(k) - 0.5_wp*eta*(ring%cosine(j) + ring%cosine(k))
+      end associate
+   end function gap_slope
+
+   !> Derivative of a pair's gap by eta
+   pure real(wp) function gap_growth(ring, eta, deficit, pair)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta, deficit
+      integer, intent(in) :: pair(2)
+
+      associate (j => pair(1), k => pair(2))
+         gap_growth = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
+         gap_growth = 0.5_wp*gap_growth - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
+      end associate
+   end function gap_growth
+
+   !> Where the gaps of two pairs are equal
+   pure subroutine meet(ring, eta, left, right, deficit, gap)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta
+      integer, intent(in) :: left(2)    !! Pair whose gap grows with the deficit: (2)
+      integer, intent(in) :: right(2)   !! Pair whose gap shrinks with it: (2)
+      real(wp), intent(out) :: deficit  !! 1 - H at the meeting
+      real(wp), intent(out) :: gap      !! Both gaps there
+
+      deficit = (pair_gap(ring, eta, 0.0_wp, right) - pair_gap(ring, eta, 0.0_wp, left)) &
+              /(gap_slope(ring, eta, left) - gap_slope(ring, eta, right))
+      gap = pair_gap(ring, eta, deficit, left)
+   end subroutine meet
+
+   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
+   !> eta and deficit
+   pure subroutine solve_pinch(ring, start, pinch, eta, solved)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: start          !! Thickness ratio at which the pinch was found [-]
+      type(pinch_t), intent(inout) :: pinch  !! The joints; its deficit is carried along
+      real(wp), intent(out) :: eta           !! Thickness ratio at which their gaps vanish [-]
+      logical, intent(out) :: solved         !! Whether the iteration has come to rest
+      !> Quadratic convergence takes 3 to 8
+      integer, parameter :: most_steps = 60
+      !> A relative step this short leaves rounding alone to the next one
+      real(wp), parameter :: last_but_one = 1.0e-8_wp
+      real(wp) :: eta_step, deficit_step
+      integer :: step
+
+      eta = start
+      solved = .false.
+      do step = 1, most_steps
+         call newton_step(ring, eta, pinch, eta_step, deficit_step)
+         if (.not. abs(eta + eta_step) < 4.0_wp) return
+         eta = eta + eta_step
+         pinch%deficit = pinch%deficit + deficit_step
+         if (solved) return
+         solved = abs(eta_step) <= last_but_one*abs(eta)
+      end do
+      solved = .false.
+   end subroutine solve_pinch
+
+   !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
+   pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
+      type(ring_t), intent(in) :: ring
+      real(wp), intent(in) :: eta
+      type(pinch_t), intent(in) :: pinch
+      real(wp), intent(out) :: eta_step      !! Change of eta; huge where there is none
+      real(wp), intent(out) :: deficit_step  !! Change of the deficit
+      real(wp) :: gap(2), growth(2), slope(2), determinant, size_of_terms
+
+      gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), &
+             pair_gap(ring, eta, pinch%deficit, pinch%right)]
+      growth = [gap_growth(ring, eta, pinch%deficit, pinch%left), &
+                gap_growth(ring, eta, pinch%deficit, pinch%right)]
+      slope = [gap_slope(ring, eta, pinch%left), gap_slope(ring, eta, pinch%right)]
+      if (pinch%sliding > 0) then
+         gap(1) = 0.0_wp
+         growth(1) = 0.0_wp
+         slope(1) = 1.0_wp
+      end if
+      eta_step = huge(eta_step)
+      deficit_step = 0.0_wp
+      determinant = growth(1)*slope(2) - growth(2)*slope(1)
+      size_of_terms = abs(growth(1)*slope(2)) + abs(growth(2)*slope(1))
+      if (abs(determinant) <= epsilon(determinant)*size_of_terms) return
+      eta_step = (gap(2)*slope(1) - gap(1)*slope(2))/determinant
+      deficit_step = (gap(1)*growth(2) - gap(2)*growth(1))/determinant
+   end subroutine newton_step
+
+end module couplet_heyman_ring

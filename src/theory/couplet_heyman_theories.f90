@@ -9,7 +9,7 @@ module couplet_heyman_theories
    implicit none
    private
 
-   public :: theory, is_theory, weight_flag, tangency_flag, weight_arm
+   public :: theory, weight_flag, tangency_flag, weight_arm
    public :: limits_t, limits_of, unit_angle, unit_angle_tail
 
    !> Names of the theories
@@ -83,16 +83,9 @@ module couplet_heyman_theories
 
 contains
 
-   !> Whether a number names a theory
-   elemental logical function is_theory(which)
-      integer, intent(in) :: which  !! One of `theory`, or not
-
-      is_theory = which >= theory%heyman .and. which <= theory%milankovitch
-   end function is_theory
-
    !> delta_M: 1 where the weight acts in the true centre of gravity
    elemental real(wp) function weight_flag(which)
-      integer, intent(in) :: which
+      integer, intent(in) :: which  !! One of `theory`
 
       weight_flag = merge(1.0_wp, 0.0_wp, which == theory%milankovitch)
    end function weight_flag

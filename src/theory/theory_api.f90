@@ -6,10 +6,14 @@
 !> and only then are the results set. `which` is one of `theory` in couplet_heyman_theories.
 module theory_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman, only : critical_solution, curve_slope, equilibrium_thickness, &
-      initial_thickness, is_embraced, limits_of, limits_t, near_limit_solution, printed_critical, &
-      small_angle_solution, springing_thrust, thrust_line, unit_angle
+   use couplet_heyman_critical, only : critical_solution, is_embraced, near_limit_solution, &
+      small_angle_solution
+   use couplet_heyman_curves, only : curve_slope, equilibrium_thickness, initial_thickness, &
+      thrust_line
    use couplet_heyman_domain, only : blame, is_half_angle, is_joint, is_thickness
+   use couplet_heyman_equations, only : springing_thrust
+   use couplet_heyman_printed, only : printed_critical
+   use couplet_heyman_theories, only : limits_of, limits_t, unit_angle
    implicit none
    private
 

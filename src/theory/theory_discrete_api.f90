@@ -1,10 +1,11 @@
 !> What Python sees of friction and of arches of voussoirs; conventions as in theory_api
 module theory_discrete_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman, only : friction_limits, friction_limits_t, friction_solution, is_embraced
+   use couplet_heyman_critical, only : is_embraced
    use couplet_heyman_discrete, only : chords, discrete_critical, discrete_solution_t, &
       discrete_status, equal_voussoir_joints
    use couplet_heyman_domain, only : blame, is_facet, is_half_angle
+   use couplet_heyman_friction, only : friction_limits, friction_limits_t, friction_solution
    implicit none
    private
 

@@ -11,8 +11,8 @@ import pytest
 import python_rules
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-#: Modules that hand on the names of others: the library's face, and the theory's
-FACADES = {"voussoir", "couplet_heyman"}
+#: The module that hands on the names of others: the library's face
+FACADES = {"voussoir"}
 GOOD = """!> A module
 module good
    use other, only : thing
