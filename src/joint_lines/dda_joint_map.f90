@@ -2,7 +2,7 @@
 !>
 !> Openings have their outlines here: circle and ellipse, arch on walls, horseshoe.
 module dda_joint_map
-   use dda_kinds, only : wp
+   use dda_kinds, only : pi, wp
    implicit none
    private
 
@@ -136,9 +136,6 @@ module dda_joint_map
       !> Bolts around openings
       type(bolts_t), allocatable :: bolts(:)
    end type joint_map_t
-
-   !> Half a turn [rad]
-   real(wp), parameter :: pi = 4.0_wp*atan(1.0_wp)
 
 contains
 

@@ -3,11 +3,14 @@
 !> Of each line those parts are kept that lie in rock: inside the outline, outside the openings.
 module dda_map_lines
    use dda_error, only : error_t, fatal_error
+   use dda_growth, only : make_room
    use dda_joint_map, only : bolts_t, joint_map_t, joint_set_t, length_t, map_line_t, map_role
    use dda_kinds, only : wp
    use dda_line_model, only : add_bolt, add_entity, line_model_t, new_line_model
    use dda_polygon, only : contains_point
    use dda_random, only : random_t
+   use dda_segment, only : crossing_parameters
+   use dda_sort, only : sorted_order
    use dda_text, only : to_text
    implicit none
    private
@@ -17,6 +20,8 @@ module dda_map_lines
 
    !> Most traces of a map
    integer, parameter :: most_traces = 1000000
+   !> Parts shorter than this share of the line are none
+   real(wp), parameter :: least_share = 1.0e-12_wp
 
    interface
 
@@ -52,38 +57,6 @@ module dda_map_lines
          type(random_t), intent(inout) :: random
          real(wp), intent(out) :: value
       end subroutine draw_covering_length
-
-      !> Cut a line at a polygon and keep what lies inside, or outside
-      pure module subroutine clip_line(line, n, corner, inside)
-         !> Columns of ends, replaced by those of the parts: (4, n or more) [m]
-         real(wp), allocatable, intent(inout) :: line(:, :)
-         !> Their number
-         integer, intent(inout) :: n
-         !> Corners of the polygon: (2, n_corner) [m]
-         real(wp), intent(in) :: corner(:, :)
-         !> Whether the parts inside are kept
-         logical, intent(in) :: inside
-      end subroutine clip_line
-
-      !> A point inside a polygon: half way between its first two crossings with a level line
-      pure module function inner_point(corner) result(point)
-         real(wp), intent(in) :: corner(:, :)
-         real(wp) :: point(2)  !! The point: (2) [m]
-      end function inner_point
-
-      !> Where a ray leaves a polygon for the last time
-      pure module function ray_exit(corner, origin, direction) result(point)
-         real(wp), intent(in) :: corner(:, :)
-         real(wp), intent(in) :: origin(2)     !! A point inside: (2) [m]
-         real(wp), intent(in) :: direction(2)  !! Unit vector: (2)
-         real(wp) :: point(2)
-      end function ray_exit
-
-      !> Whether two polygons have edges that cross, or one holds the other
-      pure logical module function outlines_cross(one, other)
-         real(wp), intent(in) :: one(:, :)    !! Corners: (2, n) [m]
-         real(wp), intent(in) :: other(:, :)  !! Corners: (2, n) [m]
-      end function outlines_cross
 
    end interface
 
@@ -166,22 +139,19 @@ contains
    pure subroutine hold_sides(map, model)
       type(joint_map_t), intent(in) :: map
       type(line_model_t), intent(inout) :: model
-      real(wp) :: low(2), high(2), x
+      real(wp) :: low(2), high(2), side(4, 3)
+      integer :: k
 
       low = minval(map%outline, 2)
       high = maxval(map%outline, 2)
-      if (map%held_side(1)) then
-         x = low(1) + map%hold_depth
-         call add_entity(model%fixed, [x, low(2), x, high(2)], 0, 1)
-      end if
-      if (map%held_side(2)) then
-         x = high(1) - map%hold_depth
-         call add_entity(model%fixed, [x, low(2), x, high(2)], 0, 1)
-      end if
-      if (map%held_side(3)) then
-         x = low(2) + map%hold_depth
-         call add_entity(model%fixed, [low(1), x, high(1), x], 0, 1)
-      end if
+      associate (left => low(1) + map%hold_depth, right => high(1) - map%hold_depth, &
+         & bottom => low(2) + map%hold_depth)
+         side = reshape([left, low(2), left, high(2), right, low(2), right, high(2), &
+            & low(1), bottom, high(1), bottom], [4, 3])
+      end associate
+      do k = 1, 3
+         if (map%held_side(k)) call add_entity(model%fixed, side(:, k), 0, 1)
+      end do
    end subroutine hold_sides
 
    !> Draw a set of joints
@@ -286,4 +256,135 @@ contains
          end do
       end associate
    end subroutine add_bolts
+
+   !> Cut a line at a polygon and keep what lies inside, or outside
+   pure subroutine clip_line(line, n, corner, inside)
+      !> Columns of ends, replaced by those of the parts: (4, n or more) [m]
+      real(wp), allocatable, intent(inout) :: line(:, :)
+      !> Their number
+      integer, intent(inout) :: n
+      real(wp), intent(in) :: corner(:, :)
+      !> Whether the parts inside are kept
+      logical, intent(in) :: inside
+      real(wp), allocatable :: part(:, :)
+      integer :: i, m
+
+      m = 0
+      allocate (part(4, n + 8))
+      do i = 1, n
+         call clip_one(line(:, i), corner, inside, part, m)
+      end do
+      call move_alloc(part, line)
+      n = m
+   end subroutine clip_line
+
+   !> The parts of one line
+   pure subroutine clip_one(line, corner, inside, part, m)
+      !> Its ends: (4) [m]
+      real(wp), intent(in) :: line(4)
+      real(wp), intent(in) :: corner(:, :)
+      logical, intent(in) :: inside
+      !> Receives columns of ends: (4, m or more) [m]
+      real(wp), allocatable, intent(inout) :: part(:, :)
+      !> Their number
+      integer, intent(inout) :: m
+      real(wp), allocatable :: share(:)
+      real(wp) :: along(2), start
+      integer :: k
+
+      allocate (share, source=crossings(line, corner))
+      along = line(3:4) - line(1:2)
+      start = -1.0_wp
+      do k = 2, size(share)
+         if (share(k) - share(k - 1) <= least_share) cycle
+         if (contains_point(corner, line(1:2) + 0.5_wp*(share(k - 1) + share(k))*along) &
+            & .neqv. inside) then
+            start = -1.0_wp
+            cycle
+         end if
+         ! parts on either side of a corner that is only touched are one
+         if (start < 0.0_wp) then
+            start = share(k - 1)
+            m = m + 1
+            call make_room(part, m)
+         end if
+         part(:, m) = [line(1:2) + start*along, line(1:2) + share(k)*along]
+      end do
+   end subroutine clip_one
+
+   !> Where a line crosses a polygon, its own ends included, in order
+   pure function crossings(line, corner) result(share)
+      real(wp), intent(in) :: line(4), corner(:, :)
+      !> Shares of its length, ascending, 0 first and 1 last: (n)
+      real(wp), allocatable :: share(:)
+      real(wp) :: place(size(corner, 2) + 2), at(2)
+      integer :: i, n
+      logical :: crossed
+
+      place(:2) = [0.0_wp, 1.0_wp]
+      n = 2
+      do i = 1, size(corner, 2)
+         call crossing_parameters(line, [corner(:, i), corner(:, modulo(i, size(corner, 2)) + 1)], &
+            & at, crossed)
+         if (.not. crossed) cycle
+         if (at(1) <= 0.0_wp .or. at(1) >= 1.0_wp) cycle
+         if (at(2) < -least_share .or. at(2) > 1.0_wp + least_share) cycle
+         n = n + 1
+         place(n) = at(1)
+      end do
+      share = place(sorted_order(spread(0, 1, n), place(:n)))
+   end function crossings
+
+   !> A point inside a polygon: half way between its first two crossings with a level line
+   pure function inner_point(corner) result(point)
+      real(wp), intent(in) :: corner(:, :)
+      real(wp) :: point(2)  !! The point: (2) [m]
+      real(wp), allocatable :: share(:)
+      real(wp) :: height(size(corner, 2)), line(4), low(2), high(2)
+      integer :: k
+
+      low = minval(corner, 2)
+      high = maxval(corner, 2)
+      height = corner(2, sorted_order(spread(0, 1, size(corner, 2)), corner(2, :)))
+      ! the widest strip between two corners has no corner inside
+      k = maxloc(height(2:) - height(:size(height) - 1), 1)
+      line = [2.0_wp*low(1) - high(1), 0.5_wp*(height(k) + height(k + 1)), &
+         & 2.0_wp*high(1) - low(1), 0.5_wp*(height(k) + height(k + 1))]
+      allocate (share, source=crossings(line, corner))
+      point = line(1:2) + 0.5_wp*(share(2) + share(3))*(line(3:4) - line(1:2))
+   end function inner_point
+
+   !> Where a ray leaves a polygon for the last time
+   pure function ray_exit(corner, origin, direction) result(point)
+      real(wp), intent(in) :: corner(:, :)
+      real(wp), intent(in) :: origin(2)     !! A point inside: (2) [m]
+      real(wp), intent(in) :: direction(2)  !! Unit vector: (2)
+      real(wp) :: point(2)
+      real(wp) :: reach
+      real(wp), allocatable :: share(:)
+
+      reach = 2.0_wp*norm2(maxval(corner, 2) - minval(corner, 2))
+      allocate (share, source=crossings([origin, origin + reach*direction], corner))
+      point = origin + share(size(share) - 1)*reach*direction
+   end function ray_exit
+
+   !> Whether two polygons have edges that cross, or one holds the other
+   pure logical function outlines_cross(one, other)
+      real(wp), intent(in) :: one(:, :)    !! Corners: (2, n) [m]
+      real(wp), intent(in) :: other(:, :)  !! Corners: (2, n) [m]
+      real(wp) :: at(2)
+      integer :: i, k
+      logical :: crossed
+
+      outlines_cross = .true.
+      if (contains_point(one, other(:, 1)) .or. contains_point(other, one(:, 1))) return
+      do i = 1, size(one, 2)
+         do k = 1, size(other, 2)
+            call crossing_parameters([one(:, i), one(:, modulo(i, size(one, 2)) + 1)], &
+               & [other(:, k), other(:, modulo(k, size(other, 2)) + 1)], at, crossed)
+            if (crossed .and. all(at >= 0.0_wp) .and. all(at <= 1.0_wp)) return
+         end do
+      end do
+      outlines_cross = .false.
+   end function outlines_cross
 end module dda_map_lines

@@ -5,7 +5,6 @@
 submodule (dda_map_lines) dda_set_traces
    use dda_joint_map, only : length_law
    use dda_random, only : draw, draw_normal, new_random
-   use dda_growth, only : make_room
    implicit none
 
    !> What of a set has a sequence of numbers of its own
