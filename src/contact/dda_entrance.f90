@@ -315,16 +315,12 @@ contains
       !> The joint; its blocks are set
       type(joint_t), intent(inout) :: joint
       type(joint_list_t), intent(inout) :: list
-      type(joint_t), allocatable :: longer(:)
 
       joint%block = near%outline%block(pair)
       joint%found = .true.
       if (.not. allocated(list%joint)) allocate (list%joint(64))
-      if (list%n == size(list%joint)) then
-         allocate (longer(2*list%n))
-         longer(:list%n) = list%joint
-         call move_alloc(longer, list%joint)
-      end if
+      ! the second half is room
+      if (list%n == size(list%joint)) list%joint = [list%joint, list%joint]
       list%n = list%n + 1
       list%joint(list%n) = joint
    end subroutine add_joint

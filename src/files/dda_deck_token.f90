@@ -125,18 +125,14 @@ contains
       integer, intent(in) :: last                       !! Last character
       integer, intent(in) :: count                      !! Repeat count
       type(error_t), allocatable, intent(out) :: error  !! Too many tokens
-      type(token_t), allocatable :: longer(:)
 
       if (scan%n == max_tokens) then
          call fatal_error(error, "expected at most "//to_text(max_tokens)// &
             " groups, keys and values, got more; split the deck", line=scan%line)
          return
       end if
-      if (scan%n == size(scan%token)) then
-         allocate (longer(2*scan%n))
-         longer(:scan%n) = scan%token
-         call move_alloc(longer, scan%token)
-      end if
+      ! the second half is room
+      if (scan%n == size(scan%token)) scan%token = [scan%token, scan%token]
       scan%n = scan%n + 1
       scan%token(scan%n) = token_t(kind, first, last, scan%line, count)
       scan%after_comma = .false.

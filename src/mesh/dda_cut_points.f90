@@ -264,13 +264,9 @@ contains
       type(block_point_t), allocatable, intent(inout) :: point(:)  !! The list
       integer, intent(inout) :: n
       type(block_point_t), intent(in) :: new
-      type(block_point_t), allocatable :: longer(:)
 
-      if (n == size(point)) then
-         allocate (longer(2*n + 8))
-         longer(:n) = point
-         call move_alloc(longer, point)
-      end if
+      ! the second half is room
+      if (n == size(point)) point = [point, point]
       n = n + 1
       point(n) = new
    end subroutine append_point

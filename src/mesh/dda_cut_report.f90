@@ -50,14 +50,10 @@ contains
       integer, intent(in) :: reason     !! One of cut_reason
       integer, intent(in) :: other      !! Number of the line in the way, or 0
       real(wp), intent(in) :: place(4)  !! Ends of the part: (4) [m]
-      type(cut_remark_t), allocatable :: longer(:)
 
       if (.not. allocated(remarks%item)) allocate (remarks%item(16))
-      if (remarks%n == size(remarks%item)) then
-         allocate (longer(2*remarks%n))
-         longer(:remarks%n) = remarks%item
-         call move_alloc(longer, remarks%item)
-      end if
+      ! the second half is room
+      if (remarks%n == size(remarks%item)) remarks%item = [remarks%item, remarks%item]
       remarks%n = remarks%n + 1
       remarks%item(remarks%n) = cut_remark_t(line, reason, other, place)
    end subroutine add_remark

@@ -94,18 +94,10 @@ contains
       real(wp), intent(in) :: place(4)
       integer, intent(in) :: material  !! Its material; 0 if the kind has none
       integer, intent(in) :: row
-      type(entities_t) :: longer
 
-      if (entities%n == size(entities%row)) then
-         call new_entities(longer, 2*entities%n + 8)
-         longer%n = entities%n
-         longer%place(:, :longer%n) = entities%place
-         longer%material(:longer%n) = entities%material
-         longer%row(:longer%n) = entities%row
-         call move_alloc(longer%place, entities%place)
-         call move_alloc(longer%material, entities%material)
-         call move_alloc(longer%row, entities%row)
-      end if
+      call make_room(entities%place, entities%n + 1)
+      call make_room(entities%material, entities%n + 1)
+      call make_room(entities%row, entities%n + 1)
       entities%n = entities%n + 1
       entities%place(:, entities%n) = place
       entities%material(entities%n) = material

@@ -5,6 +5,7 @@ module dda_line_network
    use dda_cut_report, only : add_remark, cut_reason, cut_remarks_t
    use dda_cut_scale, only : cut_scale_t
    use dda_error, only : error_t, fatal_error
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_segment, only : meeting_points, overshoot
    use dda_sort, only : sort_numbers, sorted_order
@@ -93,15 +94,11 @@ contains
       integer, intent(in) :: i          !! One line
       integer, intent(in) :: j          !! The other, with a larger number
       real(wp), intent(in) :: point(2)  !! The point: (2) [m]
-      type(crossings_t) :: longer
 
-      if (crossings%n == size(crossings%point, 2)) then
-         allocate (longer%line(2, 2*crossings%n), longer%point(2, 2*crossings%n))
-         longer%line(:, :crossings%n) = crossings%line
-         longer%point(:, :crossings%n) = crossings%point
-         call move_alloc(longer%line, crossings%line)
-         call move_alloc(longer%point, crossings%point)
-      end if
+      ! the second half is room
+      if (crossings%n == size(crossings%line, 2)) crossings%line = reshape([crossings%line, &
+         & crossings%line], [2, 2*crossings%n])
+      call make_room(crossings%point, crossings%n + 1)
       crossings%n = crossings%n + 1
       crossings%line(:, crossings%n) = [i, j]
       crossings%point(:, crossings%n) = point

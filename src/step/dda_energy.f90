@@ -102,15 +102,11 @@ contains
    pure subroutine keep_energy(energy, audit)
       type(energy_t), intent(in) :: energy
       type(audit_t), intent(inout) :: audit  !! Receives them if they are wanted
-      type(energy_t), allocatable :: longer(:)
 
       if (.not. audit%wanted) return
       if (.not. allocated(audit%energy)) allocate (audit%energy(64))
-      if (audit%n == size(audit%energy)) then
-         allocate (longer(2*audit%n))
-         longer(:audit%n) = audit%energy
-         call move_alloc(longer, audit%energy)
-      end if
+      ! the second half is room
+      if (audit%n == size(audit%energy)) audit%energy = [audit%energy, audit%energy]
       audit%n = audit%n + 1
       audit%energy(audit%n) = energy
    end subroutine keep_energy
