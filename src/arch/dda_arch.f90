@@ -3,12 +3,12 @@ module dda_arch
    use dda_block_system, only : block_system_t, new_block_system
    use dda_kinds, only : wp
    use dda_material, only : material_t
-   use dda_vector, only : along
+   use dda_vector, only : along, right_normal
    implicit none
    private
 
    public :: arch_shape_t, arch_blocks, equal_joints, facet_count
-   public :: left_directions, section_directions
+   public :: left_directions, section_directions, springing
 
    !> Shape of an arch that is its own mirror image; joints are radial
    type :: arch_shape_t
@@ -177,15 +177,14 @@ contains
          & [(b > n, b=1, n + 2)], material)
    end subroutine arch_blocks
 
-   !> A fixed block as deep as the joint is long, whose fourth edge is the springing joint
+   !> What a springing that is fixed stands on, as deep as the joint is long: its fourth edge
    pure function springing(start, finish) result(vertex)
-      real(wp), intent(in) :: start(2)   !! Where the first edge starts: (2) [m]
-      real(wp), intent(in) :: finish(2)  !! Where the joint starts, seen from the block: (2) [m]
+      real(wp), intent(in) :: start(2)   !! Where the joint starts, the arch on its left: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]
       real(wp) :: vertex(2, 4)           !! Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: outward(2), joint(2)
+      real(wp) :: outward(2)
 
-      joint = along(start, finish)
-      outward = norm2(finish - start)*[joint(2), -joint(1)]
+      outward = norm2(finish - start)*right_normal(along(start, finish))
       vertex = reshape([start, start + outward, finish + outward, finish], [2, 4])
    end function springing
 end module dda_arch

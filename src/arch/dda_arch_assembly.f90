@@ -1,9 +1,9 @@
 !> Arches as blocks: voussoirs in rings, span by span, on piers, buttresses and fixed springings
 module dda_arch_assembly
+   use dda_arch, only : springing
    use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
    use dda_kinds, only : wp
-   use dda_vector, only : along, right_normal
    implicit none
    private
 
@@ -267,20 +267,6 @@ contains
          corner = reshape([left, low, right, low, right, top, left, top], [2, 4])
       end associate
    end function ground
-
-   !> What a springing that is fixed stands on, as deep as the joint is long
-   pure function springing(start, finish) result(corner)
-      !> Where the joint starts, seen with the arch on its left: (2) [m]
-      real(wp), intent(in) :: start(2)
-      !> Where it ends: (2) [m]
-      real(wp), intent(in) :: finish(2)
-      !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: corner(2, 4)
-      real(wp) :: outward(2)
-
-      outward = norm2(finish - start)*right_normal(along(start, finish))
-      corner = reshape([start, start + outward, finish + outward, finish], [2, 4])
-   end function springing
 
    !> Add a block
    pure subroutine add_block(plan, corner, fixed, material)

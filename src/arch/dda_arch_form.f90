@@ -233,7 +233,6 @@ contains
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(inout) :: curve
       type(curve_t) :: left
-      integer :: i
 
       associate (whole => curve%length(size(curve%piece)))
          curve%crown = 0.5_wp*whole
@@ -244,9 +243,7 @@ contains
          curve%crown = curve%length(1)
          return
       end if
-      allocate (left%piece(1))
-      i = 1
-      left%piece(1) = curve%piece(i)
+      left%piece = curve%piece(:1)
       left%piece(1)%ends(2) = 0.0_wp
       call close_curve(left)
       curve%crown = left%length(1)

@@ -77,26 +77,9 @@ contains
          n = max(1, ceiling(abs(atan2(cross(first%along, last%along), &
             & dot_product(first%along, last%along)))/(degree*form%facet_deg) - same))
       end if
-      do i = 1, n - 1
-         call append(from + (to - from)*real(i, wp)/real(n, wp), .false., at, is_joint)
-      end do
-      call append(to, .true., at, is_joint)
+      at = [at, (from + (to - from)*real(i, wp)/real(n, wp), i=1, n - 1), to]
+      is_joint = [is_joint, (.false., i=1, n - 1), .true.]
    end subroutine add_chords
-
-   !> Add a section
-   pure subroutine append(length, joint, at, is_joint)
-      real(wp), intent(in) :: length                      !! Its length along the line [m]
-      logical, intent(in) :: joint                        !! Whether it is a joint
-      real(wp), allocatable, intent(inout) :: at(:)       !! Receives the length: (n) [m]
-      logical, allocatable, intent(inout) :: is_joint(:)  !! Receives whether it is a joint: (n)
-      real(wp), allocatable :: longer(:)
-
-      allocate (longer(size(at) + 1))
-      longer(:size(at)) = at
-      longer(size(longer)) = length
-      call move_alloc(longer, at)
-      is_joint = [is_joint, joint]
-   end subroutine append
 
    !> Ends of a section
    pure subroutine cut_section(form, curve, at, intrados, extrados)

@@ -68,13 +68,12 @@ contains
    end function vector_field
 
    !> A field of symmetric plane tensors
-   pure type(field_t) function tensor_field(name, values)
+   pure type(field_t) function tensor_field(name, values) result(field)
       character(len=*), intent(in) :: name
       real(wp), intent(in) :: values(:, :)  !! Components xx, yy and xy: (3, n)
 
-      tensor_field%name = name
-      tensor_field%kind = field_kind%tensor
-      allocate (tensor_field%values, source=values)
+      field = vector_field(name, values)
+      field%kind = field_kind%tensor
    end function tensor_field
 
    !> A field of whole numbers
@@ -82,10 +81,8 @@ contains
       character(len=*), intent(in) :: name
       integer, intent(in) :: states(:)  !! The numbers: (n)
 
-      field%name = name
+      field = scalar_field(name, real(states, wp))
       field%kind = field_kind%state
-      allocate (field%values(1, size(states)))
-      field%values(1, :) = real(states, wp)
    end function state_field
 
    !> The contract of a field: a column of the right height for each point or cell

@@ -3,19 +3,19 @@
 !> Bolts follow the original's rule (Shi: df17): linear springs that pull and push, whatever their
 !> strength, along the line between their ends at the beginning of each step.
 module dda_limerick_assembly
+   use dda_bar_place, only : bar_rows
    use dda_block_factor, only : block_factor_t, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : n_unknown
    use dda_kinds, only : wp
-   use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
-      & limerick_contact_t
+   use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t
    use dda_limerick_model, only : contact_law, force_at, limerick_model_t
    use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state
-   use dda_submatrices, only : elastic_matrix, mass_matrix, stress_load
+   use dda_submatrices, only : elastic_matrix, mass_matrix, point_load, stress_load
    implicit none
    private
 
-   public :: bolt_elongation, bolt_rows, n_bolts, limerick_equations_t, couple_blocks
+   public :: bolt_elongation, n_bolts, limerick_equations_t, couple_blocks
    public :: assemble_limerick, add_contacts
 
    !> Matrix, loads and unknowns of a step
@@ -49,36 +49,16 @@ contains
       if (allocated(model%boundary%bar)) n_bolts = size(model%boundary%bar)
    end function n_bolts
 
-   !> Elongation of a bolt per unknown of its two blocks; nothing for the ground
-   pure function bolt_rows(model, blocks, i) result(row)
-      type(limerick_model_t), intent(in) :: model
-      type(limerick_blocks_t), intent(in) :: blocks
-      integer, intent(in) :: i  !! Number of the bolt
-      real(wp) :: row(6, 2)     !! (6, 2)
-      real(wp) :: along(2)
-      integer :: side
-
-      row = 0.0_wp
-      along = blocks%bolt_point(:, 1, i) - blocks%bolt_point(:, 2, i)
-      along = along/norm2(along)
-      do side = 1, 2
-         associate (b => model%boundary%bar(i)%block(side))
-            if (b > 0) row(:, side) = generalised(merge(along, -along, side == 1), &
-               & blocks%bolt_point(:, side, i), blocks%centroid(:, b))
-         end associate
-      end do
-   end function bolt_rows
-
    !> Elongation of a bolt in a step
    pure real(wp) function bolt_elongation(model, blocks, i, motion)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks  !! The blocks at the beginning of the step
-      integer, intent(in) :: i
+      integer, intent(in) :: i                       !! Number of the bolt
       real(wp), intent(in) :: motion(:, :)           !! Motion of the blocks: (6, n_block)
       real(wp) :: row(6, 2)
       integer :: side
 
-      row = bolt_rows(model, blocks, i)
+      row = bar_rows(blocks%bolt_point(:, :, i), model%boundary%bar(i)%block, blocks%centroid)
       bolt_elongation = 0.0_wp
       do side = 1, 2
          associate (b => model%boundary%bar(i)%block(side))
@@ -179,7 +159,7 @@ contains
          do k = 1, 2
             axis = 0.0_wp
             axis(k) = 1.0_wp
-            row = generalised(axis, blocks%fixed_point(:, i), blocks%centroid(:, b))
+            row = point_load(axis, blocks%fixed_point(:, i), blocks%centroid(:, b))
             call add_outer(march%fixed_stiffness, row, row, equations%base(:, :, b))
             equations%load(:, b) = equations%load(:, b) &
                & - march%fixed_stiffness*blocks%fixed_drift(k, i)*row
@@ -188,7 +168,7 @@ contains
       do i = 1, size(model%boundary%loaded)
          b = model%boundary%loaded(i)%block
          equations%load(:, b) = equations%load(:, b) &
-            & + generalised(force_at(model, i, march%time + march%time_step), &
+            & + point_load(force_at(model, i, march%time + march%time_step), &
             & blocks%load_point(:, i), blocks%centroid(:, b))
       end do
    end subroutine add_points
@@ -205,7 +185,7 @@ contains
          & allocate (equations%bolt_coupling(n_unknown, n_unknown, n_bolts(model)))
       equations%bolt_coupling = 0.0_wp
       do i = 1, n_bolts(model)
-         row = bolt_rows(model, blocks, i)
+         row = bar_rows(blocks%bolt_point(:, :, i), model%boundary%bar(i)%block, blocks%centroid)
          do side = 1, 2
             b = model%boundary%bar(i)%block(side)
             if (b == 0) cycle

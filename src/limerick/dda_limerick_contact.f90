@@ -3,12 +3,13 @@
 module dda_limerick_contact
    use dda_kinds, only : wp
    use dda_limerick_state, only : limerick_blocks_t, limerick_state
+   use dda_submatrices, only : point_load
    use dda_vector, only : cross
    implicit none
    private
 
    public :: limerick_contact_t, contact_list_t, contact_spring_t, append_contact, place_springs
-   public :: place_shear_spring, projection, generalised, transfer_contacts, begin_contacts
+   public :: place_shear_spring, projection, transfer_contacts, begin_contacts
 
    !> One contact
    type :: limerick_contact_t
@@ -72,35 +73,13 @@ contains
    pure subroutine append_contact(list, contact)
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t), intent(in) :: contact
-      type(limerick_contact_t), allocatable :: longer(:)
 
       if (.not. allocated(list%item)) allocate (list%item(64))
-      if (list%n == size(list%item)) then
-         allocate (longer(2*list%n))
-         longer(:list%n) = list%item
-         call move_alloc(longer, list%item)
-      end if
+      ! the second half is room
+      if (list%n == size(list%item)) list%item = [list%item, list%item]
       list%n = list%n + 1
       list%item(list%n) = contact
    end subroutine append_contact
-
-   !> Work of a force per unit of each unknown: the row f'T
-   pure function generalised(force, point, centroid) result(row)
-      real(wp), intent(in) :: force(2)     !! Force: (2)
-      real(wp), intent(in) :: point(2)     !! Where it acts: (2) [m]
-      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
-      real(wp) :: row(6)                   !! The row: (6)
-      real(wp) :: x, y
-
-      x = point(1) - centroid(1)
-      y = point(2) - centroid(2)
-      row(1) = force(1)
-      row(2) = force(2)
-      row(3) = force(2)*x - force(1)*y
-      row(4) = force(1)*x
-      row(5) = force(2)*y
-      row(6) = (force(1)*y + force(2)*x)/2.0_wp
-   end function generalised
 
    !> Normal springs of all lines, and the shear spring of a vertex and an edge (Shi 1988, 4.11 to
    !> 4.18)
@@ -121,12 +100,12 @@ contains
          own = merge(1, 2, blocks%owner(contact%vertex(1, line)) == contact%block(1))
          other = 3 - own
          spring%gap(line) = cross(p2 - p1, p3 - p1)/length
-         spring%normal(:, own, line) = generalised([-edge(2), edge(1)]/length, p1, &
+         spring%normal(:, own, line) = point_load([-edge(2), edge(1)]/length, p1, &
             & blocks%centroid(:, contact%block(own)))
          spring%normal(:, other, line) = &
-            & generalised([p3(2) - p1(2), p1(1) - p3(1)]/length, p2, &
+            & point_load([p3(2) - p1(2), p1(1) - p3(1)]/length, p2, &
             & blocks%centroid(:, contact%block(other))) &
-            & + generalised([p1(2) - p2(2), p2(1) - p1(1)]/length, p3, &
+            & + point_load([p1(2) - p2(2), p2(1) - p1(1)]/length, p3, &
             & blocks%centroid(:, contact%block(other)))
          if (line == 1) spring%edge_length = length
       end do
@@ -148,10 +127,10 @@ contains
       set_at = (1.0_wp - contact%place)*p2 + contact%place*p3
       away = (p1 - set_at)/spring%edge_length
       spring%shear = (p1(1) - set_at(1))*tangent(1) + (p1(2) - set_at(2))*tangent(2)
-      spring%along(:, 1) = generalised(tangent, p1, blocks%centroid(:, contact%block(1)))
+      spring%along(:, 1) = point_load(tangent, p1, blocks%centroid(:, contact%block(1)))
       associate (centroid => blocks%centroid(:, contact%block(2)))
-         spring%drag = generalised(tangent, set_at, centroid)
-         spring%along(:, 2) = generalised(away, p3, centroid) - generalised(away, p2, centroid) &
+         spring%drag = point_load(tangent, set_at, centroid)
+         spring%along(:, 2) = point_load(away, p3, centroid) - point_load(away, p2, centroid) &
             & - spring%drag
       end associate
    end subroutine place_shear_spring

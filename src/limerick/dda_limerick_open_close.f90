@@ -57,16 +57,17 @@ contains
       associate (a => motion(:, contact%block(1)), b => motion(:, contact%block(2)), &
          & law => contact_law(model, contact%block(1), contact%vertex(3, 1)))
          contact%before = contact%state
-         gap(1) = spring%gap(1) + dot(spring%normal(:, 1, 1), a) + dot(spring%normal(:, 2, 1), b)
+         gap(1) = spring%gap(1) + dot_product(spring%normal(:, 1, 1), a) &
+            & + dot_product(spring%normal(:, 2, 1), b)
          gap(2) = gap(1)
-         if (contact%corner) gap(2) = spring%gap(2) + dot(spring%normal(:, 1, 2), a) &
-            & + dot(spring%normal(:, 2, 2), b)
+         if (contact%corner) gap(2) = spring%gap(2) + dot_product(spring%normal(:, 1, 2), a) &
+            & + dot_product(spring%normal(:, 2, 2), b)
          call judge_opening(model%constants, law, march, gap, contact)
          if (contact%corner .or. contact%state == limerick_state%open) return
          if (contact%before == limerick_state%open) &
             & call set_shear_spring(blocks, motion, march%half_size, contact, spring)
-         call judge_slip(model%constants, law, march, &
-            & spring%shear + dot(spring%along(:, 1), a) + dot(spring%along(:, 2), b), contact)
+         call judge_slip(model%constants, law, march, spring%shear &
+            & + dot_product(spring%along(:, 1), a) + dot_product(spring%along(:, 2), b), contact)
       end associate
    end subroutine judge_contact
 
@@ -149,13 +150,5 @@ contains
       contact%place = projection(at(:, 1), at(:, 2), at(:, 3))
       call place_shear_spring(blocks, contact, spring)
    end subroutine set_shear_spring
-
-   !> Scalar product of six numbers
-   pure real(wp) function dot(a, b)
-      real(wp), intent(in) :: a(6)  !! First row: (6)
-      real(wp), intent(in) :: b(6)  !! Second row: (6)
-
-      dot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + a(4)*b(4) + a(5)*b(5) + a(6)*b(6)
-   end function dot
 
 end submodule dda_limerick_open_close

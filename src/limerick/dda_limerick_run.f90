@@ -78,21 +78,15 @@ contains
    end subroutine begin_run
 
    !> Run a model to its verdict
-   pure subroutine run_limerick(model, run, outcome, n_track)
+   pure subroutine run_limerick(model, run, outcome)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(out) :: run
       type(limerick_outcome_t), intent(out) :: outcome
-      !> Of how many measured points the way is kept; none if it is not given
-      integer, intent(in), optional :: n_track
       logical :: ended
 
       ended = .false.
       call begin_run(model, run)
-      if (present(n_track)) then
-         call begin_outcome(model, run, n_track, outcome)
-      else
-         call begin_outcome(model, run, 0, outcome)
-      end if
+      call begin_outcome(model, run, 0, outcome)
       do while (.not. ended)
          call next_step(model, run, outcome, ended)
       end do
@@ -102,7 +96,7 @@ contains
    pure subroutine begin_outcome(model, run, n_track, outcome)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
-      integer, intent(in) :: n_track
+      integer, intent(in) :: n_track  !! Of how many measured points the way is kept
       type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
 

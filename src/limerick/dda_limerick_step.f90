@@ -182,7 +182,7 @@ contains
          call update(model, run%equations%motion, run%blocks, run%march, run%moved)
       else
          call fatal_error(error, "no convergence at one step in the attempts that are "// &
-            & "allowed (the original loops forever)")
+            & "allowed (Shi's program loops forever)")
       end if
    end subroutine advance_limerick
 
@@ -228,7 +228,8 @@ contains
    pure subroutine choose_interval(model, march)
       type(limerick_model_t), intent(in) :: model
       type(limerick_march_t), intent(inout) :: march  !! The march; its time step is set
-      real(wp) :: acceleration, velocity, allowed, mass, longest, record
+      real(wp) :: acceleration, velocity, allowed, mass, longest, record, stress
+      integer :: m
 
       if (.not. model%constants%auto_time_step) return
       allowed = model%constants%max_displacement_ratio*march%half_size
@@ -236,10 +237,11 @@ contains
       velocity = 0.0_wp
       if (march%steps == 0) then
          longest = march%time_step
+         stress = maxval([(abs(model%material(m)%stress), m=1, size(model%material))])
+         velocity = maxval([(abs(model%material(m)%velocity), m=1, size(model%material))])
          acceleration = max(model%material(1)%unit_weight/model%material(1)%density, &
-            & 4.0_wp*largest_stress(model)*sqrt(march%mean_area)/mass, &
+            & 4.0_wp*stress*sqrt(march%mean_area)/mass, &
             & largest_load(model, 0.0_wp, .true.)/mass)
-         velocity = largest_velocity(model)
          if (acceleration > 0.0_wp .or. velocity > 0.0_wp) longest = huge(longest)
       else
          longest = growth*march%time_step
@@ -254,28 +256,6 @@ contains
       record = next_record(model, march%time + short*march%time_step)
       march%time_step = min(march%time_step, record - march%time)
    end subroutine choose_interval
-
-   !> Largest initial stress of a material [Pa]
-   pure real(wp) function largest_stress(model)
-      type(limerick_model_t), intent(in) :: model
-      integer :: m
-
-      largest_stress = 0.0_wp
-      do m = 1, size(model%material)
-         largest_stress = max(largest_stress, maxval(abs(model%material(m)%stress)))
-      end do
-   end function largest_stress
-
-   !> Largest initial velocity of a material [m/s]
-   pure real(wp) function largest_velocity(model)
-      type(limerick_model_t), intent(in) :: model
-      integer :: m
-
-      largest_velocity = 0.0_wp
-      do m = 1, size(model%material)
-         largest_velocity = max(largest_velocity, maxval(abs(model%material(m)%velocity)))
-      end do
-   end function largest_velocity
 
    !> Largest component of the loads at a time or of all that are tabulated [N/m]
    pure real(wp) function largest_load(model, time, ever)

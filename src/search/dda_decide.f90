@@ -131,7 +131,14 @@ contains
    end subroutine share_forces
 
    !> Share out the forces of what stands as elastic blocks do
-   module procedure share_elastically
+   pure subroutine share_elastically(settings, system, contacts, decision, shared, album)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      type(decision_t), intent(inout) :: decision
+      !> Whether that is how they are shared out: not where joints slide under Coulomb friction
+      logical, intent(out) :: shared
+      type(album_t), intent(inout), optional :: album
       type(settings_t) :: convex
 
       convex = settings
@@ -143,7 +150,7 @@ contains
       shared = decision%outcome%verdict == verdict%stable
       if (settings%verdict_flow == flow_rule%coulomb) &
          & shared = shared .and. .not. any(decision%contacts%face%slip /= 0)
-   end procedure share_elastically
+   end subroutine share_elastically
 
    !> Blocks and contacts of what stands, as its proof has them
    module procedure record_rest

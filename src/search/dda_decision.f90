@@ -38,18 +38,6 @@ module dda_decision
          logical, intent(in), optional :: verdict_only
       end subroutine decide
 
-      !> Share out the forces of what stands as elastic blocks do
-      pure module subroutine share_elastically(settings, system, contacts, decision, shared, album)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         !> The contacts, with the faces to begin with
-         type(contacts_t), intent(in) :: contacts
-         type(decision_t), intent(inout) :: decision
-         !> Whether that is how they are shared out: not where joints slide under Coulomb friction
-         logical, intent(out) :: shared
-         type(album_t), intent(inout), optional :: album
-      end subroutine share_elastically
-
       !> Blocks and contacts of what stands, as its proof has them
       pure module subroutine record_rest(settings, system, contacts, proof, decision)
          type(settings_t), intent(in) :: settings

@@ -1,7 +1,7 @@
 !> Bars as joints of a graph: what they can carry, and their forces from those of the joints
 module dda_bar_joints
    use dda_bar, only : bar_condition
-   use dda_bar_place, only : reference_rows
+   use dda_bar_place, only : bar_rows
    use dda_block_system, only : block_system_t
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
@@ -61,7 +61,7 @@ contains
       node = graph%n_block - size(graph%bound)
       do i = 1, size(settings%boundary%bar)
          associate (bar => settings%boundary%bar(i))
-            row = -reference_rows(system, bar)
+            row = -bar_rows(bar%point, bar%block, system%centroid)
             equation = 0
             do side = 1, 2
                if (bar%block(side) > 0) equation(side) = system%equation(bar%block(side))

@@ -4,30 +4,29 @@ module dda_bar_place
    use dda_block_system, only : block_system_t
    use dda_deformation, only : displacement_matrix, moved_point, tangent_matrix
    use dda_kinds, only : wp
+   use dda_vector, only : along
    implicit none
    private
 
-   public :: place_bar, reference_rows
+   public :: place_bar, bar_rows
 
 contains
 
-   !> Rows of a bar where nothing has moved: its elongation by the motion of the blocks at its ends
-   pure function reference_rows(system, bar) result(row)
-      type(block_system_t), intent(in) :: system
-      type(bar_t), intent(in) :: bar
-      real(wp) :: row(6, 2)  !! For both ends: (6, 2)
-      real(wp) :: along(2)
+   !> Elongation of a bar, or of a bolt, by the unknowns of the blocks at its ends where they are
+   pure function bar_rows(point, block, centroid) result(row)
+      real(wp), intent(in) :: point(2, 2)     !! Its ends: (2, 2) [m]
+      integer, intent(in) :: block(2)         !! The blocks, 0 for the ground: (2)
+      real(wp), intent(in) :: centroid(:, :)  !! Centres of all blocks: (2, n_block) [m]
+      real(wp) :: row(6, 2)                   !! For both ends: (6, 2)
       integer :: side
 
-      along = bar%point(:, 1) - bar%point(:, 2)
-      along = along/norm2(along)
       row = 0.0_wp
       do side = 1, 2
-         if (bar%block(side) > 0) row(:, side) = merge(1.0_wp, -1.0_wp, side == 1) &
-            & *matmul(along, displacement_matrix(bar%point(:, side), &
-            & system%centroid(:, bar%block(side))))
+         if (block(side) > 0) row(:, side) = merge(1.0_wp, -1.0_wp, side == 1) &
+            & *matmul(along(point(:, 2), point(:, 1)), displacement_matrix(point(:, side), &
+            & centroid(:, block(side))))
       end do
-   end function reference_rows
+   end function bar_rows
 
    !> Rows and elongation of one bar
    pure subroutine place_bar(system, current, bar, row, elongation, inverse_length)
@@ -41,7 +40,7 @@ contains
       real(wp), intent(out) :: elongation
       !> One over its length where it turns with the blocks, else 0 [1/m]
       real(wp), intent(out) :: inverse_length
-      real(wp) :: t(2, 6, 2), place(2, 2), along(2), before(2), moved(2)
+      real(wp) :: t(2, 6, 2), place(2, 2), axis(2), before(2), moved(2)
       integer :: side
 
       t = 0.0_wp
@@ -63,8 +62,8 @@ contains
             end if
          end associate
       end do
-      along = (place(:, 1) - place(:, 2))/norm2(place(:, 1) - place(:, 2))
-      elongation = dot_product(along, moved)
+      axis = along(place(:, 2), place(:, 1))
+      elongation = dot_product(axis, moved)
       inverse_length = 0.0_wp
       if (current) then
          ! the difference of the squares of two lengths keeps its digits where they are near
@@ -74,8 +73,8 @@ contains
          inverse_length = 1.0_wp/norm2(place(:, 1) - place(:, 2))
       end if
       do side = 1, 2
-         row(:, 1, side) = matmul(along, t(:, :size(row, 1), side))
-         row(:, 2, side) = matmul([-along(2), along(1)], t(:, :size(row, 1), side))
+         row(:, 1, side) = matmul(axis, t(:, :size(row, 1), side))
+         row(:, 2, side) = matmul([-axis(2), axis(1)], t(:, :size(row, 1), side))
       end do
       row(:, :, 2) = -row(:, :, 2)
    end subroutine place_bar
