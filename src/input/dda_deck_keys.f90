@@ -24,7 +24,7 @@ module dda_deck_keys
       group_t("tie", "bars between two points of the blocks of an arch"), &
       group_t("ground", "how the ground moves, with mode = 'dynamic' only"), &
       group_t("analysis", "how a single case is computed"), &
-      group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
+      group_t("limerick", "Shi's scheme as it was: with mode = 'limerick' only"), &
       group_t("search", "looks for the critical value of one parameter"), &
       group_t("sweep", "runs one case a value; up to 8 such groups"), &
       group_t("output", "what is written")]
@@ -71,7 +71,7 @@ module dda_deck_keys
             meaning="Tensile strength; at most cohesion/tan(friction_deg) counts."), &
       key_t(group="joint", name="residual_deg", unit="deg", without="friction_deg", &
             at_least=0.0_wp, at_most=90.0_wp, &
-            meaning="Friction angle of joints that have slid or parted."), &
+            meaning="Friction angle of joints that have slid or opened."), &
       key_t(group="joint", name="slip_length", unit="m", default="0.0", &
             at_least=0.0_wp, at_most=1.0e9_wp, &
             meaning="Slip over which strength goes to what remains; 0: the first slip takes all.")]
@@ -163,7 +163,7 @@ module dda_deck_keys
    type(key_t), parameter :: analysis_keys(*) = [ &
       key_t(group="analysis", name="mode", kind=key_kind%word, default="'static'", &
             words="static dynamic limerick", &
-            meaning="Velocity put to zero at each step or carried on; or the original's scheme."), &
+            meaning="Velocity put to zero at each step or carried on; or Shi's scheme."), &
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
             words="reference current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &

@@ -63,21 +63,21 @@ module dda_model_table
       search_t("fill", "", "shape", "", "", "there is no arch that it lies on"), &
       search_t("tie", "", "shape", "", "", "there is no arch that it holds"), &
       search_t("material", "compressive_strength", "shape blocks", "", "", &
-         "limit analysis of arches and blocks alone knows it"), &
+         "only limit analysis of arches and blocks has it"), &
       search_t("material", "", all_kinds, of_original, of_original), &
       search_t("joint", "cohesion tension", all_kinds, of_original, "", &
-         "joints of the original begin open: bonds are lost"), &
+         "joints of Shi's scheme begin open: bonds are lost"), &
       search_t("joint", "residual_deg slip_length", "", "", "", &
-         "what has slid may stand or not on both sides: sweep them"), &
+         "the verdict may change more than once: use &sweep"), &
       search_t("joint", "", all_kinds, of_original, of_original), &
       search_t("load", "displacement_factor", "blocks", "blocks", "", &
          "only files of blocks prescribe displacements"), &
       search_t("load", "water_rise", "blocks", "blocks", "", &
          "water stands in files of blocks alone"), &
       search_t("load", "", all_kinds, of_original, of_original), &
-      search_t("live", "", all_kinds, of_original, "", "the original's scheme has no &live"), &
+      search_t("live", "", all_kinds, of_original, "", "Shi's scheme has no &live"), &
       search_t("vehicle", "", all_kinds, of_original, "", &
-         "the original's scheme has no &vehicle"), &
+         "Shi's scheme has no &vehicle"), &
       search_t("ground", "", "", all_kinds, "", "the ground moves in time"), &
       search_t("analysis", "restitution damping", "", of_original, "", &
          "motion in time has them"), &

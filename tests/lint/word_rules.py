@@ -51,7 +51,9 @@ WORDS = (
     Word(r"\balbums?\b", "frames"), Word(r"\bjams?\b", "lock"), Word(r"\bdrowns?\b|\bdrowned\b", "is below round-off"),
     Word(r"\bas any (other )?blocks\b|\bof any blocks that touch\b", "general"),
     Word(r"\bneither (rest|stands|standing)\b", "neither equilibrium; neither stable", messages_only=True),
-    Word(r"\bfall(s|en)?\b(?! freely)", "collapse", messages_only=True))
+    Word(r"\bfall(s|en)?\b(?! freely)", "collapse", messages_only=True),
+    Word(r"\bthe original\b", "Shi's scheme; Shi's program", messages_only=True),
+    Word(r"\bslid or parted\b", "slid or opened"))
 
 
 def messages(source: str) -> Iterator[tuple[int, str]]:
