@@ -92,7 +92,7 @@ def test_a_semicircle_of_one_ring_is_the_circular_arch(tmp_path: Path) -> None:
     assert float(found["critical"]) == pytest.approx(ratio, rel=1e-8)
 
 
-def test_an_undecided_search_tells_its_bracket(tmp_path: Path) -> None:
+def test_an_undecided_search_says_its_bracket(tmp_path: Path) -> None:
     """A catenary so thin that its rounded corners hide how it falls: the exact value, of 40 digits, is near."""
     deck = "&arch shape = 'catenary', span = 20.541, rise = 4.905, right_rise = 3.758, voussoirs = 43 /\n"
     search = "&search parameter = 'thickness', low = 2e-7, high = 2 /\n"

@@ -307,7 +307,7 @@ def test_errors_of_set_name_set(tmp_path: Path, setting: str) -> None:
     assert not (tmp_path / "deck").exists()
 
 
-def test_second_set_is_told_from_the_first(tmp_path: Path) -> None:
+def test_second_set_is_distinguished_from_the_first(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
     good, bad = "arch%radius=5", "joint%friction_deg=-5"
     done = run_dda("run", "deck.nml", "--set", good, "--set", bad, cwd=tmp_path)

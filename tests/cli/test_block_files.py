@@ -27,7 +27,7 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(lines))
 
 
-def test_check_tells_what_was_found(tmp_path: Path) -> None:
+def test_check_says_what_was_found(tmp_path: Path) -> None:
     tip = "block\n0.5 2\n1 3\n0 3\n"
     done = run_dda("check", write(tmp_path, BASE + BLOCK + tip))
     assert done.returncode == 0
@@ -35,7 +35,7 @@ def test_check_tells_what_was_found(tmp_path: Path) -> None:
     assert "1 of two normal springs and one shear spring, 1 of one corner against an edge" in done.stdout
 
 
-def test_check_tells_the_points(tmp_path: Path) -> None:
+def test_check_says_the_points(tmp_path: Path) -> None:
     deck = write(tmp_path, BLOCK + "fix 0 0\nfix 1 0\nmeasure 0.5 1\nload 0.5 2 1 0\n")
     done = run_dda("check", deck)
     assert done.returncode == 0 and done.stderr == ""
@@ -205,7 +205,7 @@ def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "nowhere.blocks", ".", "empty.blocks"])
-def test_a_file_that_cannot_be_read_is_told_with_the_line_of_the_deck(tmp_path: Path, name: str) -> None:
+def test_a_file_that_cannot_be_read_is_reported_with_the_line_of_the_deck(tmp_path: Path, name: str) -> None:
     (tmp_path / "empty.blocks").write_text("")
     (tmp_path / "deck.nml").write_text(f"&scene kind = 'blocks',\n  geometry = '{name}' /\n")
     done = run_dda("check", "deck.nml", cwd=tmp_path)

@@ -87,7 +87,7 @@ def test_all_examples_are_cut_and_drop_no_line(path: Path) -> None:
     assert "are unused" not in done.stdout or " 0 lines meet fewer" in done.stdout
 
 
-def test_what_was_dropped_is_told_with_its_line(tmp_path: Path) -> None:
+def test_what_was_dropped_is_reported_with_its_line(tmp_path: Path) -> None:
     text = SQUARE.replace("4 0\n", "6 0\n", 1) + "0 0.5 0.7 0.5 1\n3 3 4 4 1\n"
     (tmp_path / "a.geo").write_text(text)
     done = run_dda("cut", "a.geo", cwd=tmp_path)

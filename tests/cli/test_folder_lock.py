@@ -128,7 +128,7 @@ def test_lock_that_cannot_be_made_gives_4(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler here")
-def test_file_system_without_locks_is_told(tmp_path: Path) -> None:
+def test_file_system_without_locks_is_reported(tmp_path: Path) -> None:
     """As some network file systems, flock refuses whatever is asked."""
     (tmp_path / "no_locks.c").write_text(
         "#include <errno.h>\nint flock(int file, int how) { errno = ENOLCK; return -1; }\n")

@@ -71,7 +71,7 @@ def test_a_wall_of_many_bricks_is_checked(tmp_path: Path) -> None:
     assert f"{joints} of two normal springs and one shear spring" in done.stdout
 
 
-def test_a_chain_told_from_its_far_end_is_tied_to_the_ground(tmp_path: Path) -> None:
+def test_a_chain_listed_from_its_far_end_is_tied_to_the_ground(tmp_path: Path) -> None:
     done = check(tmp_path, row(100000), "")
     assert done.returncode == 0 and done.stderr == ""
     assert "100000 of two normal springs" in done.stdout
@@ -156,7 +156,7 @@ def test_the_same_warning_is_given_once(tmp_path: Path) -> None:
     assert len(done.stderr.splitlines()) < 5
 
 
-def test_a_long_reading_is_told_of_on_a_terminal(tmp_path: Path) -> None:
+def test_a_long_reading_is_shown_on_a_terminal(tmp_path: Path) -> None:
     deck = write(tmp_path, "\n" * 20000000 + row(2))
 
     def on_terminal(*options: str) -> str:

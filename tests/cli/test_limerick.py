@@ -175,7 +175,7 @@ def test_bad_decks_are_refused(tmp_path: Path, text: str, message: str) -> None:
     assert message in done.stderr
 
 
-def test_plan_tells_the_half_size_that_all_is_compared_with(tmp_path: Path) -> None:
+def test_plan_says_the_half_size_that_all_is_compared_with(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text(MODE + "&arch voussoirs = 12, thickness_ratio = 0.12 /\n")
     done = run_dda("check", "deck.nml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

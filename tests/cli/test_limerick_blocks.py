@@ -177,7 +177,7 @@ def test_stress_at_the_beginning_lets_go(tmp_path: Path) -> None:
     assert float(right["u"]) - float(left["u"]) == pytest.approx(0.96e-6, rel=1e-4)
 
 
-def test_joint_of_one_corner_tells_its_force(tmp_path: Path) -> None:
+def test_joint_of_one_corner_says_its_force(tmp_path: Path) -> None:
     """A roof of 1 m base and 1 m height stands on its tip between two walls' corners."""
     tip = polygon((0.5, 0), (1.0, 1.0), (0, 1.0))
     walls = "".join(polygon((x, 0.5), (x + 1, 0.5), (x + 1, 1), (x, 1), head="block fixed") for x in (-1.0, 1.0))

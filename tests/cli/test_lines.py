@@ -207,7 +207,7 @@ def test_export_refuses_what_it_cannot_write(tmp_path: Path) -> None:
     assert run_dda("export", INPUT / "terrace.nml", cwd=tmp_path).returncode == 2
 
 
-def test_a_changed_file_of_lines_is_computed_anew(tmp_path: Path) -> None:
+def test_a_changed_file_of_lines_is_computed_again(tmp_path: Path) -> None:
     (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.12, voussoirs=12 /\n")
     assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
     scene = "&scene kind='lines', geometry='ring.geo', analysis='ring_plain.ana' /\n"
@@ -270,7 +270,7 @@ def test_a_single_fixed_point_takes_a_force_that_acts_there(tmp_path: Path, x: f
 
 
 @pytest.mark.parametrize("x", [0.0, 2.0**20])
-def test_measured_points_of_a_file_are_told(tmp_path: Path, x: float) -> None:
+def test_measured_points_of_a_file_are_reported(tmp_path: Path, x: float) -> None:
     """The ground moves to the left by 4.5 m/s2; the block slides by what friction does not bear."""
     (tmp_path / "a.geo").write_text(block_on_ground(f"{x + 0.25!r} 1.9\n", x).format("2 0 1"))
     motion = "&ground pulse='rectangular', amplitude=-4.5, duration=1.0 /\n&joint friction_deg=20 /\n"
@@ -285,7 +285,7 @@ def test_measured_points_of_a_file_are_told(tmp_path: Path, x: float) -> None:
 
 
 @pytest.mark.parametrize("mode", ["static", "limerick"])
-def test_a_model_far_away_is_told_where_it_is(tmp_path: Path, mode: str) -> None:
+def test_a_model_far_away_is_reported_where_it_is(tmp_path: Path, mode: str) -> None:
     """A block of 1 x 2 m on a ground, 2**20 m to the right and 2**18 m below zero."""
     x, y = 2.0**20, -(2.0**18)
     ground, block = [(-3, -1), (4, -1), (4, 0), (-3, 0)], [(0, 0), (1, 0), (1, 2), (0, 2)]

@@ -134,7 +134,7 @@ def test_a_load_that_no_forces_balance_is_proven_so_in_a_few_factorisations(tmp_
     [(4, 8, 0.65, 0.5663682243), (10, 10, 0.65, 0.5383777695), (4, 8, 0.3, 0.3)],
     ids=["turns", "turns and slides", "slides as a whole"],
 )
-def test_falls_beyond_the_associated_limit_are_told_by_a_few_factorisations(
+def test_falls_beyond_the_associated_limit_are_known_by_a_few_factorisations(
     tmp_path: Path, units: int, courses: int, friction: float, limit: float, flow: str
 ) -> None:
     values = ", ".join(repr(limit * share) for share in (1.01, 1.1, 1.5, 5.0))
@@ -145,7 +145,7 @@ def test_falls_beyond_the_associated_limit_are_told_by_a_few_factorisations(
     assert max(int(row["factorisations"]) for row in rows) <= 30
 
 
-def test_what_limit_analysis_lets_stand_is_told_by_a_few_factorisations(tmp_path: Path) -> None:
+def test_what_limit_analysis_lets_stand_is_known_by_a_few_factorisations(tmp_path: Path) -> None:
     values = ", ".join(repr(0.5383777695 * share) for share in (0.5, 0.9, 0.99))
     more = ("&analysis flow = 'associated' /\n" f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n")
     rows = run_wall(tmp_path, 10, 10, 0.65, more)
@@ -222,7 +222,7 @@ def test_arch_has_one_verdict_with_and_without_tables(tmp_path: Path) -> None:
     assert verdicts == ["collapsed", "collapsed"]
 
 
-def test_a_decision_tells_the_jumps_on_its_way_as_the_search_does(tmp_path: Path) -> None:
+def test_a_decision_says_the_jumps_on_its_way_as_the_search_does(tmp_path: Path) -> None:
     """The wall of 4 by 8 bricks with friction 0.65 jumps to another state before 0.54 of its weight pushes it."""
     (row,) = run_wall(tmp_path, 4, 8, 0.65, "&load horizontal_coefficient = 0.54 /\n")
     assert row["verdict"] == "stable"

@@ -96,7 +96,7 @@ MISSPELT = {
 
 
 @pytest.mark.parametrize("text", MISSPELT)
-def test_misspelt_name_is_told_the_nearest(tmp_path: Path, text: str) -> None:
+def test_misspelt_name_is_shown_the_nearest(tmp_path: Path, text: str) -> None:
     (tmp_path / "deck.nml").write_text(text)
     fault = assert_whole(run_dda("check", "deck.nml", cwd=tmp_path).stderr)["fault"]
     near = re.search(r"(?:nearest known \w+ is|did you mean) (.+?)(?:\?|$)", fault)
@@ -107,7 +107,7 @@ def test_misspelt_name_is_told_the_nearest(tmp_path: Path, text: str) -> None:
     ("arguments", "meant"),
     [(["rnu", "deck.nml"], "run"), (["run", "deck.nml", "--quite"], "--quiet")],
 )
-def test_misspelt_command_is_told_the_nearest(arguments: list[str], meant: str) -> None:
+def test_misspelt_command_is_shown_the_nearest(arguments: list[str], meant: str) -> None:
     assert f"did you mean '{meant}'?" in run_dda(*arguments).stderr
 
 
@@ -212,7 +212,7 @@ def test_message_about_an_analysis_is_whole(tmp_path: Path, mistake: str) -> Non
     assert_whole("".join(errors))
 
 
-def test_deck_without_its_ending_is_told_the_ending(tmp_path: Path) -> None:
+def test_deck_without_its_ending_is_shown_the_ending(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
     assert assert_whole(run_dda("check", "deck", cwd=tmp_path).stderr)["advice"] == "write deck.nml"
 

@@ -220,7 +220,7 @@ def test_gravity_that_tilts_goes_one_way_to_all_angles(tmp_path: Path) -> None:
     assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
 
 
-def test_a_fall_between_directions_that_limit_analysis_lets_stand_is_told_in_seconds(tmp_path: Path) -> None:
+def test_a_fall_between_directions_that_limit_analysis_lets_stand_is_reported_in_seconds(tmp_path: Path) -> None:
     """A wall of 41 blocks that no direction of gravity lets stand under Coulomb friction, told by its joint graph."""
     (tmp_path / "x.blocks").write_text(block_text(*make_pushed(61030)))
     (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n"

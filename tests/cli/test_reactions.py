@@ -96,7 +96,7 @@ def test_held_points_share_what_a_block_needs(tmp_path: Path) -> None:
     assert float(rows["2"]["moment"]) == pytest.approx(WEIGHT / 2 - lever, rel=1e-12)
 
 
-def test_nothing_is_told_of_what_does_not_stand(tmp_path: Path) -> None:
+def test_nothing_is_said_of_what_does_not_stand(tmp_path: Path) -> None:
     tables = run(tmp_path, GROUND + BLOCK, "&load horizontal_coefficient = 0.7 /")
     assert tables["reactions"] == [] and tables["results"][0]["verdict"] == "collapsed"
 

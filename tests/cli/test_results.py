@@ -696,7 +696,7 @@ def test_three_thin_voussoirs_stand_in_spite_of_rounding(tmp_path: Path, unknown
     assert {row["verdict"] for row in run_deck(tmp_path, text)} == {"stable"}
 
 
-def test_condition_is_told_where_wanted(tmp_path: Path) -> None:
+def test_condition_is_reported_where_wanted(tmp_path: Path) -> None:
     text = "&arch thickness_ratio = 0.12 /\n&output condition = .true. /\n"
     rows = run_deck(tmp_path, text + "&sweep parameter = 'unknowns', values = 3, 6 /\n")
     assert [row["unknowns"] for row in rows] == ["3", "6"]

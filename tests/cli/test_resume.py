@@ -156,7 +156,7 @@ def test_damaged_row_is_not_taken_as_good(tmp_path: Path, damage) -> None:
     assert tables(out) == whole
 
 
-def test_frames_of_unfinished_cases_are_made_anew(tmp_path: Path) -> None:
+def test_frames_of_unfinished_cases_are_made_again(tmp_path: Path) -> None:
     out = write_deck(tmp_path, MOVING)
     assert run(tmp_path).returncode == 0
     whole = tables(out)
@@ -181,7 +181,7 @@ def test_frames_of_unfinished_cases_are_made_anew(tmp_path: Path) -> None:
     ],
     ids=["value", "search", "group", "output", "fewer"],
 )
-def test_changed_deck_is_computed_anew(tmp_path: Path, change) -> None:
+def test_changed_deck_is_computed_again(tmp_path: Path, change) -> None:
     out = write_deck(tmp_path)
     run(tmp_path)
     write_deck(tmp_path, change(DECK))
@@ -198,7 +198,7 @@ def test_changed_deck_is_computed_anew(tmp_path: Path, change) -> None:
     [("45", None), (None, "45"), ("45", "40")],
     ids=["dropped", "added", "other"],
 )
-def test_changed_set_is_computed_anew(tmp_path: Path, first: str | None, second: str | None) -> None:
+def test_changed_set_is_computed_again(tmp_path: Path, first: str | None, second: str | None) -> None:
     def setting(value: str | None) -> list[str]:
         return ["--set", f"joint%friction_deg={value}"] if value else []
 
@@ -210,7 +210,7 @@ def test_changed_set_is_computed_anew(tmp_path: Path, first: str | None, second:
         assert {row["friction_deg"] for row in csv.DictReader(lines)} == {second or "50"}
 
 
-def test_results_of_another_build_are_computed_anew(tmp_path: Path) -> None:
+def test_results_of_another_build_are_computed_again(tmp_path: Path) -> None:
     out = write_deck(tmp_path)
     run(tmp_path)
     record = (out / "deck.record").read_text()

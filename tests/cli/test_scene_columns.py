@@ -89,7 +89,7 @@ def test_a_joint_of_one_corner_has_neither_two_openings_nor_an_eccentricity(tmp_
         ("&scene kind = 'blocks', geometry = 'x.blocks' /", "2"),
     ],
 )
-def test_an_undecided_search_tells_how_many_blocks_it_had(tmp_path: Path, scene: str, blocks: str) -> None:
+def test_an_undecided_search_says_how_many_blocks_it_had(tmp_path: Path, scene: str, blocks: str) -> None:
     (tmp_path / "x.blocks").write_text(BASE + BLOCK + BLOCK.replace("0\n", "2\n", 2).replace("1 2\n0 2", "1 3\n0 3"))
     search = "&search parameter = 'friction_deg' /\n&analysis geometry = 'current', steps = 1 /\n"
     ((row,), joints) = run(tmp_path, f"{scene}\n{search}", status=3)
@@ -109,7 +109,7 @@ def test_an_undecided_search_tells_how_many_blocks_it_had(tmp_path: Path, scene:
         ("joint 1 2 friction_deg 35\n", "block\n5 0\n6 0\n6 2\n5 2\n", "50"),
     ],
 )
-def test_friction_is_told_where_a_joint_may_have_it(tmp_path: Path, law: str, more: str, told: str) -> None:
+def test_friction_is_reported_where_a_joint_may_have_it(tmp_path: Path, law: str, more: str, told: str) -> None:
     """The base is of material 1, the block on it of material 2."""
     text = BASE + BLOCK.replace("block", "block material 2") + more + "material 2 young 1e9\n" + law
     (tmp_path / "x.blocks").write_text(text)

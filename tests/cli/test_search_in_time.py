@@ -63,7 +63,7 @@ def test_an_answer_that_is_not_monotone_is_said(tmp_path: Path) -> None:
     assert low < EXACT < high
 
 
-def test_ends_that_agree_are_told_with_what_is_between(tmp_path: Path) -> None:
+def test_ends_that_agree_are_reported_with_what_is_between(tmp_path: Path) -> None:
     for low, high, verdict in ((0.1, 1.0, "stable"), (8.0, 20.0, "collapsed")):
         row, log, _ = search(tmp_path, FREE, sine(low, high))
         assert row["verdict"] == verdict and row["critical"] == ""

@@ -79,7 +79,7 @@ def test_polygon_takes_the_blocks_away_whose_centres_it_holds(tmp_path: Path) ->
     assert numbered == inside
 
 
-def test_forces_that_depend_on_the_order_are_told(tmp_path: Path) -> None:
+def test_forces_that_depend_on_the_order_are_reported(tmp_path: Path) -> None:
     steps = "remove block 4 at 1\nremove block 11 at 2\n"
     run(tmp_path, wall() + "remove block 4 11 at 1\n", "&joint friction_deg = 80 /\n")
     assert "slid" not in (tmp_path / "out" / "log.txt").read_text()

@@ -66,7 +66,7 @@ def test_stages_begin_in_balance_too(tmp_path: Path) -> None:
     assert heights == pytest.approx([heights[0]] * len(heights), abs=1e-8)
 
 
-def test_what_does_not_stand_is_told(tmp_path: Path) -> None:
+def test_what_does_not_stand_is_reported(tmp_path: Path) -> None:
     row = run_blocks(tmp_path, on_slope(40.0), "&joint friction_deg = 30 /\n" + TIME.format("current", "static"))
     assert row["verdict"] == "undecided"
     log = (tmp_path / "out" / "log.txt").read_text()

@@ -76,7 +76,7 @@ def test_forces_of_the_joints_carry_every_block(tmp_path: Path, deck: str) -> No
         assert total[block][0] == pytest.approx(-push * load, abs=1e-4 * largest)
 
 
-def test_mechanism_of_a_search_is_told_beside_the_arch_that_stands(tmp_path: Path) -> None:
+def test_mechanism_of_a_search_is_reported_beside_the_arch_that_stands(tmp_path: Path) -> None:
     folder = run(tmp_path, "&arch voussoirs = 36 /\n&search /\n")
     (result,) = rows_of(folder / "results.csv")
     joints = rows_of(folder / "joints.csv")
@@ -97,7 +97,7 @@ def test_mechanism_of_a_search_is_told_beside_the_arch_that_stands(tmp_path: Pat
             assert corners[left][side][2] == pytest.approx(-corners[right][1 - side][2], abs=1e-3)
 
 
-def test_sliding_springings_are_told_with_their_way(tmp_path: Path) -> None:
+def test_sliding_springings_are_reported_with_their_way(tmp_path: Path) -> None:
     text = "&arch voussoirs = 36 /\n&joint friction_deg = 20 /\n&search /\n"
     joints = rows_of(run(tmp_path, text) / "joints.csv")
     slides = [row for row in joints if row["mechanism"] == "sliding"]
@@ -139,14 +139,14 @@ def test_displacement_of_a_falling_block_is_exact(tmp_path: Path) -> None:
             assert v == pytest.approx(-0.5 * 9.81 * time**2, rel=1e-10)
 
 
-def test_blocks_held_by_points_are_told(tmp_path: Path) -> None:
+def test_blocks_held_by_points_are_reported(tmp_path: Path) -> None:
     (tmp_path / "x.blocks").write_text("block\n0 0\n1 0\n1 1\n0 1\nfix 0 0\nfix 1 0\nblock\n0 1\n1 1\n1 2\n0 2\n")
     folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
     states = {row["block"]: row["state"] for row in rows_of(folder / "blocks.csv")}
     assert states == {"1": "held", "2": "free"}
 
 
-def test_far_blocks_are_told_in_the_coordinates_of_the_user(tmp_path: Path) -> None:
+def test_far_blocks_are_reported_in_the_coordinates_of_the_user(tmp_path: Path) -> None:
     (tmp_path / "x.blocks").write_text(
         "block fixed\n1e6 0\n1000001 0\n1000001 1\n1e6 1\n" "block\n1e6 1\n1000001 1\n1000001 2\n1e6 2\n")
     folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
@@ -156,7 +156,7 @@ def test_far_blocks_are_told_in_the_coordinates_of_the_user(tmp_path: Path) -> N
     assert float(joint["force_y"]) == pytest.approx(2240 * 9.81, rel=1e-6)
 
 
-def test_the_original_scheme_tells_how_far_its_blocks_have_moved(tmp_path: Path) -> None:
+def test_the_original_scheme_reports_how_far_its_blocks_have_moved(tmp_path: Path) -> None:
     done = run_dda("run", ROOT / "input/limerick/both_sides.nml", "--out", tmp_path, "--quiet")
     assert done.returncode == 0, done.stderr
     rows = rows_of(tmp_path / "blocks.csv")

@@ -96,7 +96,7 @@ def test_the_worst_position_of_a_symmetric_arch_has_a_mirror_image(tmp_path: Pat
     assert "the least load factor" not in (tmp_path / "x" / "log.txt").read_text()
 
 
-def test_a_search_without_an_answer_tells_its_limit_and_how_far_it_came(tmp_path: Path) -> None:
+def test_a_search_without_an_answer_says_its_limit_and_how_far_it_came(tmp_path: Path) -> None:
     """Three rings that slide below fill: jumps of the path may not converge, but limit analysis bounds the factor."""
     deck = (
         "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.75, voussoirs = 24, rings = 3 /\n"

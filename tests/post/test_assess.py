@@ -76,7 +76,7 @@ def test_what_is_no_single_arch_is_refused(
     assert words in capsys.readouterr().err
 
 
-def test_a_fault_is_told_with_the_deck_of_the_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fault_is_reported_with_the_deck_of_the_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     deck = tmp_path / "mine.nml"
     deck.write_text("&arch /\n&tie y = 1 /\n")
     assert main(["assess", str(deck)]) == 2
@@ -107,7 +107,7 @@ def test_groups_are_left_out_with_their_lines() -> None:
     assert assess_command.without(text, "search") == "&arch /\n\n\n&joint /\n"
 
 
-def test_the_picture_of_an_arch_of_any_shape_tells_its_geometrical_safety(tmp_path: Path) -> None:
+def test_the_picture_of_an_arch_of_any_shape_says_its_geometrical_safety(tmp_path: Path) -> None:
     deck = tmp_path / "pointed.nml"
     deck.write_text("&arch shape = 'pointed', span = 6, rise = 4, thickness = 0.6, voussoirs = 12 /\n")
     assert main(["assess", str(deck)]) == 0

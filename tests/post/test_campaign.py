@@ -139,7 +139,7 @@ def test_another_deck_is_not_mixed_with_the_first(tmp_path: Path, capsys) -> Non
     assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"8"}
 
 
-def test_bad_deck_is_told_as_by_the_program(tmp_path: Path, capsys) -> None:
+def test_bad_deck_is_reported_as_by_the_program(tmp_path: Path, capsys) -> None:
     (tmp_path / "bad.nml").write_text("&arch\n radius = -1 /\n")
     assert main(["campaign", str(tmp_path / "bad.nml"), "--out", str(tmp_path / "out")]) == 2
     assert "bad.nml:2: error: arch%radius must be" in capsys.readouterr().err
@@ -170,7 +170,7 @@ def test_folder_that_cannot_be_written_is_status_4(tmp_path: Path, capsys) -> No
     assert "taken" in capsys.readouterr().err
 
 
-def test_missing_program_is_told(tmp_path: Path, monkeypatch, capsys) -> None:
+def test_missing_program_is_reported(tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.setenv("VOUSSOIR_DDA", str(tmp_path / "nothing"))
     assert main(["campaign", str(write_deck(tmp_path))]) == 2
     assert "expected the program dda" in capsys.readouterr().err
@@ -317,7 +317,7 @@ def test_parquet_has_the_cells_of_the_table(tmp_path: Path, monkeypatch) -> None
     assert [tuple(row) for row in table["intrados_hinge_deg"].to_pylist()] == cases["intrados_hinge_deg"].tolist()
 
 
-def test_parquet_without_its_package_is_told_before_anything_is_computed(tmp_path: Path, monkeypatch, capsys) -> None:
+def test_parquet_without_its_package_is_reported_before_computing(tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     assert main(["campaign", str(write_deck(tmp_path)), "--out", str(tmp_path / "out"), "--parquet"]) == 2
     assert "Parquet needs pyarrow, got none" in capsys.readouterr().err

@@ -49,7 +49,7 @@ def test_first_page_names_every_subcommand(words: list[str], capsys) -> None:
     assert [name for name in COMMANDS if name not in page] == []
 
 
-def test_version_is_told(capsys) -> None:
+def test_version_is_reported(capsys) -> None:
     assert help_of(["--version"], capsys) == f"voussoir {__version__}\n"
 
 

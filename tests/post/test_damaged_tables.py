@@ -57,7 +57,7 @@ def spoil(table: Path, line: int, old: str, new: str) -> None:
         ("blocks.csv", 4, "free", "free,", "expected 8 cells, got 9"),
     ],
 )
-def test_damaged_table_is_told_with_file_and_line(
+def test_damaged_table_is_reported_with_file_and_line(
     tmp_path: Path, table: str, line: int, old: str, new: str, words: str, capsys
 ) -> None:
     folder = run(tmp_path, "search")
@@ -67,7 +67,7 @@ def test_damaged_table_is_told_with_file_and_line(
         assert capsys.readouterr().err.startswith(f"{folder / table}:{line}: error: {words}")
 
 
-def test_empty_table_is_told(tmp_path: Path, capsys) -> None:
+def test_empty_table_is_reported(tmp_path: Path, capsys) -> None:
     folder = run(tmp_path, "search")
     (folder / "results.csv").write_text("")
     assert main(["plot", str(folder)]) == 2

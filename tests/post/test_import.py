@@ -168,7 +168,7 @@ def test_whole_circle_of_two_arcs_is_a_disc(tmp_path: Path) -> None:
         assert areas == pytest.approx([math.pi, math.pi, math.pi * 300 / 360], rel=2e-5)
 
 
-def test_import_runs_draws_and_tells_what_is_missing(tmp_path: Path, capfd) -> None:
+def test_import_runs_draws_and_says_what_is_missing(tmp_path: Path, capfd) -> None:
     file = tmp_path / "pier.wkt"
     file.write_text(f"{GROUND}\nPOLYGON ((0 0, 1 0, 1 3, 0 3, 0 0))\n")
     deck = tmp_path / "pier.nml"
@@ -259,7 +259,7 @@ def test_displaced_blocks_and_materials_are_exported(tmp_path: Path) -> None:
     (["two", "a.wkt", "--case", "7"], "no blocks of case 7", 2),
     (["two", "two/results.csv/a.wkt"], "expected a file that can be written", 4),
 ])
-def test_what_cannot_be_exported_is_told(tmp_path: Path, capsys, monkeypatch, words, message, status) -> None:
+def test_what_cannot_be_exported_is_reported(tmp_path: Path, capsys, monkeypatch, words, message, status) -> None:
     monkeypatch.chdir(tmp_path)
     voussoir.run("&arch voussoirs = 4 /", out=tmp_path / "two")
     assert main(["export", *words]) == status

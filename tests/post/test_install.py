@@ -122,7 +122,7 @@ def test_version_is_the_same_everywhere(prefix: Path) -> None:
     assert f"voussoir {version}" in (prefix / "share/man/man1/dda.1").read_text()
 
 
-def test_results_tell_the_version_that_made_them(prefix: Path, tmp_path: Path) -> None:
+def test_results_say_the_version_that_made_them(prefix: Path, tmp_path: Path) -> None:
     (tmp_path / "a.nml").write_text("&arch thickness_ratio = 0.12 /\n")
     run(prefix / "bin/dda", "run", str(tmp_path / "a.nml"), "--out", str(tmp_path / "a"))
     version = run(prefix / "bin/dda", "--version").strip()

@@ -244,7 +244,7 @@ def test_slow_decks_run_on_demand_only(tmp_path: Path) -> None:
     assert [file.stem for file in quick][:4] == ["table1", "table2", "table3", "table4"]
 
 
-def test_progress_tells_the_time_left() -> None:
+def test_progress_says_the_time_left() -> None:
     told: list[str] = []
     clock = Clock(told.append, {"one": 1.0, "two": 3.0})
     for part in ("one", "two"):

@@ -53,7 +53,7 @@ def test_page_shows_the_decks_as_they_are(paper_page: str) -> None:
         assert html.escape(deck.read_text(encoding="utf-8")) in paper_page
 
 
-def test_page_tells_times_of_all_parts(paper_page: str) -> None:
+def test_page_says_times_of_all_parts(paper_page: str) -> None:
     for deck in Campaign(DECKS, Path()).deck_files():
         assert re.search(rf"<td>{deck.stem}</td><td>\d+\.\d\d</td><td>\d+\.\d\d</td>", paper_page)
 

@@ -203,7 +203,7 @@ def test_commands_write_module_and_driver(tmp_path: Path) -> None:
         < driver.index("call close_report(tally)")
 
 
-def test_command_tells_file_and_line_and_writes_nothing(tmp_path: Path) -> None:
+def test_command_says_file_and_line_and_writes_nothing(tmp_path: Path) -> None:
     source = tmp_path / "test_arch.pf"
     source.write_text(with_statement("@assertNear(1, 2)"))
     result = run(source, tmp_path / "test_arch.F90")

@@ -191,7 +191,7 @@ def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> 
         assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
 
 
-def test_what_is_not_told_is_not_drawn(tmp_path: Path, capsys) -> None:
+def test_what_is_not_reported_is_not_drawn(tmp_path: Path, capsys) -> None:
     run = benchmark(tmp_path, "stack", "output%joints=.false.")
     with house_style():
         assert "contact forces" not in legend_of(draw_case(run, 1))
@@ -327,7 +327,7 @@ def test_live_loads_of_an_arch_are_drawn_unless_they_are_swept(tmp_path: Path) -
         assert "not drawn: &live, which is swept" in legend and "live load" not in legend
 
 
-def test_file_of_blocks_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_file_of_blocks_that_is_not_there_is_reported(tmp_path: Path) -> None:
     (tmp_path / "two.blocks").write_text(LOADED)
     run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'two.blocks' /\n")
     (tmp_path / "two.blocks").unlink()
@@ -388,13 +388,13 @@ def test_chart_over_blocks_of_a_linked_sweep(tmp_path: Path) -> None:
         (["--chart"], "give the deck &search"),
     ],
 )
-def test_what_cannot_be_drawn_is_told(arches, words, message, capsys) -> None:
+def test_what_cannot_be_drawn_is_reported(arches, words, message, capsys) -> None:
     assert main(["plot", str(arches.folder), *words]) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"{arches.folder}:1: error: ") and message in error
 
 
-def test_folder_without_results_is_told(tmp_path: Path, capsys) -> None:
+def test_folder_without_results_is_reported(tmp_path: Path, capsys) -> None:
     for command in ("plot", "animate"):
         assert main([command, str(tmp_path)]) == 2
         assert "no results.csv" in capsys.readouterr().err
@@ -406,7 +406,7 @@ def test_folder_that_cannot_be_written_is_status_4(arches, tmp_path: Path, capsy
     assert "taken" in capsys.readouterr().err
 
 
-def test_many_curves_of_one_number_are_told_apart_by_colour(tmp_path: Path) -> None:
+def test_many_curves_of_one_number_are_distinguished_by_colour(tmp_path: Path) -> None:
     run = compute(
         tmp_path,
         "&search /\n&arch voussoirs = 12 /\n&output joints = .false. /\n"
@@ -462,7 +462,7 @@ def test_too_many_curves_are_refused(tmp_path: Path) -> None:
         draw_chart(run, "friction_deg")
 
 
-def test_cases_without_a_critical_value_are_told(tmp_path: Path) -> None:
+def test_cases_without_a_critical_value_are_reported(tmp_path: Path) -> None:
     run = compute(
         tmp_path, "&search /\n&arch voussoirs = 8 /\n&sweep parameter = 'friction_deg', values = 5, 40, 50 /\n")
     with house_style():
@@ -496,7 +496,7 @@ def test_blocks_in_time_are_animated(rocking: results.Results, tmp_path: Path, c
 
 
 @pytest.mark.skipif(FFMpegWriter.isAvailable(), reason="ffmpeg is there: skipped")
-def test_missing_ffmpeg_is_told(motion: results.Results, tmp_path: Path, capsys) -> None:
+def test_missing_ffmpeg_is_reported(motion: results.Results, tmp_path: Path, capsys) -> None:
     assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.mp4")]) == 2
     assert "expected the program ffmpeg" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
@@ -508,7 +508,7 @@ def test_motion_is_a_film(motion: results.Results, tmp_path: Path) -> None:
     assert (tmp_path / "fall.mp4").read_bytes()[4:8] == b"ftyp"
 
 
-def test_unknown_ending_of_an_animation_is_told(motion, tmp_path: Path, capsys) -> None:
+def test_unknown_ending_of_an_animation_is_reported(motion, tmp_path: Path, capsys) -> None:
     assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.avi")]) == 2
     assert "expected a file .gif, .mp4 or .png, got 'fall.avi'" in capsys.readouterr().err
 
@@ -534,7 +534,7 @@ def test_results_that_do_not_move_are_not_animated(arches, capsys) -> None:
 @pytest.mark.parametrize(
     "keys", ["shape = 'pointed', span = 6, rise = 4, thickness", "half_angle_deg = 80, thickness_ratio"]
 )
-def test_titles_of_arches_that_stand_tell_thickness_over_critical(tmp_path: Path, keys: str) -> None:
+def test_titles_of_arches_that_stand_say_thickness_over_critical(tmp_path: Path, keys: str) -> None:
     """Pushed a little, so that no table of exact values has the critical thickness."""
     name, push = keys.rpartition(" ")[2], "&load horizontal_coefficient = 0.02 /\n"
     text = f"&arch {keys} = 0.5, voussoirs = 15 /\n&joint friction_deg = 40 /\n" + push

@@ -127,7 +127,7 @@ def test_search_finds_pages_that_are_opened_as_files(site: Path, tmp_path: Path,
     assert "CONSOLE" not in done.stderr  # no script fails
 
 
-def test_missing_packages_are_told(tmp_path: Path) -> None:
+def test_missing_packages_are_reported(tmp_path: Path) -> None:
     script = ROOT / "docs/site/build_site.py"
     done = subprocess.run([sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True)
     assert done.returncode == 2

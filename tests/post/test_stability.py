@@ -154,7 +154,7 @@ def test_an_arch_is_judged_with_its_lean_plan_too(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
-def test_scenes_are_run_and_told(tmp_path, capsys):
+def test_scenes_are_run_and_reported(tmp_path, capsys):
     only = "large angles: 145 deg, friction 6"
     assert main(["stability", "--out", str(tmp_path), "--only", only, "--random", "0"]) == 0
     last = capsys.readouterr().out.splitlines()[-1]

@@ -194,7 +194,7 @@ def test_discrete_arches():
     assert held == pytest.approx(0.10742413832037052, rel=1e-14)
 
 
-def test_discrete_solution_tells_the_hinges():
+def test_discrete_solution_says_the_hinges():
     solution = theory.discrete_solution(36, alpha=QUARTER)
     assert solution.status == "found"
     assert np.degrees(solution.intrados_hinges) == pytest.approx([55.0])

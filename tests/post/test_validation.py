@@ -127,7 +127,7 @@ def test_command_writes_table_and_page(tmp_path: Path, capsys) -> None:
     assert "| `stack` (weight above) | normal force of joint 1 [N/m] | 250000 | 250000 |" in page
 
 
-def test_miss_is_told_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys) -> None:
+def test_miss_is_reported_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys) -> None:
     (scene,) = [scene for scene in SCENES if scene.name == "column"]
     wrong = dataclasses.replace(scene.expectation.checks[0], exact=0.25)
     false_scene = dataclasses.replace(scene, expectation=Measured((wrong,)))

@@ -230,7 +230,7 @@ def test_a_block_tips_about_its_only_corner_by_a_force_in_the_cone(tmp_path: Pat
     assert main(["verify", str(folder)]) == 0
 
 
-def test_a_limit_that_the_loading_path_all_but_reaches_tells_forces_that_carry_it(tmp_path: Path) -> None:
+def test_a_limit_that_the_loading_path_all_but_reaches_says_forces_that_carry_it(tmp_path: Path) -> None:
     """The path ends one part in ten millions below the limit, whose load is a thousand times a block's weight."""
     blocks, friction = random_assembly(95)
     head = HEAD + f"&material unit_weight = 1 /\n&joint friction_deg = {friction!r} /\n"
@@ -307,7 +307,7 @@ def test_a_changed_number_is_found_whatever_a_proof_leaves_free(tmp_path: Path, 
     assert main(["verify", str(folder), "--quiet"]) == 0
 
 
-def test_tables_that_were_written_again_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_tables_that_were_written_again_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = run_deck(tmp_path, DECKS["a lune that falls"])
     table = folder / "proof_motion.csv"
     text = table.read_text()

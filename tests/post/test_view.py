@@ -26,7 +26,7 @@ def test_a_point_belongs_to_the_block_that_it_lies_in_else_to_the_nearest() -> N
     assert block_at(shapes, np.array((2.1, 2.1))) == 2
 
 
-def test_what_is_told_of_a_block_is_how_far_it_goes_in_the_picture(tmp_path: Path) -> None:
+def test_what_is_said_of_a_block_is_how_far_it_goes_in_the_picture(tmp_path: Path) -> None:
     (tmp_path / "a.nml").write_text(
         "&arch voussoirs = 12 /\n&joint friction_deg = 60.0 /\n&search parameter = 'thickness_ratio' /\n"
     )

@@ -70,7 +70,7 @@ def test_front_never_runs_backwards_and_nothing_beats_it():
     assert row == f"| arch | {RIGID} | 1e-09 | 500 ms | 500 ms | 3e+03 ms | 3e+03 ms |"
 
 
-def test_legend_tells_the_best_answer_and_when_it_is_first_had():
+def test_legend_says_the_best_answer_and_when_it_is_first_had():
     assert answer_words("a", [point(1e-3, 0.01), point(2e-15, 0.02), point(1e-16, 3.0)]) == "a: all digits in 20 ms"
     assert answer_words("a", [point(0.0732, 2.34), point(0.1, 1e-3)]) == "a: 7.3 % in 2.3 s"
     assert answer_words("a", [point(2e-8, 4.2e-5)]) == "a: $2\\cdot10^{-8}$ in 0.042 ms"
@@ -169,7 +169,7 @@ def test_race_alone_writes_no_diagram(tmp_path, capsys):
 
 
 @needs_dda
-def test_what_the_plan_saves_is_told_and_the_answer_stays(tmp_path, capsys):
+def test_what_the_plan_saves_is_reported_and_the_answer_stays(tmp_path, capsys):
     words = ["work-precision", "--plan", "--voussoirs", "12", "--repeats", "2", "--out"]
     assert main([*words, str(tmp_path)]) == 0
     printed = capsys.readouterr().out
