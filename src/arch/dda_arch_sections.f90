@@ -56,7 +56,7 @@ contains
    end subroutine place_sections
 
    !> Add sections up to a joint, so many that no chord spans too large an angle
-   pure subroutine add_chords(form, curve, from, to, at, is_joint)
+   pure subroutine add_chords(form, curve, from, to, length, is_joint)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
       !> Length where they begin, a section already [m]
@@ -64,7 +64,7 @@ contains
       !> Length of the joint [m]
       real(wp), intent(in) :: to
       !> Receives their lengths: (n) [m]
-      real(wp), allocatable, intent(inout) :: at(:)
+      real(wp), allocatable, intent(inout) :: length(:)
       !> Receives that the last is a joint: (n)
       logical, allocatable, intent(inout) :: is_joint(:)
       type(station_t) :: first, last
@@ -77,7 +77,7 @@ contains
          n = max(1, ceiling(abs(atan2(cross(first%along, last%along), &
             & dot_product(first%along, last%along)))/(degree*form%facet_deg) - same))
       end if
-      at = [at, (from + (to - from)*real(i, wp)/real(n, wp), i=1, n - 1), to]
+      length = [length, (from + (to - from)*real(i, wp)/real(n, wp), i=1, n - 1), to]
       is_joint = [is_joint, (.false., i=1, n - 1), .true.]
    end subroutine add_chords
 
