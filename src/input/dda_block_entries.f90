@@ -13,6 +13,8 @@ submodule (dda_read_blocks:dda_block_points) dda_block_entries
 
    !> Points nearer than this share of the block's size are one
    real(wp), parameter :: touching = 1.0e-8_wp
+   !> Numbers that are not negative
+   real(wp), parameter :: from_zero(2) = [0.0_wp, huge(1.0_wp)]
 
 contains
 
@@ -59,8 +61,8 @@ contains
       type(bar_t), intent(inout) :: bar
       type(error_t), allocatable, intent(out) :: error
       type(key_t), parameter :: key(6) = [key_t(name="stiffness", above=0.0_wp), &
-         & key_t(name="ea", above=0.0_wp), key_t(name="strength", at_least=0.0_wp), &
-         & key_t(name="prestress", at_least=0.0_wp), key_t(name="slack", kind=key_kind%flag), &
+         & key_t(name="ea", above=0.0_wp), key_t(name="strength", within=from_zero), &
+         & key_t(name="prestress", within=from_zero), key_t(name="slack", kind=key_kind%flag), &
          & key_t(name="breaks", kind=key_kind%flag)]
       logical :: given(size(key))
       real(wp) :: value(4)
@@ -85,8 +87,8 @@ contains
 
    !> Take in water
    module procedure take_water
-      type(key_t), parameter :: key(2) = [key_t(name="unit_weight", at_least=0.0_wp), &
-         & key_t(name="factor", at_least=0.0_wp, at_most=1.0_wp)]
+      type(key_t), parameter :: key(2) = [key_t(name="unit_weight", within=from_zero), &
+         & key_t(name="factor", within=[0.0_wp, 1.0_wp])]
       type(water_t) :: water
       type(water_t), allocatable :: longer(:)
       real(wp) :: place(entry%head%n), value(2)

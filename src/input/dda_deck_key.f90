@@ -42,13 +42,11 @@ module dda_deck_key
       character(len=24) :: default = ""
       !> What happens without the key where it has no default
       character(len=56) :: without = ""
-      !> Smallest value that is allowed
-      real(wp) :: at_least = -huge(1.0_wp)
-      !> Largest value that is allowed
-      real(wp) :: at_most = huge(1.0_wp)
-      !> Bound that the value must exceed
+      !> Smallest and largest value that is allowed: (2)
+      real(wp) :: within(2) = [-huge(1.0_wp), huge(1.0_wp)]
+      !> Bound of these that the value must exceed
       real(wp) :: above = -huge(1.0_wp)
-      !> Bound that the value must stay below
+      !> Bound of these that the value must stay below
       real(wp) :: below = huge(1.0_wp)
       !> Words that are allowed, separated by blanks
       character(len=72) :: words = ""
@@ -78,7 +76,7 @@ contains
       type(key_t), intent(in) :: key
       real(wp), intent(in) :: number  !! The number in the unit of the key
 
-      in_range = number >= key%at_least .and. number <= key%at_most .and. number > key%above &
+      in_range = number >= key%within(1) .and. number <= key%within(2) .and. number > key%above &
          & .and. number < key%below
       if (in_range .and. key%kind == key_kind%whole) &
          & in_range = .not. abs(number - anint(number)) > 0.0_wp

@@ -56,11 +56,14 @@ contains
 
       text = ""
       comma = ""
-      if (key%at_least > -none) text = " from "//bound_text(key%at_least)
+      if (key%within(1) > -none) text = " from "//bound_text(key%within(1))
       if (key%above > -none) text = " above "//bound_text(key%above)
       if (len(text) > 0) comma = ","
-      if (key%at_most < none) text = text//" to "//bound_text(key%at_most)
-      if (key%below < none) text = text//comma//" below "//bound_text(key%below)
+      if (key%below < none) then
+         text = text//comma//" below "//bound_text(key%below)
+      else if (key%within(2) < none) then
+         text = text//" to "//bound_text(key%within(2))
+      end if
    end function range_text
 
    !> A bound of a range; a one with many zeros as a power of ten

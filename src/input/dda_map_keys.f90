@@ -33,171 +33,162 @@ module dda_map_keys
 
    !> Keys of &lines and &outline
    type(key_t), parameter :: outline_keys(*) = [ &
-      key_t(group="lines", name="title", kind=key_kind%text, default="''", &
+      key_t("lines", "title", kind=key_kind%text, default="''", &
             meaning="One line that says what the map is about."), &
-      key_t(group="lines", name="seed", kind=key_kind%whole, default="1", at_least=0.0_wp, &
-            at_most=1.0e8_wp, &
-            meaning="What chooses all random numbers; the same seed, the same "// &
-            "lines."), &
-      key_t(group="lines", name="edge_node_ratio", default="0.001", at_least=0.0_wp, &
-            at_most=0.5_wp, meaning="Shi's e00: nodes closer than this, times the size of the "// &
-            "model, become one."), &
-      key_t(group="lines", name="form", kind=key_kind%word, default="'plain'", &
-            words="plain ddaml", meaning="Form of the file."), &
-      key_t(group="outline", name="left", unit="m", without="x and y", at_least=-far, at_most=far, &
+      key_t("lines", "seed", kind=key_kind%whole, default="1", within=[0.0_wp, 1.0e8_wp], &
+            meaning="What chooses all random numbers; the same seed, the same lines."), &
+      key_t("lines", "edge_node_ratio", default="0.001", within=[0.0_wp, 0.5_wp], &
+            meaning="Shi's e00: nodes closer than this, times the size of the model, become "// &
+            "one."), &
+      key_t("lines", "form", kind=key_kind%word, default="'plain'", words="plain ddaml", &
+            meaning="Form of the file."), &
+      key_t("outline", "left", unit="m", without="x and y", within=[-far, far], &
             meaning="Left side of a rectangle."), &
-      key_t(group="outline", name="right", unit="m", without="x and y", at_least=-far, &
-            at_most=far, meaning="Right side of it."), &
-      key_t(group="outline", name="bottom", unit="m", without="x and y", at_least=-far, &
-            at_most=far, meaning="Its bottom."), &
-      key_t(group="outline", name="top", unit="m", without="&slope", at_least=-far, at_most=far, &
+      key_t("outline", "right", unit="m", without="x and y", within=[-far, far], &
+            meaning="Right side of it."), &
+      key_t("outline", "bottom", unit="m", without="x and y", within=[-far, far], &
+            meaning="Its bottom."), &
+      key_t("outline", "top", unit="m", without="&slope", within=[-far, far], &
             meaning="Its top."), &
-      key_t(group="outline", name="x", kind=key_kind%numbers, unit="m", without="a rectangle", &
-            at_least=-far, at_most=far, meaning="Corners of a polygon."), &
-      key_t(group="outline", name="y", kind=key_kind%numbers, unit="m", without="a rectangle", &
-            at_least=-far, at_most=far, meaning="Corners of a polygon."), &
-      key_t(group="outline", name="fixed", kind=key_kind%texts, without="none", &
+      key_t("outline", "x", kind=key_kind%numbers, unit="m", without="a rectangle", &
+            within=[-far, far], meaning="Corners of a polygon."), &
+      key_t("outline", "y", kind=key_kind%numbers, unit="m", without="a rectangle", &
+            within=[-far, far], meaning="Corners of a polygon."), &
+      key_t("outline", "fixed", kind=key_kind%texts, without="none", &
             meaning="Sides whose blocks are held: 'left', 'right', 'bottom'."), &
-      key_t(group="outline", name="hold_depth", unit="m", &
-            without="0.2 edge_node_ratio of the outline's size", above=0.0_wp, at_most=far, &
-            meaning="How far inside the side the line runs that holds them."), &
-      key_t(group="outline", name="material", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1000.0_wp, meaning="Joint material of its edges.")]
+      key_t("outline", "hold_depth", unit="m", &
+            without="0.2 edge_node_ratio of the outline's size", within=[0.0_wp, far], &
+            above=0.0_wp, meaning="How far inside the side the line runs that holds them."), &
+      key_t("outline", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
+            meaning="Joint material of its edges.")]
 
    !> Keys of &slope and &opening
    type(key_t), parameter :: surface_keys(*) = [ &
-      key_t(group="slope", name="x", kind=key_kind%numbers, unit="m", without="benches", &
-            at_least=-far, at_most=far, meaning="Points of the surface from left to right."), &
-      key_t(group="slope", name="y", kind=key_kind%numbers, unit="m", without="benches", &
-            at_least=-far, at_most=far, meaning="Points of the surface from left to right."), &
-      key_t(group="slope", name="foot_x", unit="m", without="x and y", at_least=-far, at_most=far, &
+      key_t("slope", "x", kind=key_kind%numbers, unit="m", without="benches", &
+            within=[-far, far], meaning="Points of the surface from left to right."), &
+      key_t("slope", "y", kind=key_kind%numbers, unit="m", without="benches", &
+            within=[-far, far], meaning="Points of the surface from left to right."), &
+      key_t("slope", "foot_x", unit="m", without="x and y", within=[-far, far], &
             meaning="Foot of a slope in benches that rises to the right."), &
-      key_t(group="slope", name="foot_y", unit="m", without="x and y", at_least=-far, at_most=far, &
+      key_t("slope", "foot_y", unit="m", without="x and y", within=[-far, far], &
             meaning="Foot of that slope."), &
-      key_t(group="slope", name="face_deg", unit="deg", default="60.0", above=0.0_wp, &
-            at_most=90.0_wp, meaning="Angle of each face."), &
-      key_t(group="slope", name="bench_height", unit="m", default="10.0", at_least=near, &
-            at_most=far, meaning="Height of each face."), &
-      key_t(group="slope", name="bench_width", unit="m", default="0.0", at_least=0.0_wp, &
-            at_most=far, meaning="Width of the level part between two faces."), &
-      key_t(group="slope", name="benches", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1000.0_wp, meaning="Number of faces."), &
-      key_t(group="opening", name="shape", kind=key_kind%word, default="'circle'", &
+      key_t("slope", "face_deg", unit="deg", default="60.0", within=[0.0_wp, 90.0_wp], &
+            above=0.0_wp, meaning="Angle of each face."), &
+      key_t("slope", "bench_height", unit="m", default="10.0", within=[near, far], &
+            meaning="Height of each face."), &
+      key_t("slope", "bench_width", unit="m", default="0.0", within=[0.0_wp, far], &
+            meaning="Width of the level part between two faces."), &
+      key_t("slope", "benches", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
+            meaning="Number of faces."), &
+      key_t("opening", "shape", kind=key_kind%word, default="'circle'", &
             words="circle ellipse arch horseshoe polygon", &
-            meaning="Its shape: 'arch' is half an "// &
-            ""// &
-            "ellipse on walls, 'horseshoe' a half circle on drawn-in walls."), &
-      key_t(group="opening", name="x", unit="m", default="0.0", at_least=-far, at_most=far, &
+            meaning="Its shape: 'arch' is half an ellipse on walls, 'horseshoe' a half circle "// &
+            "on drawn-in walls."), &
+      key_t("opening", "x", unit="m", default="0.0", within=[-far, far], &
             meaning="Its centre; of 'arch' and 'horseshoe' the middle of the floor."), &
-      key_t(group="opening", name="y", unit="m", default="0.0", at_least=-far, at_most=far, &
+      key_t("opening", "y", unit="m", default="0.0", within=[-far, far], &
             meaning="Its centre; of 'arch' and 'horseshoe' the middle of the floor."), &
-      key_t(group="opening", name="width", unit="m", default="5.0", at_least=near, at_most=far, &
+      key_t("opening", "width", unit="m", default="5.0", within=[near, far], &
             meaning="Its width: the diameter, twice the half axis, the distance of the walls."), &
-      key_t(group="opening", name="height", unit="m", without="the width", at_least=near, &
-            at_most=far, meaning="Height of an ellipse."), &
-      key_t(group="opening", name="wall", unit="m", default="0.0", at_least=0.0_wp, at_most=far, &
+      key_t("opening", "height", unit="m", without="the width", within=[near, far], &
+            meaning="Height of an ellipse."), &
+      key_t("opening", "wall", unit="m", default="0.0", within=[0.0_wp, far], &
             meaning="Height of the walls, up to where the arch begins."), &
-      key_t(group="opening", name="rise", unit="m", without="half the width", at_least=near, &
-            at_most=far, meaning="Height of the arch above the walls."), &
-      key_t(group="opening", name="sides", kind=key_kind%whole, default="24", at_least=3.0_wp, &
-            at_most=10000.0_wp, &
-            meaning="Edges of a circle or an ellipse, or of the arch above the "// &
-            "walls."), &
-      key_t(group="opening", name="corner_x", kind=key_kind%numbers, unit="m", &
-            without="another shape", at_least=-far, at_most=far, meaning="Corners of a polygon."), &
-      key_t(group="opening", name="corner_y", kind=key_kind%numbers, unit="m", &
-            without="another shape", at_least=-far, at_most=far, meaning="Corners of a polygon."), &
-      key_t(group="opening", name="material", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1000.0_wp, meaning="Joint material of its edges."), &
-      key_t(group="opening", name="excavated", kind=key_kind%flag, default=".true.", &
+      key_t("opening", "rise", unit="m", without="half the width", within=[near, far], &
+            meaning="Height of the arch above the walls."), &
+      key_t("opening", "sides", kind=key_kind%whole, default="24", within=[3.0_wp, 10000.0_wp], &
+            meaning="Edges of a circle or an ellipse, or of the arch above the walls."), &
+      key_t("opening", "corner_x", kind=key_kind%numbers, unit="m", without="another shape", &
+            within=[-far, far], meaning="Corners of a polygon."), &
+      key_t("opening", "corner_y", kind=key_kind%numbers, unit="m", without="another shape", &
+            within=[-far, far], meaning="Corners of a polygon."), &
+      key_t("opening", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
+            meaning="Joint material of its edges."), &
+      key_t("opening", "excavated", kind=key_kind%flag, default=".true.", &
             meaning="Whether its rock is taken out; joints run through one whose rock is not.")]
 
    !> Keys of &joint_set
    type(key_t), parameter :: set_keys(*) = [ &
-      key_t(group="joint_set", name="dip_deg", unit="deg", default="0.0", at_least=-180.0_wp, &
-            at_most=180.0_wp, meaning="Angle of the joints, anticlockwise from x."), &
-      key_t(group="joint_set", name="dip_spread_deg", unit="deg", default="0.0", at_least=0.0_wp, &
-            at_most=90.0_wp, meaning="Largest deviation of a joint from it, evenly spread."), &
-      key_t(group="joint_set", name="spacing", unit="m", default="1.0", at_least=near, &
-            at_most=far, &
+      key_t("joint_set", "dip_deg", unit="deg", default="0.0", within=[-180.0_wp, 180.0_wp], &
+            meaning="Angle of the joints, anticlockwise from x."), &
+      key_t("joint_set", "dip_spread_deg", unit="deg", default="0.0", within=[0.0_wp, 90.0_wp], &
+            meaning="Largest deviation of a joint from it, evenly spread."), &
+      key_t("joint_set", "spacing", unit="m", default="1.0", within=[near, far], &
             meaning="Mean distance of neighbours, across the joints."), &
-      key_t(group="joint_set", name="spacing_law", kind=key_kind%word, default="'constant'", &
-            words=laws, meaning=law_meaning), &
-      key_t(group="joint_set", name="spacing_randomness", default="0.0", at_least=0.0_wp, &
-            at_most=1.0_wp, meaning=randomness_meaning), &
-      key_t(group="joint_set", name="trace", unit="m", without="joints without end", &
-            at_least=near, at_most=far, meaning="Mean length of a trace."), &
-      key_t(group="joint_set", name="trace_law", kind=key_kind%word, default="'constant'", &
-            words=laws, meaning=law_meaning), &
-      key_t(group="joint_set", name="trace_randomness", default="0.0", at_least=0.0_wp, &
-            at_most=1.0_wp, meaning=randomness_meaning), &
-      key_t(group="joint_set", name="bridge", unit="m", default="0.0", at_least=0.0_wp, &
-            at_most=far, meaning="Mean length of the rock between two traces of a joint."), &
-      key_t(group="joint_set", name="bridge_law", kind=key_kind%word, default="'constant'", &
-            words=laws, meaning=law_meaning), &
-      key_t(group="joint_set", name="bridge_randomness", default="0.0", at_least=0.0_wp, &
-            at_most=1.0_wp, meaning=randomness_meaning), &
-      key_t(group="joint_set", name="material", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1000.0_wp, meaning="Joint material."), &
-      key_t(group="joint_set", name="seed", kind=key_kind%whole, without="the number of the set", &
-            at_least=0.0_wp, at_most=1000.0_wp, &
-            meaning="Seed of its random numbers."), &
-      key_t(group="joint_set", name="through_x", unit="m", without="a random place", &
-            at_least=-far, at_most=far, meaning="A point that a joint of the set runs through."), &
-      key_t(group="joint_set", name="through_y", unit="m", without="a random place", &
-            at_least=-far, at_most=far, meaning="A point that a joint of the set runs through."), &
-      key_t(group="joint_set", name="region_x", kind=key_kind%numbers, unit="m", &
-            without="the whole outline", at_least=-far, at_most=far, &
+      key_t("joint_set", "spacing_law", kind=key_kind%word, default="'constant'", words=laws, &
+            meaning=law_meaning), &
+      key_t("joint_set", "spacing_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
+            meaning=randomness_meaning), &
+      key_t("joint_set", "trace", unit="m", without="joints without end", within=[near, far], &
+            meaning="Mean length of a trace."), &
+      key_t("joint_set", "trace_law", kind=key_kind%word, default="'constant'", words=laws, &
+            meaning=law_meaning), &
+      key_t("joint_set", "trace_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
+            meaning=randomness_meaning), &
+      key_t("joint_set", "bridge", unit="m", default="0.0", within=[0.0_wp, far], &
+            meaning="Mean length of the rock between two traces of a joint."), &
+      key_t("joint_set", "bridge_law", kind=key_kind%word, default="'constant'", words=laws, &
+            meaning=law_meaning), &
+      key_t("joint_set", "bridge_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
+            meaning=randomness_meaning), &
+      key_t("joint_set", "material", kind=key_kind%whole, default="1", &
+            within=[1.0_wp, 1000.0_wp], meaning="Joint material."), &
+      key_t("joint_set", "seed", kind=key_kind%whole, without="the number of the set", &
+            within=[0.0_wp, 1000.0_wp], meaning="Seed of its random numbers."), &
+      key_t("joint_set", "through_x", unit="m", without="a random place", within=[-far, far], &
+            meaning="A point that a joint of the set runs through."), &
+      key_t("joint_set", "through_y", unit="m", without="a random place", within=[-far, far], &
+            meaning="A point that a joint of the set runs through."), &
+      key_t("joint_set", "region_x", kind=key_kind%numbers, unit="m", &
+            without="the whole outline", within=[-far, far], &
             meaning="Corners of the part of the outline that has the set."), &
-      key_t(group="joint_set", name="region_y", kind=key_kind%numbers, unit="m", &
-            without="the whole outline", at_least=-far, at_most=far, &
+      key_t("joint_set", "region_y", kind=key_kind%numbers, unit="m", &
+            without="the whole outline", within=[-far, far], &
             meaning="Corners of the part of the outline that has the set.")]
 
    !> Keys of &line, &point and &bolts
    type(key_t), parameter :: hand_keys(*) = [ &
-      key_t(group="line", name="role", kind=key_kind%word, default="'joint'", &
-            words="joint material fix bolt", meaning="A joint, a line that gives blocks their "// &
-            "material or that holds them, or a bolt."), &
-      key_t(group="line", name="x", kind=key_kind%numbers, unit="m", without="an error", &
-            at_least=-far, at_most=far, meaning="Points of the line, two or more."), &
-      key_t(group="line", name="y", kind=key_kind%numbers, unit="m", without="an error", &
-            at_least=-far, at_most=far, meaning="Points of the line, two or more."), &
-      key_t(group="line", name="material", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1000.0_wp, meaning="Joint material, or material of the blocks."), &
-      key_t(group="line", name="stiffness", unit="N/m", default="1e8", above=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Force of a bolt over its elongation."), &
-      key_t(group="line", name="strength", unit="N", default="1e30", at_least=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Largest force of a bolt."), &
-      key_t(group="line", name="prestress", unit="N", default="0.0", at_least=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Force of a bolt at the beginning."), &
-      key_t(group="point", name="role", kind=key_kind%word, default="'measure'", &
+      key_t("line", "role", kind=key_kind%word, default="'joint'", &
+            words="joint material fix bolt", &
+            meaning="A joint, a line that gives blocks their material or that holds them, or "// &
+            "a bolt."), &
+      key_t("line", "x", kind=key_kind%numbers, unit="m", without="an error", &
+            within=[-far, far], meaning="Points of the line, two or more."), &
+      key_t("line", "y", kind=key_kind%numbers, unit="m", without="an error", &
+            within=[-far, far], meaning="Points of the line, two or more."), &
+      key_t("line", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
+            meaning="Joint material, or material of the blocks."), &
+      key_t("line", "stiffness", unit="N/m", default="1e8", within=[0.0_wp, 1.0e30_wp], &
+            above=0.0_wp, meaning="Force of a bolt over its elongation."), &
+      key_t("line", "strength", unit="N", default="1e30", within=[0.0_wp, 1.0e30_wp], &
+            meaning="Largest force of a bolt."), &
+      key_t("line", "prestress", unit="N", default="0.0", within=[0.0_wp, 1.0e30_wp], &
+            meaning="Force of a bolt at the beginning."), &
+      key_t("point", "role", kind=key_kind%word, default="'measure'", &
             words="measure fix load hole", &
-            meaning="What is done there: a hole takes its block "// &
-            "out."), &
-      key_t(group="point", name="x", kind=key_kind%numbers, unit="m", without="an error", &
-            at_least=-far, at_most=far, meaning="The points."), &
-      key_t(group="point", name="y", kind=key_kind%numbers, unit="m", without="an error", &
-            at_least=-far, at_most=far, meaning="The points."), &
-      key_t(group="bolts", name="opening", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1.0e5_wp, meaning="Number of the opening that they stand around."), &
-      key_t(group="bolts", name="number", kind=key_kind%whole, default="1", at_least=1.0_wp, &
-            at_most=1.0e5_wp, meaning="How many there are."), &
-      key_t(group="bolts", name="from_deg", unit="deg", default="0.0", at_least=-360.0_wp, &
-            at_most=360.0_wp, &
-            meaning="Direction of the first, seen from the middle of the "// &
-            "opening."), &
-      key_t(group="bolts", name="to_deg", unit="deg", default="180.0", at_least=-360.0_wp, &
-            at_most=360.0_wp, meaning="Direction of the last; the others lie evenly between."), &
-      key_t(group="bolts", name="length", unit="m", default="3.0", at_least=near, at_most=far, &
+            meaning="What is done there: a hole takes its block out."), &
+      key_t("point", "x", kind=key_kind%numbers, unit="m", without="an error", &
+            within=[-far, far], meaning="The points."), &
+      key_t("point", "y", kind=key_kind%numbers, unit="m", without="an error", &
+            within=[-far, far], meaning="The points."), &
+      key_t("bolts", "opening", kind=key_kind%whole, default="1", within=[1.0_wp, 1.0e5_wp], &
+            meaning="Number of the opening that they stand around."), &
+      key_t("bolts", "number", kind=key_kind%whole, default="1", within=[1.0_wp, 1.0e5_wp], &
+            meaning="How many there are."), &
+      key_t("bolts", "from_deg", unit="deg", default="0.0", within=[-360.0_wp, 360.0_wp], &
+            meaning="Direction of the first, seen from the middle of the opening."), &
+      key_t("bolts", "to_deg", unit="deg", default="180.0", within=[-360.0_wp, 360.0_wp], &
+            meaning="Direction of the last; the others lie evenly between."), &
+      key_t("bolts", "length", unit="m", default="3.0", within=[near, far], &
             meaning="Length of each."), &
-      key_t(group="bolts", name="inset", unit="m", default="0.05", at_least=near, at_most=far, &
+      key_t("bolts", "inset", unit="m", default="0.05", within=[near, far], &
             meaning="How deep in the rock each begins."), &
-      key_t(group="bolts", name="stiffness", unit="N/m", default="1e8", above=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Force of a bolt over its elongation."), &
-      key_t(group="bolts", name="strength", unit="N", default="1e30", at_least=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Largest force of a bolt."), &
-      key_t(group="bolts", name="prestress", unit="N", default="0.0", at_least=0.0_wp, &
-            at_most=1.0e30_wp, meaning="Force of a bolt at the beginning.")]
+      key_t("bolts", "stiffness", unit="N/m", default="1e8", within=[0.0_wp, 1.0e30_wp], &
+            above=0.0_wp, meaning="Force of a bolt over its elongation."), &
+      key_t("bolts", "strength", unit="N", default="1e30", within=[0.0_wp, 1.0e30_wp], &
+            meaning="Largest force of a bolt."), &
+      key_t("bolts", "prestress", unit="N", default="0.0", within=[0.0_wp, 1.0e30_wp], &
+            meaning="Force of a bolt at the beginning.")]
 
    !> All keys
    type(key_t), parameter :: map_key(*) = [outline_keys, surface_keys, set_keys, hand_keys]

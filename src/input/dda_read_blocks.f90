@@ -265,8 +265,8 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(key_t), parameter :: key(4) = [key_t(name="fixed", kind=key_kind%flag), &
-         & key_t(name="material", kind=key_kind%whole, at_least=1.0_wp, &
-         & at_most=real(most_materials, wp)), key_t(name="velocity", kind=key_kind%numbers), &
+         & key_t(name="material", kind=key_kind%whole, &
+         & within=real([1, most_materials], wp)), key_t(name="velocity", kind=key_kind%numbers), &
          & key_t(name="stress", kind=key_kind%numbers)]
       real(wp) :: value(7)
       logical :: given(4)

@@ -11,11 +11,11 @@ DOC = (ROOT / "docs/input.md").read_text(encoding="utf-8")
 
 def registry():
     """Entries of the registry: group, name, unit and default as text."""
-    for entry in REGISTRY.split("key_t(group=")[1:]:
+    for entry in REGISTRY.split("key_t(")[1:]:
         def field(name, text=entry):
             match = re.search(rf'\b{name}="([^"]*)"', text)
             return match[1] if match else ""
-        yield re.match(r'"(\w+)"', entry)[1], field("name"), field("unit"), field("default")
+        yield *re.match(r'"(\w+)", "(\w+)"', entry).groups(), field("unit"), field("default")
 
 
 def documented():

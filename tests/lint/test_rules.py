@@ -177,7 +177,7 @@ def test_keys_are_named_in_the_order_of_the_registry(names: str, registry: tuple
               for word in re.findall(r"[a-z]\w+", line)] for enum in enums]
     text = "".join((folder / f"{name}.f90").read_text(encoding="utf-8") for name in registry)
     groups = re.findall(r'group_t\("(\w+)"', text)
-    keys = re.findall(r'key_t\(group="(\w+)", *name="(\w+)"', text)
+    keys = re.findall(r'key_t\("(\w+)", "(\w+)"', text)
     assert named[0] == [f"{group}_{key}" for group in groups for other, key in keys if other == group]
     assert named[1:] in ([], [[f"{group}_group" for group in groups]])
 
