@@ -56,7 +56,7 @@ contains
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: trial
-      integer :: key
+      integer :: from, key
 
       call check_models(deck, error)
       if (allocated(error)) return
@@ -68,12 +68,13 @@ contains
          return
       end if
       do key = search_low, search_high
-         if (.not. deck%value(key)%given) cycle
+         ! where an end is not given, the deck's own value
+         from = merge(key, deck%searched%key, deck%value(key)%given)
          trial = deck
-         call put_number(trial, deck%searched, deck%value(key)%number, place_of(deck, key), error)
+         call put_number(trial, deck%searched, deck%value(from)%number, place_of(deck, key), error)
          if (.not. allocated(error)) call check_form(trial, error)
          if (.not. allocated(error)) cycle
-         error%message = full_name(deck_key(key))//": "//error%message
+         if (from == key) error%message = full_name(deck_key(key))//": "//error%message
          return
       end do
    end subroutine check_one

@@ -152,6 +152,8 @@ def test_an_arch_that_cannot_be_is_refused_by_its_line(tmp_path: Path, arch: str
 @pytest.mark.parametrize(
     ("deck", "words"),
     [
+        ("&arch rise = 3 /\n&search parameter = 'thickness_ratio' /\n", "expected a span, got none"),
+        ("&arch shape = 'flat', lune_deg = 5 /\n&search parameter = 'thickness_ratio' /\n", "expected a span"),
         ("&arch shape = 'flat', span = 2, thickness = 0.3 /\n&analysis mode = 'limerick' /\n", "limerick"),
         ("&arch radius = 1, lune_deg = 5 /\n&analysis geometry = 'current' /\n", "static run"),
         ("&arch radius = 1, lune_deg = 5 /\n&load horizontal_coefficient = 0.1 /\n", "downwards alone"),
