@@ -5,7 +5,7 @@ module dda_export
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group, key_error, source_of
-   use dda_deck_sweep, only : case_deck, n_cases
+   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_line, error_t
    use dda_key_names, only : scene_kind, search_group
    use dda_limerick_analysis, only : limerick_analysis_t
@@ -79,7 +79,7 @@ contains
       do number = 1, n_cases(deck)
          stem = folder//"/"//deck_stem(deck%file)
          if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
-         call case_deck(deck, number, case_of_deck, error)
+         call turn_to_case(deck, number, case_of_deck, error)
          if (.not. allocated(error)) then
             if (source_of(case_of_deck) /= "arch") then
                call export_blocks(command, stem, case_of_deck, status)

@@ -3,7 +3,7 @@ submodule (dda_check) dda_print_plan
    use dda_boundary, only : boundary_t
    use dda_deck, only : geometry_of, has_group, keeps_velocities, source_of
    use dda_deck_scene, only : deck_scene
-   use dda_deck_sweep, only : case_deck, n_cases
+   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_key_names, only : analysis_mode, output_condition, output_energy, output_frames, &
       & output_joints, output_restart, output_vtu, scene_kind, scene_title, search_group, &
       & search_parameter
@@ -28,7 +28,7 @@ contains
       logical :: arch
 
       arch = source_of(deck) == "arch"
-      call case_deck(deck, 1, first, error)
+      call turn_to_case(deck, 1, first, error)
       plan = plan_scene(first)
       if (deck%value(scene_kind)%text /= "blocks") call deck_scene(first, plan, scene)
       blocks = maxval(scene%system%equation)

@@ -1,7 +1,7 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_deck_sweep, only : few_cases, n_cases, swept_text
+   use dda_deck_sweep, only : few_cases, n_cases, swept_texts
    use dda_force_rows, only : bars_header
    use dda_deck, only : deck_t, has_group
    use dda_disk_record, only : write_disk_record
@@ -288,10 +288,11 @@ contains
       integer :: s
 
       fields = ""
-      do s = 1, size(deck%sweeps)
-         if (all(own_column /= deck%sweeps(s)%name)) &
-            & fields = fields//swept_text(deck, number, s)//","
-      end do
+      associate (texts => swept_texts(deck, number))
+         do s = 1, size(texts)
+            if (all(own_column /= deck%sweeps(s)%name)) fields = fields//trim(texts(s))//","
+         end do
+      end associate
    end function swept_fields
 
    !> Bytes of all tables but results.csv and the sizes

@@ -9,14 +9,13 @@ module dda_deck_sweep
    use dda_error, only : error_t
    use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, &
       & sweep_parameter, sweep_texts, sweep_values
-   use dda_key_value, only : deck_place_t, deck_value_t, is_numeric, number_problem, text_problem
+   use dda_key_value, only : deck_place_t, default_value, is_numeric, number_problem, text_problem
    use dda_kinds, only : wp
    use dda_text, only : lower_case, to_text
    implicit none
    private
 
-   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_text, swept_texts, max_sweeps
-   public :: few_cases
+   public :: add_sweep, few_cases, max_sweeps, n_cases, swept_texts, turn_to_case
 
    !> Most &sweep groups of a deck
    integer, parameter :: max_sweeps = 8
@@ -61,8 +60,8 @@ contains
       if (.not. allocated(error)) call check_values(deck, sweep, error)
       if (allocated(error)) return
       call append(deck%sweeps, sweep)
-      do i = 1, size(deck_key)
-         if (deck_key(i)%group == "sweep") call forget(deck%value(i))
+      do i = sweep_parameter, sweep_linked
+         deck%value(i) = default_value(deck_key(i))
       end do
    end subroutine add_sweep
 
@@ -79,16 +78,6 @@ contains
       longer(n + 1) = sweep
       call move_alloc(longer, list)
    end subroutine append
-
-   !> Put a key of &sweep back to its default, ready for the next &sweep
-   pure subroutine forget(value)
-      type(deck_value_t), intent(inout) :: value
-
-      value%given = .false.
-      value%place = deck_place_t()
-      value%flag = .false.
-      value%number = 0.0_wp
-   end subroutine forget
 
    !> Take the values of a sweep from exactly one of: values, texts, (first, last, count)
    pure subroutine take_values(deck, sweep, error)
@@ -252,19 +241,6 @@ contains
       end do
    end subroutine put_case
 
-   !> The deck of one case
-   pure subroutine case_deck(deck, number, result, error)
-      type(deck_t), intent(in) :: deck
-      integer, intent(in) :: number
-      !> The same deck with the swept values of the case
-      type(deck_t), intent(out) :: result
-      !> As in put_case
-      type(error_t), allocatable, intent(out) :: error
-
-      result = deck
-      call put_case(deck, number, result, error)
-   end subroutine case_deck
-
    !> Turn the deck of one case into that of another one of the same sweeps; the first time all of
    !> the deck is copied, and later the swept values alone
    pure subroutine turn_to_case(deck, number, result, error)
@@ -289,28 +265,17 @@ contains
       integer, intent(in) :: number
       !> One text a sweep; numbers read back as the same doubles: (n)
       character(len=word_length) :: texts(size(deck%sweeps))
-      integer :: s
-
-      do s = 1, size(deck%sweeps)
-         texts(s) = swept_text(deck, number, s)
-      end do
-   end function swept_texts
-
-   !> Value of one swept parameter in a case, as text
-   pure function swept_text(deck, number, s) result(text)
-      type(deck_t), intent(in) :: deck
-      integer, intent(in) :: number  !! Number of the case
-      integer, intent(in) :: s       !! Number of the sweep
-      character(len=:), allocatable :: text
-      integer :: position(size(deck%sweeps))
+      integer :: position(size(deck%sweeps)), s
 
       position = positions(deck, number)
-      associate (sweep => deck%sweeps(s))
-         if (size(sweep%numbers) > 0) then
-            text = to_text(sweep%numbers(position(s)))
-         else
-            text = trim(sweep%texts(position(s)))
-         end if
-      end associate
-   end function swept_text
+      do s = 1, size(deck%sweeps)
+         associate (sweep => deck%sweeps(s))
+            if (size(sweep%numbers) > 0) then
+               texts(s) = to_text(sweep%numbers(position(s)))
+            else
+               texts(s) = sweep%texts(position(s))
+            end if
+         end associate
+      end do
+   end function swept_texts
 end module dda_deck_sweep

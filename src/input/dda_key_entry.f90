@@ -98,6 +98,7 @@ contains
       type(deck_value_t), intent(inout) :: value
       !> Wrong type, wrong number of values, or a value out of range; empty if it will do
       character(len=:), allocatable, intent(out) :: problem
+      integer :: i, k
 
       call check_values(scan, first, last, keys, key, item, place, value%place, problem)
       if (len(problem) > 0) return
@@ -106,11 +107,12 @@ contains
          if (item > 0) then
             call set_number(value, keys(key), item, number_at(scan, first), problem)
          else
-            value%numbers = all_numbers(scan, first, last)
+            value%numbers = [((number_at(scan, k), i=1, scan%token(k)%count), k=first, last)]
          end if
          value%place = place
       case (key_kind%texts)
-         value%texts = all_texts(scan, first, last)
+         value%texts = [character(len=word_length) :: ((token_text(scan, k), &
+            & i=1, scan%token(k)%count), k=first, last)]
          value%place = place
       case (key_kind%number, key_kind%whole)
          call set_number(value, keys(key), 0, number_at(scan, first), problem)
@@ -233,33 +235,4 @@ contains
       call read_number(token_text(scan, i), number_at, unused)
    end function number_at
 
-   !> Numbers that tokens stand for, repeat counts written out
-   pure function all_numbers(scan, first, last) result(numbers)
-      type(deck_scan_t), intent(in) :: scan
-      integer, intent(in) :: first, last
-      real(wp), allocatable :: numbers(:)  !! The numbers: (n)
-      integer :: i, n
-
-      allocate (numbers(sum(scan%token(first:last)%count)))
-      n = 0
-      do i = first, last
-         numbers(n + 1:n + scan%token(i)%count) = number_at(scan, i)
-         n = n + scan%token(i)%count
-      end do
-   end function all_numbers
-
-   !> Words that tokens stand for, repeat counts written out
-   pure function all_texts(scan, first, last) result(texts)
-      type(deck_scan_t), intent(in) :: scan
-      integer, intent(in) :: first, last
-      character(len=word_length), allocatable :: texts(:)  !! The words: (n)
-      integer :: i, n
-
-      allocate (texts(sum(scan%token(first:last)%count)))
-      n = 0
-      do i = first, last
-         texts(n + 1:n + scan%token(i)%count) = token_text(scan, i)
-         n = n + scan%token(i)%count
-      end do
-   end function all_texts
 end module dda_key_entry
