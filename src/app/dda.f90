@@ -1,12 +1,12 @@
 !> The command dda
 program dda
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_check, only : check_decks
-   use dda_command_line, only : command_t, read_command
-   use dda_cut, only : cut_files
+   use dda_check, only : check_deck
+   use dda_command_line, only : command_t, name_of, read_command
+   use dda_cut, only : cut_file
    use dda_error, only : error_line, error_t
-   use dda_export, only : export_decks
-   use dda_lines, only : draw_lines
+   use dda_export, only : export_deck
+   use dda_lines, only : draw_map
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave, survive_file_limit, worst_status
@@ -15,7 +15,7 @@ program dda
    implicit none
    type(command_t) :: command
    type(error_t), allocatable :: error
-   integer :: status
+   integer :: i, status, status_of_file
 
    status = exit_status%success
    call keep_memory()
@@ -29,18 +29,16 @@ program dda
    select case (command%verb)
    case ("run")
       call run_decks(command, status)
-   case ("check")
-      call check_decks(command, status)
-   case ("cut")
-      call cut_files(command, status)
-   case ("lines")
-      call draw_lines(command, status)
-   case ("export")
-      call export_decks(command, status)
    case ("version")
       call print_line(command%screen, "dda "//version)
-   case default
+   case ("help")
       call print_help(command, status)
+   case default
+      do i = 1, size(command%name)
+         call take_file(name_of(command, i), status_of_file, error)
+         if (allocated(error)) write (error_unit, "(a)") error_line(error)
+         status = worst_status(status, status_of_file)
+      end do
    end select
    call close_screen(command%screen, error)
    if (allocated(error)) then
@@ -48,4 +46,25 @@ program dda
       status = worst_status(status, exit_status%not_written)
    end if
    call leave(status)
+
+contains
+
+   !> Do with a file what the command asks for
+   subroutine take_file(name, status, error)
+      character(len=*), intent(in) :: name  !! Name of the file
+      integer, intent(out) :: status        !! Exit status of this file
+      type(error_t), allocatable, intent(out) :: error
+
+      status = exit_status%bad_input
+      select case (command%verb)
+      case ("check")
+         call check_deck(command, name, status, error)
+      case ("cut")
+         call cut_file(command, name, status, error)
+      case ("lines")
+         call draw_map(command, name, status, error)
+      case ("export")
+         call export_deck(command, name, status, error)
+      end select
+   end subroutine take_file
 end program dda

@@ -1,10 +1,9 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
-   use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_command_line, only : command_t, name_of
+   use dda_command_line, only : command_t
    use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_t
    use dda_process, only : deck_stem, error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
@@ -16,7 +15,7 @@ module dda_check
    implicit none
    private
 
-   public :: check_decks
+   public :: check_deck
 
    interface
 
@@ -34,37 +33,30 @@ module dda_check
 
 contains
 
-   !> Check all decks of the command line
-   subroutine check_decks(command, status)
+   !> Check a deck
+   subroutine check_deck(command, name, status, error)
       type(command_t), intent(in) :: command
-      integer, intent(out) :: status  !! Exit status of the program
+      character(len=*), intent(in) :: name  !! Name of the deck
+      integer, intent(out) :: status        !! Exit status of this deck
+      type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
-      type(error_t), allocatable :: error
       character(len=:), allocatable :: record
-      integer :: i
 
-      status = exit_status%success
-      record = ""
       watch%shown = error_is_terminal() .and. .not. command%quiet
-      do i = 1, size(command%name)
-         call read_deck(name_of(command, i), command%setting, deck, error, watch)
-         if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
-         call end_watch(watch)
-         if (allocated(error)) then
-            write (error_unit, "(a)") error_line(error)
-            status = exit_status%bad_input
-            cycle
-         end if
-         record = record_text(deck, deck_stem(name_of(command, i)))
-         if (.not. command%quiet) then
-            call print_warnings(deck%warnings)
-            call print_plan(command%screen, name_of(command, i), deck, scene)
-         end if
-         if (command%record) call print_line(command%screen, record)
-      end do
-   end subroutine check_decks
+      call read_deck(name, command%setting, deck, error, watch)
+      if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
+      call end_watch(watch)
+      status = merge(exit_status%bad_input, exit_status%success, allocated(error))
+      if (allocated(error)) return
+      record = record_text(deck, deck_stem(name))
+      if (.not. command%quiet) then
+         call print_warnings(deck%warnings)
+         call print_plan(command%screen, name, deck, scene)
+      end if
+      if (command%record) call print_line(command%screen, record)
+   end subroutine check_deck
 
    !> The tables that a run would write, each with its first line, and its deck.record
    function record_text(deck, stem) result(text)

@@ -1,14 +1,14 @@
 !> dda cut: lines to blocks
 module dda_cut
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_command_line, only : command_t, name_of
+   use dda_command_line, only : command_t
    use dda_cut_model, only : block_vertices, cut_model_t, point_kind
    use dda_cut_report, only : cut_reason, cut_remark_t
    use dda_cutting, only : cut_blocks
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
-   use dda_process, only : exit_status, worst_status
+   use dda_process, only : exit_status
    use dda_read_limerick, only : read_geometry
    use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text
@@ -18,35 +18,22 @@ module dda_cut
    implicit none
    private
 
-   public :: cut_files, print_warnings
+   public :: cut_file, print_warnings
 
    !> Most rows of a list on the screen
    integer, parameter :: most_rows = 50
 
 contains
 
-   !> Cut all files of the command line
-   subroutine cut_files(command, status)
-      type(command_t), intent(in) :: command
-      integer, intent(out) :: status  !! Exit status of the program
-      integer :: i, file_status
-
-      status = exit_status%success
-      do i = 1, size(command%name)
-         call cut_file(command, name_of(command, i), file_status)
-         status = worst_status(status, file_status)
-      end do
-   end subroutine cut_files
-
    !> Cut one file
-   subroutine cut_file(command, name, status)
+   subroutine cut_file(command, name, status, error)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name  !! Name of the file
       integer, intent(out) :: status        !! Exit status of this file
+      type(error_t), allocatable, intent(out) :: error
       type(line_model_t) :: model
       type(cut_model_t) :: cut
       type(warnings_t) :: warnings
-      type(error_t), allocatable :: error
 
       status = exit_status%success
       call read_geometry(name, model, warnings, error)
@@ -59,7 +46,6 @@ contains
          if (allocated(command%out)) call write_cut(command%out, cut, error)
          if (allocated(error)) status = exit_status%not_written
       end if
-      if (allocated(error)) write (error_unit, "(a)") error_line(error)
    end subroutine cut_file
 
    !> Print what a reader warns of

@@ -1,17 +1,16 @@
 !> dda export: arch decks as files of the Limerick line or of blocks, blocks cut from lines as files
 !> of blocks
 module dda_export
-   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
-   use dda_command_line, only : command_t, name_of
+   use dda_command_line, only : command_t
    use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_t
    use dda_key_names, only : scene_kind, search_group
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
-   use dda_process, only : deck_stem, exit_status, make_folder, worst_status
+   use dda_process, only : deck_stem, exit_status, make_folder
    use dda_read_deck, only : read_deck
    use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text
@@ -20,86 +19,74 @@ module dda_export
    implicit none
    private
 
-   public :: export_decks
+   public :: export_deck
 
    interface
 
       !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
-      module subroutine export_blocks(command, stem, deck, status)
+      module subroutine export_blocks(command, stem, deck, status, error)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: stem  !! Name of the file without its ending
          type(deck_t), intent(in) :: deck
-         integer, intent(out) :: status        !! Exit status of the program
+         integer, intent(out) :: status        !! Exit status of the deck
+         type(error_t), allocatable, intent(out) :: error
       end subroutine export_blocks
 
    end interface
 
 contains
 
-   !> Export all decks of the command line
-   subroutine export_decks(command, status)
+   !> Export a deck
+   subroutine export_deck(command, name, status, error)
       type(command_t), intent(in) :: command
-      integer, intent(out) :: status
+      character(len=*), intent(in) :: name  !! Name of the deck
+      integer, intent(out) :: status        !! Exit status of this deck
+      type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
-      type(error_t), allocatable :: error
-      integer :: i, deck_status
 
-      status = exit_status%success
-      do i = 1, size(command%name)
-         call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error)) call cut_lines(deck, error)
-         if (.not. allocated(error) .and. deck%value(scene_kind)%text == "blocks") &
-            & call key_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
-            & //"'blocks'; copy the file that it names", deck, scene_kind)
-         if (allocated(error)) then
-            write (error_unit, "(a)") error_line(error)
-            deck_status = exit_status%bad_input
-         else
-            call export_deck(command, deck, deck_status)
-         end if
-         status = worst_status(status, deck_status)
-      end do
-   end subroutine export_decks
+      status = exit_status%bad_input
+      call read_deck(name, command%setting, deck, error)
+      if (.not. allocated(error)) call cut_lines(deck, error)
+      if (.not. allocated(error) .and. deck%value(scene_kind)%text == "blocks") &
+         & call key_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
+         & //"'blocks'; copy the file that it names", deck, scene_kind)
+      if (.not. allocated(error)) call export_cases(command, deck, status, error)
+   end subroutine export_deck
 
    !> Export all cases of a deck
-   subroutine export_deck(command, deck, status)
+   subroutine export_cases(command, deck, status, error)
       type(command_t), intent(in) :: command
       type(deck_t), intent(in) :: deck
-      integer, intent(out) :: status  !! Exit status of this deck
+      integer, intent(out) :: status
+      type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: case_of_deck
       type(line_model_t) :: model
-      type(error_t), allocatable :: error
       character(len=:), allocatable :: folder, stem
       integer :: number
 
-      status = exit_status%success
       folder = "."
       if (allocated(command%out)) folder = command%out
       if (allocated(command%out)) call make_folder(folder)
       do number = 1, n_cases(deck)
+         status = exit_status%bad_input
          stem = folder//"/"//deck_stem(deck%file)
          if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
          call turn_to_case(deck, number, case_of_deck, error)
-         if (.not. allocated(error)) then
-            if (source_of(case_of_deck) /= "arch") then
-               call export_blocks(command, stem, case_of_deck, status)
-               if (status /= exit_status%success) return
-               cycle
-            end if
+         if (allocated(error)) return
+         if (source_of(case_of_deck) /= "arch") then
+            call export_blocks(command, stem, case_of_deck, status, error)
+            if (allocated(error)) return
+            cycle
          end if
-         if (.not. allocated(error)) call arch_lines(case_of_deck, model, error)
-         if (allocated(error)) status = exit_status%bad_input
-         if (.not. allocated(error)) then
-            call write_pair(stem, model, arch_analysis(case_of_deck), error)
-            if (allocated(error)) status = exit_status%not_written
-         end if
-         if (allocated(error)) then
-            write (error_unit, "(a)") error_line(error)
-            return
-         end if
+         call arch_lines(case_of_deck, model, error)
+         if (allocated(error)) return
+         status = exit_status%not_written
+         call write_pair(stem, model, arch_analysis(case_of_deck), error)
+         if (allocated(error)) return
          if (.not. command%quiet) call tell(command%screen, stem, case_of_deck)
+         status = exit_status%success
       end do
-   end subroutine export_deck
+   end subroutine export_cases
 
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)

@@ -10,10 +10,9 @@ contains
 
    !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
    module procedure export_blocks
-      type(error_t), allocatable :: error
       character(len=:), allocatable :: text, losses
 
-      status = exit_status%success
+      status = exit_status%bad_input
       if (source_of(deck) == "shape") then
          call check_form(deck, error)
          if (.not. allocated(error)) text = shape_text(deck)
@@ -25,14 +24,12 @@ contains
          if (.not. allocated(error)) text = line_text(deck)
          losses = line_losses(deck)
       end if
-      if (allocated(error)) status = exit_status%bad_input
-      if (.not. allocated(error)) then
-         call write_text(stem//".blocks", text, error)
-         if (allocated(error)) status = exit_status%not_written
-      end if
-      if (allocated(error)) then
-         write (error_unit, "(a)") error_line(error)
-      else if (.not. command%quiet) then
+      if (allocated(error)) return
+      status = exit_status%not_written
+      call write_text(stem//".blocks", text, error)
+      if (allocated(error)) return
+      status = exit_status%success
+      if (.not. command%quiet) then
          call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
          if (losses /= "") call print_line(command%screen, &
             & "   a file of blocks has no place for "//losses)

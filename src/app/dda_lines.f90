@@ -1,13 +1,12 @@
 !> dda lines: from a map of joints to a file of lines (Shi: DL)
 module dda_lines
-   use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_command_line, only : command_t, name_of
-   use dda_error, only : error_line, error_t
+   use dda_command_line, only : command_t
+   use dda_error, only : error_t
    use dda_joint_map, only : joint_map_t
    use dda_kinds, only : wp
    use dda_line_model, only : entities_t, line_model_t
    use dda_map_lines, only : map_lines
-   use dda_process, only : deck_stem, exit_status, worst_status
+   use dda_process, only : deck_stem, exit_status
    use dda_read_joint_map, only : read_joint_map
    use dda_screen, only : print_line
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
@@ -16,24 +15,9 @@ module dda_lines
    implicit none
    private
 
-   public :: draw_lines
+   public :: draw_map
 
 contains
-
-   !> Draw the lines of all maps of the command line
-   subroutine draw_lines(command, status)
-      type(command_t), intent(in) :: command
-      integer, intent(out) :: status  !! Exit status of the program
-      type(error_t), allocatable :: error
-      integer :: i, one
-
-      status = exit_status%success
-      do i = 1, size(command%name)
-         call draw_map(command, name_of(command, i), one, error)
-         if (allocated(error)) write (error_unit, "(a)") error_line(error)
-         status = worst_status(status, one)
-      end do
-   end subroutine draw_lines
 
    !> Draw the lines of one map
    subroutine draw_map(command, name, status, error)

@@ -3,6 +3,7 @@ submodule (dda_check) dda_print_plan
    use dda_boundary, only : boundary_t
    use dda_deck, only : geometry_of, has_group, keeps_velocities, source_of
    use dda_deck_scene, only : deck_scene
+   use dda_error, only : error_line
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_key_names, only : analysis_mode, output_condition, output_energy, output_frames, &
       & output_joints, output_restart, output_vtu, scene_kind, scene_title, search_group, &
