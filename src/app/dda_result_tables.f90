@@ -112,7 +112,8 @@ contains
       type(deck_t), intent(in) :: deck
       character(len=*), intent(in) :: folder  !! Name of the folder
       type(result_tables_t), intent(out) :: tables
-      character(len=:), allocatable :: names
+      character(len=:), allocatable :: log, names
+      logical :: searches, wanted
       integer :: s
 
       names = ""
@@ -123,59 +124,48 @@ contains
       tables%record_file = folder//"/deck.record"
       tables%disk_file = folder//"/disk.record"
       tables%has_vtu = deck%value(output_vtu)%flag
-      call name_table(tables%at(table%results), "/results.csv", results_header(names, &
-         & deck%value(output_condition)%flag))
+      searches = has_group(deck, search_group)
+      call name_table(table%results, "/results.csv", results_header(names, &
+         & deck%value(output_condition)%flag), .true.)
       tables%seconds = field_number(tables%at(table%results)%header, "seconds")
-      call name_table(tables%at(table%joints), "/joints.csv", joints_header)
-      call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
-         & //parenthesis(left_out(deck)))
-      call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes,sum")
-      call name_table(tables%at(table%frames), "/frames.csv", frames_header)
-      call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header)
-      call name_table(tables%at(table%points), "/points.csv", points_header)
-      tables%at(table%points)%wanted = .false.
-      if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
-         & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, search_group)
-      call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header)
-      tables%at(table%reactions)%wanted = deck%value(output_reactions)%flag &
-         & .and. .not. has_group(deck, search_group)
-      call name_table(tables%at(table%energy), "/energy.csv", energy_header)
-      tables%at(table%energy)%wanted = deck%value(output_energy)%flag &
-         & .and. .not. has_group(deck, search_group)
-      call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header)
-      tables%at(table%blocks)%wanted = deck%value(output_blocks)%flag
-      tables%at(table%joints)%wanted = deck%value(output_joints)%flag
-      call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header)
-      call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header)
-      tables%at([table%proof_forces, table%proof_motion])%wanted = deck%value(output_proof)%flag
-      call name_table(tables%at(table%bars), "/bars.csv", bars_header)
-      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) &
-         & .or. has_group(deck, tie_group) .or. fill_yields(deck)
-      if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
-      tables%at([table%frames, table%frame_joints])%wanted = &
-         & nint(deck%value(output_frames)%number) > 0
+      log = "case verdict remark"
+      if (left_out(deck) /= "") log = log//" ("//left_out(deck)//")"
+      call name_table(table%log, "/log.txt", log, .true.)
+      call name_table(table%sizes, "/sizes.record", "case,bytes,sum", .true.)
+      call name_table(table%joints, "/joints.csv", joints_header, deck%value(output_joints)%flag)
+      call name_table(table%blocks, "/blocks.csv", blocks_header, deck%value(output_blocks)%flag)
+      wanted = nint(deck%value(output_frames)%number) > 0
+      call name_table(table%frames, "/frames.csv", frames_header, wanted)
+      call name_table(table%frame_joints, "/frame_joints.csv", frame_joints_header, wanted)
+      wanted = .false.
+      if (allocated(deck%plan%boundary%measured)) wanted = size(deck%plan%boundary%measured) > 0
+      call name_table(table%points, "/points.csv", points_header, wanted .and. .not. searches)
+      call name_table(table%reactions, "/reactions.csv", reactions_header, &
+         & deck%value(output_reactions)%flag .and. .not. searches)
+      call name_table(table%energy, "/energy.csv", energy_header, &
+         & deck%value(output_energy)%flag .and. .not. searches)
+      wanted = deck%value(output_proof)%flag
+      call name_table(table%proof_forces, "/proof_forces.csv", proof_forces_header, wanted)
+      call name_table(table%proof_motion, "/proof_motion.csv", proof_motion_header, wanted)
+      wanted = allocated(deck%plan%boundary%bar) .or. has_group(deck, tie_group) &
+         & .or. fill_yields(deck)
+      if (allocated(deck%cut)) wanted = size(deck%cut%bolt) > 0
+      call name_table(table%bars, "/bars.csv", bars_header, wanted)
 
    contains
 
       !> Name one table
-      subroutine name_table(this, name, header)
-         type(result_table_t), intent(inout) :: this
+      subroutine name_table(place, name, header, wanted)
+         integer, intent(in) :: place            !! One of table
          character(len=*), intent(in) :: name    !! Name of its file in the folder
          character(len=*), intent(in) :: header  !! First line
+         logical, intent(in) :: wanted           !! Whether the deck wants it
 
-         this%file = folder//name
-         this%header = header
+         tables%at(place)%file = folder//name
+         tables%at(place)%header = header
+         tables%at(place)%wanted = wanted
       end subroutine name_table
    end subroutine name_tables
-
-   !> A text in parentheses, with a blank before it; nothing for nothing
-   pure function parenthesis(text) result(put)
-      character(len=*), intent(in) :: text  !! The text
-      character(len=:), allocatable :: put  !! The text put so
-
-      put = ""
-      if (len(text) > 0) put = " ("//text//")"
-   end function parenthesis
 
    !> Which tables are not written because there are many cases, and what writes them; empty if all
    !> are
@@ -205,6 +195,7 @@ contains
       type(result_tables_t), intent(inout) :: tables
       character(len=*), intent(in) :: record  !! What was asked for
       type(error_t), allocatable, intent(out) :: error
+      type(table_file_t) :: file
       integer(int64) :: now, rate
       integer :: i
 
@@ -224,21 +215,11 @@ contains
       tables%length = common_length(tables)
       tables%sum = common_sum(tables)
       call write_disk_record(tables%disk_file, 0_int64, error)
-      if (.not. allocated(error)) call write_record(tables, record, error)
+      if (.not. allocated(error)) call open_table(tables%record_file, record, file, error)
+      call close_table(file, error)
       call system_clock(now, rate)
       tables%due = now + sync_seconds*rate
    end subroutine open_tables
-
-   !> Write down what was asked for
-   subroutine write_record(tables, record, error)
-      type(result_tables_t), intent(in) :: tables
-      character(len=*), intent(in) :: record
-      type(error_t), allocatable, intent(out) :: error
-      type(table_file_t) :: file
-
-      call open_table(tables%record_file, record, file, error)
-      call close_table(file, error)
-   end subroutine write_record
 
    !> Bring all tables to the disk, results.csv last, and write down how long it is
    subroutine sync_tables(tables, error)
@@ -257,16 +238,6 @@ contains
       call system_clock(end)
       tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
    end subroutine sync_tables
-
-   !> Bring all tables to the disk if the last time is long ago
-   subroutine sync_when_due(tables, error)
-      type(result_tables_t), intent(inout) :: tables
-      type(error_t), allocatable, intent(inout) :: error
-      integer(int64) :: now
-
-      call system_clock(now)
-      if (now >= tables%due) call sync_tables(tables, error)
-   end subroutine sync_when_due
 
    !> Bring all tables to the disk and close them
    subroutine close_tables(tables, error)
@@ -366,6 +337,7 @@ contains
       type(result_tables_t), intent(inout) :: tables
       type(error_t), allocatable, intent(inout) :: error  !! An earlier failure, or that of writing
       type(error_t), allocatable :: late
+      integer(int64) :: now
       integer :: i, place(3)
 
       place = [table%log, table%sizes, table%results]
@@ -376,6 +348,7 @@ contains
       end do
       tables%waiting_sum = 0
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
-      if (.not. allocated(error)) call sync_when_due(tables, error)
+      call system_clock(now)
+      if (now >= tables%due) call sync_tables(tables, error)
    end subroutine write_waiting
 end module dda_result_tables

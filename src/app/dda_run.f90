@@ -14,7 +14,7 @@ module dda_run
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene_check, only : check_lines
-   use dda_screen, only : print_line, screen_t
+   use dda_screen, only : print_line
    use dda_text, only : to_text
    implicit none
    private
@@ -194,7 +194,9 @@ contains
          if (count(3) > 0) write (error_unit, "(a)") to_text(count(3))//" of " &
             & //to_text(total)//" cases are safe in "//tables%folder//"/results.csv"
       else if (.not. command%quiet) then
-         call print_total(command%screen, name, tables%folder, count, left_out(deck))
+         call print_line(command%screen, name//": "//to_text(count(1))//" decided, " &
+            & //to_text(count(2))//" undecided; results in "//tables%folder//"/results.csv")
+         if (left_out(deck) /= "") call print_line(command%screen, name//": "//left_out(deck))
       end if
    end subroutine run_deck
 
@@ -207,7 +209,7 @@ contains
       type(result_tables_t), intent(inout) :: tables
       type(finished_t), intent(out) :: finished
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: record
+      character(len=:), allocatable :: found, record
 
       allocate (finished%case(total), source=.false.)
       call make_folder(tables%folder)
@@ -216,9 +218,11 @@ contains
       record = run_record(deck, deck_stem(name))
       if (command%resume) then
          call find_finished(tables, record, total, finished)
-         if (.not. command%quiet) &
-            & call print_resumed(command%screen, name, finished%same_deck, sum(finished%count), &
-            & total)
+         found = "nothing to resume, there are no results of this very deck with these "// &
+            & "settings by this build of dda; all cases are computed"
+         if (finished%same_deck) found = "resumed, "//to_text(sum(finished%count))//" of " &
+            & //to_text(total)//" cases are there already"
+         if (.not. command%quiet) call print_line(command%screen, name//": "//found)
       end if
       if (finished%same_deck) then
          call reopen_tables(tables, finished, error)
@@ -227,36 +231,4 @@ contains
       end if
    end subroutine begin_tables
 
-   !> Print what --resume has found
-   subroutine print_resumed(screen, name, same_deck, finished, total)
-      type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: name
-      logical, intent(in) :: same_deck  !! Whether there are results of the same deck
-      integer, intent(in) :: finished   !! Cases that are finished
-      integer, intent(in) :: total
-
-      if (same_deck) then
-         call print_line(screen, name//": resumed, "//to_text(finished)//" of " &
-            & //to_text(total)//" cases are there already")
-      else
-         call print_line(screen, name//": nothing to resume, there are no results of this very "// &
-            & "deck with these settings by this build of dda; all cases are computed")
-      end if
-   end subroutine print_resumed
-
-   !> Print the last line
-   subroutine print_total(screen, name, folder, count, left_out)
-      type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: name
-      !> Where the results are
-      character(len=*), intent(in) :: folder
-      !> Cases decided, undecided, written: (3)
-      integer, intent(in) :: count(3)
-      !> Which tables are not written, and why; empty if there is none
-      character(len=*), intent(in) :: left_out
-
-      call print_line(screen, name//": "//to_text(count(1))//" decided, "//to_text(count(2)) &
-         & //" undecided; results in "//folder//"/results.csv")
-      if (left_out /= "") call print_line(screen, name//": "//left_out)
-   end subroutine print_total
 end module dda_run

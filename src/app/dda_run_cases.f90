@@ -118,13 +118,13 @@ contains
       integer, intent(inout) :: next
       integer, intent(inout) :: number(:)  !! Their numbers: (max_batch), n of them set
       integer, intent(out) :: n            !! How many were taken
-      integer :: found
 
-      do n = 0, most - 1
-         found = next_chosen(chosen, next)
-         if (found == 0) return
-         next = found
-         number(n + 1) = found
+      n = 0
+      do while (n < most .and. next < size(chosen))
+         next = next + 1
+         if (.not. chosen(next)) cycle
+         n = n + 1
+         number(n) = next
       end do
    end subroutine take_cases
 
@@ -146,17 +146,6 @@ contains
       this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
       this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare
-
-   !> The first chosen case behind another one; 0 if there is none
-   pure integer function next_chosen(chosen, last)
-      logical, intent(in) :: chosen(:)
-      integer, intent(in) :: last  !! The other one
-
-      do next_chosen = last + 1, size(chosen)
-         if (chosen(next_chosen)) return
-      end do
-      next_chosen = 0
-   end function next_chosen
 
    !> Write a computed case down
    subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, error)
@@ -182,7 +171,10 @@ contains
       joint_row%number = number
       call write_pictures(tables, number, this, error)
       if (.not. allocated(error)) call write_proof(tables, number, this, error)
-      if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
+      if (this%family%deck%value(output_restart)%flag .and. this%scene%settings%dynamic &
+         & .and. .not. (allocated(error) .or. allocated(this%error))) call save_restart( &
+         & tables%folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
+         & this%decision%system, this%decision%contacts, this%onward, error)
       if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
       if (allocated(error)) return
       count(3) = count(3) + 1
@@ -233,18 +225,5 @@ contains
       lines = proof_motion_lines(number, value, this%proof)
       call append_line(tables%at(table%proof_motion)%open, lines, error)
    end subroutine write_proof
-
-   !> Write the end of a dynamic case, to go on from there
-   subroutine write_end(folder, number, this, error)
-      character(len=*), intent(in) :: folder
-      integer, intent(in) :: number
-      type(case_t), intent(in) :: this
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. this%family%deck%value(output_restart)%flag) return
-      if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
-      call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
-         & this%decision%system, this%decision%contacts, this%onward, error)
-   end subroutine write_end
 
 end submodule dda_run_cases

@@ -17,26 +17,17 @@ module dda_run_record
 
 contains
 
-   !> The text of deck.record
+   !> The text of deck.record: who computes it, then groups, given keys with their values, sweeps;
+   !> comments, blanks and the order of keys leave no trace in it, a --set leaves the one that a key
+   !> in the deck would leave; files that the deck names leave their checksums
    pure function run_record(deck, stem) result(record)
       type(deck_t), intent(in) :: deck
       character(len=*), intent(in) :: stem     !! Its name without folder and ending
       character(len=:), allocatable :: record  !! Lines parted by line ends
-
-      record = deck_record(deck, "dda "//version//" build "//build_mark//" on "//stem)
-   end function run_record
-
-   !> The record of a deck: groups, given keys with their values, sweeps; comments, blanks and the
-   !> order of keys leave no trace in it, a --set leaves the one that a key in the deck would leave;
-   !> files that the deck names leave their checksums
-   pure function deck_record(deck, maker) result(record)
-      type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: maker  !! First line: who computes it
-      character(len=:), allocatable :: record
       type(growing_text_t) :: lines
       integer :: i
 
-      call add_line(lines, maker)
+      call add_line(lines, "dda "//version//" build "//build_mark//" on "//stem)
       do i = 1, size(deck_group)
          if (deck%group(i)%line > 0 .and. deck_group(i)%name /= "sweep") &
             & call add_line(lines, "&"//trim(deck_group(i)%name))
@@ -50,7 +41,7 @@ contains
       end do
       if (allocated(deck%file_marks)) call add_line(lines, "files"//deck%file_marks)
       record = lines_of(lines)
-   end function deck_record
+   end function run_record
 
    !> Record one key
    pure subroutine add_value(lines, key, value)

@@ -37,6 +37,7 @@ contains
       character(len=:), allocatable :: bytes
       type(error_t), allocatable :: failure
       integer(int32) :: n(2)
+      integer :: at
       logical :: sound
 
       ! by C: two threads may read one file
@@ -52,26 +53,16 @@ contains
          sound = all(n >= 0)
          if (sound) sound = len(bytes, int64) == len(title) + 16 + 4*int(n(1), int64) &
             & + 8*int(n(2), int64)
-         if (sound) call read_sealed(bytes(len(title) + 9:), n, whole, number, sound)
+         if (sound) then
+            at = len(title) + 8 + 4*n(1)
+            whole = transfer(bytes(len(title) + 9:at), 0_int32, n(1))
+            number = transfer(bytes(at + 1:at + 8*n(2)), 0.0_wp, n(2))
+            sound = transfer(bytes(at + 8*n(2) + 1:), 0_int64) == check_sum(n, whole, number)
+         end if
          if (.not. sound) call fatal_error(error, "expected a file as it was written, got a "// &
             & "damaged one; write it again", file, 1)
       end if
    end procedure read_numbers
-
-   !> Read numbers and compare their check sum
-   pure subroutine read_sealed(bytes, n, whole, number, sound)
-      character(len=*), intent(in) :: bytes                 !! The numbers and their check sum
-      integer(int32), intent(in) :: n(2)                    !! How many there are: (2)
-      integer(int32), allocatable, intent(out) :: whole(:)  !! The whole ones: (n(1))
-      real(wp), allocatable, intent(out) :: number(:)       !! The others: (n(2))
-      logical, intent(out) :: sound                         !! Whether it is theirs
-      integer :: at
-
-      at = 4*n(1)
-      whole = transfer(bytes(:at), 0_int32, n(1))
-      number = transfer(bytes(at + 1:at + 8*n(2)), 0.0_wp, n(2))
-      sound = transfer(bytes(at + 8*n(2) + 1:), 0_int64) == check_sum(n, whole, number)
-   end subroutine read_sealed
 
    !> The check sum of a file
    pure integer(int64) function check_sum(n, whole, number)

@@ -52,7 +52,9 @@ contains
       ! origin
       place = system%centroid(:, block)
       size_of = sqrt(system%area(block))
-      call move_moments(place, size_of, column(:, :n))
+      do i = 1, n
+         column(:, i) = moved(column(:, i), place, size_of)
+      end do
       force = least_forces(column(:, :n), moved(wanted, place, size_of))
       do i = 1, n
          column(3, i) = size_of*column(3, i) + place(1)*column(2, i) - place(2)*column(1, i)
@@ -60,22 +62,11 @@ contains
       end do
    end procedure share_among_points
 
-   !> See the moments of some forces from another point, in a length
-   pure subroutine move_moments(place, length, column)
-      real(wp), intent(in) :: place(2)         !! The point: (2) [m]
-      real(wp), intent(in) :: length           !! The length [m]
-      real(wp), intent(inout) :: column(:, :)  !! The forces with their moments: (3, n)
-      integer :: i
-
-      do i = 1, size(column, 2)
-         column(:, i) = moved(column(:, i), place, length)
-      end do
-   end subroutine move_moments
-
    !> A force with its moment seen from another point, in a length
    pure function moved(wrench, place, length) result(seen)
       real(wp), intent(in) :: wrench(3)  !! Force, and moment about the origin: (3)
-      real(wp), intent(in) :: place(2), length
+      real(wp), intent(in) :: place(2)   !! The point: (2) [m]
+      real(wp), intent(in) :: length     !! The length [m]
       real(wp) :: seen(3)                !! The same with the other moment: (3)
 
       seen = [wrench(1:2), (wrench(3) - cross(place, wrench(1:2)))/length]

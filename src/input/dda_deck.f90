@@ -22,7 +22,7 @@ module dda_deck
    public :: deck_t, deck_sweep_t, parameter_t
    public :: ground_record_t
    public :: new_deck, has_group, geometry_of, keeps_velocities, place_of, deck_error, key_error
-   public :: source_of
+   public :: number_or, source_of
    public :: add_file_mark, file_beside
 
    !> A key, or one item of its list
@@ -154,6 +154,15 @@ contains
       if (deck%value(analysis_mode)%text == "limerick" &
          & .and. .not. deck%value(analysis_geometry)%given) word = "current"
    end function geometry_of
+
+   !> The number of a key, or another one where it is not given
+   pure real(wp) function number_or(deck, key, other)
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: key     !! Place of the key in the registry
+      real(wp), intent(in) :: other  !! The other number
+
+      number_or = merge(deck%value(key)%number, other, deck%value(key)%given)
+   end function number_or
 
    !> Where a key was given, or else its group: line 0 if neither was given
    pure type(deck_place_t) function place_of(deck, key) result(place)

@@ -11,7 +11,8 @@ module dda_deck_check_case
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key
-   use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, source_of
+   use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, number_or, &
+      & source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number
@@ -265,6 +266,7 @@ contains
       integer, intent(in) :: key  !! Place of the key of that end in the registry
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
+      type(deck_t) :: trial
 
       associate (bound => deck%value(key))
          if (.not. bound%given) return
@@ -273,23 +275,12 @@ contains
             call deck_error(error, full_name(deck_key(key))//": "//problem// &
                "; choose an end that it can take", deck, bound%place)
          else if (deck_key(deck%searched%key)%group == "arch" .and. source_of(deck) == "arch") then
-            call check_end_shape(deck, bound%number, bound%place, error)
+            trial = deck
+            call put_number(trial, deck%searched, bound%number, bound%place, error)
+            if (.not. allocated(error)) call check_shape(trial, error)
          end if
       end associate
    end subroutine check_end
-
-   !> Check the shape of an arch at one end of the search
-   pure subroutine check_end_shape(deck, number, place, error)
-      type(deck_t), intent(in) :: deck
-      real(wp), intent(in) :: number  !! The end
-      type(deck_place_t), intent(in) :: place
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: trial
-
-      trial = deck
-      call put_number(trial, deck%searched, number, place, error)
-      if (.not. allocated(error)) call check_shape(trial, error)
-   end subroutine check_end_shape
 
    !> Where the search for a parameter begins and ends
    pure subroutine search_bracket(deck, low, high)
@@ -297,9 +288,7 @@ contains
       real(wp), intent(out) :: low   !! Lower end; -huge if there is none
       real(wp), intent(out) :: high  !! Upper end; huge if there is none
 
-      low = deck_key(deck%searched%key)%search_low
-      high = deck_key(deck%searched%key)%search_high
-      if (deck%value(search_low)%given) low = deck%value(search_low)%number
-      if (deck%value(search_high)%given) high = deck%value(search_high)%number
+      low = number_or(deck, search_low, deck_key(deck%searched%key)%search_low)
+      high = number_or(deck, search_high, deck_key(deck%searched%key)%search_high)
    end subroutine search_bracket
 end module dda_deck_check_case

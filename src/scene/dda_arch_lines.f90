@@ -111,8 +111,10 @@ contains
       first = system%first_vertex(block)
       last = system%first_vertex(block + 1) - 1
       do k = 0, (last - first + 1)/2 - 2
-         call add_line(model, system%vertex(:, first + k), system%vertex(:, first + k + 1), 1)
-         call add_line(model, system%vertex(:, last - k), system%vertex(:, last - k - 1), 1)
+         call add_entity(model%line, [system%vertex(:, first + k), &
+            & system%vertex(:, first + k + 1)], 1, 0)
+         call add_entity(model%line, [system%vertex(:, last - k), &
+            & system%vertex(:, last - k - 1)], 1, 0)
       end do
    end subroutine add_chords
 
@@ -129,7 +131,7 @@ contains
       intrados = system%vertex(:, first + n/2 - 1)
       extrados = system%vertex(:, first + n/2)
       more = overshoot*(extrados - intrados)
-      call add_line(model, intrados - more, extrados + more, 1)
+      call add_entity(model%line, [intrados - more, extrados + more], 1, 0)
    end subroutine add_joint
 
    !> An abutment with its four fixed points
@@ -141,7 +143,8 @@ contains
       integer :: k, i, j
 
       do k = 1, 4
-         call add_line(model, corner(:, k), corner(:, 1 + mod(k, 4)), merge(material, 1, k == 1))
+         call add_entity(model%line, [corner(:, k), corner(:, 1 + mod(k, 4))], &
+            & merge(material, 1, k == 1), 0)
       end do
       do i = 0, 1
          do j = 0, 1
@@ -152,16 +155,6 @@ contains
          end do
       end do
    end subroutine add_abutment
-
-   !> Add a line
-   pure subroutine add_line(model, start, finish, material)
-      type(line_model_t), intent(inout) :: model
-      real(wp), intent(in) :: start(2)   !! Where it starts: (2) [m]
-      real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]
-      integer, intent(in) :: material
-
-      call add_entity(model%line, [start, finish], material, 0)
-   end subroutine add_line
 
    !> Joint material of the springings: another one where they alone cannot slide
    pure integer function face_material(deck)

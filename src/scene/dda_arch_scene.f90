@@ -4,7 +4,7 @@ module dda_arch_scene
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
    use dda_arch_chain, only : arch_numbers_t
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, has_group
+   use dda_deck, only : deck_t, has_group, number_or
    use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
       & analysis_collapse_rotation_deg, analysis_damping, analysis_duration, analysis_flow, &
       & analysis_max_displacement_ratio, analysis_open_close_limit, analysis_penalty_ratio, &
@@ -95,8 +95,7 @@ contains
       material%density = deck%value(material_density)%number
       material%young = deck%value(material_young)%number
       material%poisson = deck%value(material_poisson)%number
-      if (deck%value(material_compressive_strength)%given) &
-         & material%strength = deck%value(material_compressive_strength)%number
+      material%strength = number_or(deck, material_compressive_strength, material%strength)
       material%plane_strain = deck%value(material_plane)%text == "strain"
    end function material_of
 
@@ -132,29 +131,25 @@ contains
    pure type(arch_shape_t) function shape_of(deck) result(shape)
       type(deck_t), intent(in) :: deck
       real(wp), allocatable :: joints(:), span(:)
-      real(wp) :: facet
       integer :: crown
 
       allocate (joints, source=half_joints_deg(deck))
       shape%radius = deck%value(arch_radius)%number
       shape%thickness_ratio = deck%value(arch_thickness_ratio)%number
       allocate (shape%joint_angle, source=joints*degree)
-      facet = 0.0_wp
-      if (deck%value(arch_facet_deg)%given) facet = deck%value(arch_facet_deg)%number
       crown = merge(1, 0, joints(1) > 0.0_wp)
       allocate (span(size(joints) - 1 + crown))
       span(1) = 2.0_wp*joints(1)
       span(1 + crown:) = joints(2:) - joints(:size(joints) - 1)
-      allocate (shape%facets, source=facet_count(span, facet))
+      allocate (shape%facets, source=facet_count(span, deck%value(arch_facet_deg)%number))
    end function shape_of
 
    !> Weight per volume [N/m3]
    pure real(wp) function unit_weight(deck)
       type(deck_t), intent(in) :: deck
 
-      unit_weight = deck%value(material_density)%number*deck%value(load_gravity)%number
-      if (deck%value(material_unit_weight)%given) unit_weight = &
-         & deck%value(material_unit_weight)%number
+      unit_weight = number_or(deck, material_unit_weight, &
+         & deck%value(material_density)%number*deck%value(load_gravity)%number)
    end function unit_weight
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
@@ -175,12 +170,9 @@ contains
       settings%penalty_ratio = deck%value(analysis_penalty_ratio)%number
       settings%max_steps = nint(deck%value(analysis_steps)%number)
       settings%max_changes = nint(deck%value(analysis_open_close_limit)%number)
-      if (deck%value(analysis_time_step)%given) settings%time_step = &
-         & deck%value(analysis_time_step)%number
-      if (deck%value(analysis_collapse_displacement)%given) &
-         & settings%collapse_displacement = deck%value(analysis_collapse_displacement)%number
-      if (deck%value(analysis_duration)%given) settings%duration = &
-         & deck%value(analysis_duration)%number
+      settings%time_step = deck%value(analysis_time_step)%number
+      settings%collapse_displacement = deck%value(analysis_collapse_displacement)%number
+      settings%duration = deck%value(analysis_duration)%number
       if (.not. deck%value(analysis_steps)%given .and. deck%value(analysis_duration)%given &
          & .and. deck%value(analysis_time_step)%given) settings%max_steps = int(min(1.0e9_wp, &
          & max(real(settings%max_steps, wp), cut_steps*settings%duration/settings%time_step)))

@@ -2,14 +2,14 @@
 !> how far it spreads axles
 module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
+   use dda_arch_scene, only : unit_weight
    use dda_bar, only : bar_state_t, bar_t
    use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, number_or
    use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
       & fill_backing_height, fill_backing_unit_weight, fill_friction_deg, fill_height, &
       & fill_passive_coefficient, fill_passive_share, fill_passive_stiffness, fill_spread, &
-      & fill_unit_weight, joint_cohesion, joint_tension, load_gravity, material_density, &
-      & material_unit_weight
+      & fill_unit_weight, joint_cohesion, joint_tension
    use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
@@ -83,11 +83,7 @@ contains
       end do
       fill%surface = fill%surface + deck%value(fill_height)%number
       fill%unit_weight = deck%value(fill_unit_weight)%number
-      fill%unit_weight(2) = deck%value(material_density)%number*deck%value(load_gravity)%number
-      if (deck%value(material_unit_weight)%given) fill%unit_weight(2) = &
-         & deck%value(material_unit_weight)%number
-      if (deck%value(fill_backing_unit_weight)%given) &
-         & fill%unit_weight(2) = deck%value(fill_backing_unit_weight)%number
+      fill%unit_weight(2) = number_or(deck, fill_backing_unit_weight, unit_weight(deck))
       if (deck%value(fill_backing_height)%given) fill%backing = assembly%springing_y &
          & + deck%value(fill_backing_height)%number
       fill%spread = deck%value(fill_spread)%number

@@ -1,7 +1,7 @@
 !> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
    use dda_boundary, only : boundary_t, measured_point_t
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, number_or
    use dda_key_names, only : analysis_collapse_displacement, analysis_max_displacement_ratio, &
       & analysis_penalty_ratio, analysis_steps, analysis_time_step, arch_abutment_overhang, &
       & arch_abutment_size, arch_radius, limerick_auto_penalty, limerick_close_ratio, &
@@ -96,11 +96,8 @@ contains
       real(wp), intent(out) :: depth     !! Depth, away from the springing joint [m]
       real(wp), intent(out) :: overhang  !! How far they reach beyond the joint at either end [m]
 
-      depth = usual_depth*deck%value(arch_radius)%number
-      if (deck%value(arch_abutment_size)%given) depth = deck%value(arch_abutment_size)%number
-      overhang = depth
-      if (deck%value(arch_abutment_overhang)%given) overhang = &
-         & deck%value(arch_abutment_overhang)%number
+      depth = number_or(deck, arch_abutment_size, usual_depth*deck%value(arch_radius)%number)
+      overhang = number_or(deck, arch_abutment_overhang, depth)
    end subroutine abutment_sides
 
    !> Make an abutment as large as the deck says
@@ -153,8 +150,7 @@ contains
       call take(deck%value(analysis_collapse_displacement), constants%collapse_displacement)
       call take(deck%value(analysis_time_step), constants%time_step)
       if (deck%value(analysis_time_step)%given) constants%auto_time_step = .false.
-      if (deck%value(analysis_steps)%given) constants%max_steps = &
-         & nint(deck%value(analysis_steps)%number)
+      constants%max_steps = nint(number_or(deck, analysis_steps, real(constants%max_steps, wp)))
       if (deck%value(limerick_gravity_steps)%given) &
          & constants%gravity_steps = nint(deck%value(limerick_gravity_steps)%number)
       if (deck%value(limerick_auto_penalty)%given) constants%auto_penalty = &

@@ -182,7 +182,8 @@ contains
       system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), material_of(deck))
       system%unit_weight = unit_weight(deck)
       if (.not. allocated(deck%file_analysis)) return
-      associate (list => deck%file_analysis%material)
+      associate (list => deck%file_analysis%material, own => any(deck%value([material_density, &
+         & material_unit_weight, load_gravity])%given))
          deallocate (system%materials)
          allocate (system%materials(size(list)))
          do m = 1, size(list)
@@ -192,21 +193,13 @@ contains
          do b = 1, size(cut%area)
             m = cut%material(b)
             system%density(b) = system%materials(m)%density
-            if (.not. weight_is_given(deck)) system%unit_weight(b) = list(m)%unit_weight
+            if (.not. own) system%unit_weight(b) = list(m)%unit_weight
             system%stress(:, b) = list(m)%stress + list(m)%stress_gradient &
                & *(system%centroid(2, b) + cut%scale%origin(2))
             system%velocity(1:3, b) = list(m)%velocity
          end do
       end associate
    end subroutine line_system
-
-   !> Whether the deck itself says what the blocks weigh
-   pure logical function weight_is_given(deck)
-      type(deck_t), intent(in) :: deck
-
-      weight_is_given = deck%value(material_unit_weight)%given &
-         & .or. deck%value(material_density)%given .or. deck%value(load_gravity)%given
-   end function weight_is_given
 
    !> A material of the analysis file; keys that the deck gives go before
    pure type(material_t) function file_material(deck, listed) result(material)

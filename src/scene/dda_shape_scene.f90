@@ -5,7 +5,7 @@ module dda_shape_scene
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_contacts, only : joint_place
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, number_or
    use dda_key_names, only : arch_abutment_overhang, arch_abutment_size, arch_buttress_height, &
       & arch_buttress_width, arch_crown_thickness, arch_facet_deg, arch_half_angle_deg, &
       & arch_joint_direction, arch_joints_deg, arch_lune_deg, arch_pier_courses, &
@@ -40,19 +40,18 @@ contains
          & form%half_angle_deg = usual_skewback_deg
       form%span = deck%value(arch_span)%number
       form%rise = deck%value(arch_rise)%number
-      if (deck%value(arch_right_rise)%given) form%rise(2) = deck%value(arch_right_rise)%number
+      form%rise(2) = number_or(deck, arch_right_rise, form%rise(1))
       form%radial = form%shape == "flat"
       if (deck%value(arch_joint_direction)%given) form%radial = &
          & deck%value(arch_joint_direction)%text == "radial"
       form%voussoirs = nint(deck%value(arch_voussoirs)%number)
-      if (deck%value(arch_facet_deg)%given) form%facet_deg = deck%value(arch_facet_deg)%number
+      form%facet_deg = deck%value(arch_facet_deg)%number
       form%rings = nint(deck%value(arch_rings)%number)
       form%spans = nint(deck%value(arch_spans)%number)
       form%pier = [deck%value(arch_pier_width)%number, deck%value(arch_pier_height)%number]
       form%courses = nint(deck%value(arch_pier_courses)%number)
-      form%buttress = [deck%value(arch_buttress_width)%number, form%pier(2)]
-      if (deck%value(arch_buttress_height)%given) form%buttress(2) = &
-         & deck%value(arch_buttress_height)%number
+      form%buttress = [deck%value(arch_buttress_width)%number, &
+         & number_or(deck, arch_buttress_height, form%pier(2))]
       form%no_slip = deck%value(arch_springing)%text == "no-slip"
       call check_lines(deck, form, problem)
       if (len_trim(problem%text) == 0) call check_supports(deck, form, problem)

@@ -40,9 +40,7 @@ contains
          end do
          bar(i)%pushes = .false.
          bar(i)%stiffness = deck%value(tie_ea)%numbers(i)/norm2(ends(3:4, i) - ends(1:2, i))
-         bar(i)%strength = huge(1.0_wp)
          if (deck%value(tie_strength)%given) bar(i)%strength = deck%value(tie_strength)%numbers(i)
-         bar(i)%prestress = 0.0_wp
          if (deck%value(tie_prestress)%given) bar(i)%prestress = &
             & deck%value(tie_prestress)%numbers(i)
       end do
