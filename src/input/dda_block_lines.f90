@@ -12,7 +12,7 @@ module dda_block_lines
    private
 
    public :: entry_t, line_t, split_line, take_numbers, take_words, largest_number, keep_entry
-   public :: listed, take_entry, waiting_entry_t, take_record
+   public :: listed, take_record
 
    !> Longest word of a line [characters]
    integer, parameter :: word_size = 32
@@ -24,13 +24,14 @@ module dda_block_lines
       integer :: number = 0
       !> Number of words
       integer :: n = 0
-      !> The words; a quote for the one in quotes
-      character(len=word_size) :: word(max_words) = ""
+      !> The words, a quote for the one in quotes; blanks behind them where they are fewer than
+      !> three: (n or more)
+      character(len=word_size), allocatable :: word(:)
       !> What stands in quotes, as it was written; unallocated if nothing does
       character(len=:), allocatable :: quoted
    end type line_t
 
-   !> The entry that is being read
+   !> An entry: a line, and rows of numbers below it
    type :: entry_t
       type(line_t) :: head                !! Its first line
       real(wp), allocatable :: row(:, :)  !! Rows of numbers below it: (3, n_row or more)
@@ -38,67 +39,40 @@ module dda_block_lines
       integer :: n_column = 0             !! Numbers of each row
    end type entry_t
 
-   !> An entry that waits, in as much room as it needs
-   type :: waiting_entry_t
-      !> Number of its first line
-      integer :: number = 0
-      !> Numbers of each row
-      integer :: n_column = 0
-      !> Words of its first line: (n)
-      character(len=word_size), allocatable :: word(:)
-      !> What stands there in quotes; unallocated if nothing does
-      character(len=:), allocatable :: quoted
-      !> Rows of numbers below it: (3, n_row)
-      real(wp), allocatable :: row(:, :)
-   end type waiting_entry_t
-
    !> Largest magnitude of a number, so that neither its square nor what is made of it overflows
    real(wp), parameter :: largest_number = 1.0e30_wp
 
 contains
 
-   !> Put an entry behind those that wait
-   pure subroutine keep_entry(entry, later, n)
+   !> Put an entry behind others, in as much room as it needs
+   pure subroutine keep_entry(entry, list, n)
       type(entry_t), intent(in) :: entry
-      !> Entries that wait: (n or more)
-      type(waiting_entry_t), allocatable, intent(inout) :: later(:)
+      !> The others: (n or more)
+      type(entry_t), allocatable, intent(inout) :: list(:)
       !> Their number
       integer, intent(inout) :: n
-      type(waiting_entry_t), allocatable :: longer(:)
+      type(entry_t), allocatable :: longer(:)
       integer :: i
 
-      if (n == size(later)) then
+      if (n == size(list)) then
          allocate (longer(2*n + 8))
          do i = 1, n
-            longer(i)%number = later(i)%number
-            longer(i)%n_column = later(i)%n_column
-            call move_alloc(later(i)%word, longer(i)%word)
-            call move_alloc(later(i)%quoted, longer(i)%quoted)
-            call move_alloc(later(i)%row, longer(i)%row)
+            longer(i)%head%number = list(i)%head%number
+            longer(i)%head%n = list(i)%head%n
+            longer(i)%n_row = list(i)%n_row
+            longer(i)%n_column = list(i)%n_column
+            call move_alloc(list(i)%head%word, longer(i)%head%word)
+            call move_alloc(list(i)%head%quoted, longer(i)%head%quoted)
+            call move_alloc(list(i)%row, longer(i)%row)
          end do
-         call move_alloc(longer, later)
+         call move_alloc(longer, list)
       end if
       n = n + 1
-      later(n)%number = entry%head%number
-      later(n)%n_column = entry%n_column
-      allocate (later(n)%word, source=entry%head%word(:entry%head%n))
-      if (allocated(entry%head%quoted)) later(n)%quoted = entry%head%quoted
-      allocate (later(n)%row, source=entry%row(:, :entry%n_row))
+      list(n)%head = entry%head
+      list(n)%n_row = entry%n_row
+      list(n)%n_column = entry%n_column
+      allocate (list(n)%row, source=entry%row(:, :entry%n_row))
    end subroutine keep_entry
-
-   !> An entry that has waited as it was
-   pure subroutine take_entry(waiting, entry)
-      type(waiting_entry_t), intent(inout) :: waiting  !! The entry that has waited; its rows go
-      type(entry_t), intent(out) :: entry
-
-      entry%head%number = waiting%number
-      entry%head%n = size(waiting%word)
-      entry%head%word(:entry%head%n) = waiting%word
-      entry%n_column = waiting%n_column
-      entry%n_row = size(waiting%row, 2)
-      call move_alloc(waiting%quoted, entry%head%quoted)
-      call move_alloc(waiting%row, entry%row)
-   end subroutine take_entry
 
    !> Part a line into words; what follows a ! is a comment. One text may stand in quotes
    pure subroutine split_line(text, number, line, error)
@@ -109,18 +83,20 @@ contains
       type(line_t), intent(out) :: line
       !> Too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
+      character(len=word_size) :: word(max_words)
       integer :: first, next
 
       line%number = number
       next = 1
+      word(:3) = ""
       do
          first = next
          do while (first <= len(text))
             if (index(" "//achar(9), text(first:first)) == 0) exit
             first = first + 1
          end do
-         if (first > len(text)) return
-         if (text(first:first) == "!") return
+         if (first > len(text)) exit
+         if (text(first:first) == "!") exit
          if (scan(text(first:first), "'""") > 0) then
             call take_quoted(text, first, next, line, error)
          else
@@ -130,9 +106,10 @@ contains
          if (line%n == max_words) call fatal_error(error, too_much(), line=number)
          if (allocated(error)) return
          line%n = line%n + 1
-         line%word(line%n) = lower_case(text(first:min(next - 1, first + word_size - 1)))
-         if (scan(text(first:first), "'""") > 0) line%word(line%n) = "'"
+         word(line%n) = lower_case(text(first:min(next - 1, first + word_size - 1)))
+         if (scan(text(first:first), "'""") > 0) word(line%n) = "'"
       end do
+      line%word = word(:max(line%n, 3))
 
    contains
 

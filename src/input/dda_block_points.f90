@@ -1,6 +1,6 @@
 !> Points of a file of blocks, and what acts on them in time
 submodule (dda_read_blocks) dda_block_points
-   use dda_block_lines, only : take_entry, take_numbers, take_record
+   use dda_block_lines, only : take_numbers, take_record
    use dda_block_sites, only : add_held, block_at, blocks_along, close_held, holds_point, rivals_at
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
@@ -63,7 +63,6 @@ contains
 
    !> Take in points, lines that are held, and the motion of the ground, once all blocks are known
    module procedure add_points
-      type(entry_t) :: entry
       integer :: i
 
       if (size(later) == 0) return
@@ -71,26 +70,28 @@ contains
       do i = 1, size(later)
          if (present(watch) .and. modulo(i, 1000) == 0) &
             & call watch%tell("reading points", real(i, wp)/real(size(later), wp))
-         call take_entry(later(i), entry)
-         call take_record(entry, file, plan%record_marks, error)
-         if (allocated(error)) return
-         select case (entry%head%word(1))
-         case ("base_acceleration", "base_velocity", "base_displacement")
-            call take_ground(entry, plan, error)
-         case ("fix_line")
-            call hold_line(entry, plan, site, error)
-         case ("bar")
-            call take_bar(entry, plan, site, file, warnings, error)
-         case ("water")
-            call take_water(entry, plan, error)
-         case ("absorb")
-            call take_absorbing(entry, plan, site, error)
-         case ("remove", "add")
-            call take_change(entry, plan, error)
-         case default
-            call take_point(entry, plan, site, file, warnings, error)
-         end select
-         if (allocated(error)) return
+         associate (entry => later(i))
+            call take_record(entry, file, plan%record_marks, error)
+            if (allocated(error)) return
+            select case (entry%head%word(1))
+            case ("base_acceleration", "base_velocity", "base_displacement")
+               call take_ground(entry, plan, error)
+            case ("fix_line")
+               call hold_line(entry, plan, site, error)
+            case ("bar")
+               call take_bar(entry, plan, site, file, warnings, error)
+            case ("water")
+               call take_water(entry, plan, error)
+            case ("absorb")
+               call take_absorbing(entry, plan, site, error)
+            case ("remove", "add")
+               call take_change(entry, plan, error)
+            case default
+               call take_point(entry, plan, site, file, warnings, error)
+            end select
+            if (allocated(error)) return
+            deallocate (entry%row)
+         end associate
       end do
       call close_held(site%n_held, plan%boundary%held)
       call close_changes(plan, error)
@@ -98,7 +99,7 @@ contains
 
    !> Lists as long as the file says; lines may hold more points than these
    pure subroutine make_lists(later, boundary)
-      type(waiting_entry_t), intent(in) :: later(:)
+      type(entry_t), intent(in) :: later(:)
       type(boundary_t), intent(inout) :: boundary
       integer :: i, n_held, n_loaded, n_measured
 
@@ -106,7 +107,7 @@ contains
       n_loaded = 0
       n_measured = 0
       do i = 1, size(later)
-         select case (later(i)%word(1))
+         select case (later(i)%head%word(1))
          case ("fix", "displacement")
             n_held = n_held + 1
          case ("load", "live")

@@ -2,7 +2,7 @@
 module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
    use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, listed, split_line, &
-      & take_words, waiting_entry_t
+      & take_words
    use dda_block_sites, only : site_t, survey
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : joint_keys, material_keys
@@ -54,7 +54,7 @@ module dda_read_blocks
       !> The entry that is being read
       type(entry_t) :: entry
       !> Entries of points, kept until all blocks are known: (n_later or more)
-      type(waiting_entry_t), allocatable :: later(:)
+      type(entry_t), allocatable :: later(:)
       !> Number of these
       integer :: n_later = 0
    end type reading_t
@@ -65,7 +65,7 @@ module dda_read_blocks
       !> known
       module subroutine add_points(later, plan, site, file, warnings, error, watch)
          !> Their entries in the order of the file; rows of numbers go
-         type(waiting_entry_t), intent(inout) :: later(:)
+         type(entry_t), intent(inout) :: later(:)
          type(block_plan_t), intent(inout) :: plan
          !> Where the blocks are; receives the points too
          type(site_t), intent(inout) :: site
@@ -139,6 +139,7 @@ contains
       reading%file = file
       call new_plan(reading%growing%plan)
       allocate (reading%later(0), reading%entry%row(3, 0))
+      call split_line("", 0, reading%entry%head, error)
       start = 1
       number = 0
       do while (start <= len(text) .and. .not. allocated(error))

@@ -56,8 +56,6 @@ module dda_chain
       real(wp) :: whole_load = 0.0_wp
       !> Largest acceleration of a block that falls freely [m/s2]
       real(wp) :: free_acceleration = 0.0_wp
-      !> Largest stiffness of a spring [N/m per metre depth]
-      real(wp) :: stiffest = 0.0_wp
    end type chain_t
 
 contains
@@ -80,25 +78,22 @@ contains
    !> Set the sums and bounds that depend on all blocks and joints, from these
    pure subroutine weigh(chain)
       type(chain_t), intent(inout) :: chain
-      real(wp) :: mass, load, fastest, stiffest
+      real(wp) :: mass, load, fastest
       integer :: b, n
 
       n = size(chain%block)
       mass = 0.0_wp
       load = 0.0_wp
       fastest = 0.0_wp
-      stiffest = chain%joint(n + 1)%stiffness
       do b = 1, n
          associate (block => chain%block(b))
             mass = mass + block%mass
             load = load + abs(block%weight(1)) + abs(block%weight(2))
             fastest = max(fastest, (block%weight(1)**2 + block%weight(2)**2)/block%mass**2)
          end associate
-         stiffest = max(stiffest, chain%joint(b)%stiffness)
       end do
       chain%mean_mass = mass/real(n, wp)
       chain%whole_load = load
       chain%free_acceleration = sqrt(fastest)
-      chain%stiffest = stiffest
    end subroutine weigh
 end module dda_chain
