@@ -43,7 +43,13 @@ contains
          status = exit_status%bad_input
       else
          if (.not. command%quiet) call print_cut(command%screen, model, cut)
-         if (allocated(command%out)) call write_cut(command%out, cut, error)
+         if (allocated(command%out)) then
+            if (index(command%out, ".vtu", back=.true.) == len(command%out) - 3) then
+               call write_cut_vtu(command%out, cut, error)
+            else
+               call write_cut_table(command%out, cut, error)
+            end if
+         end if
          if (allocated(error)) status = exit_status%not_written
       end if
    end subroutine cut_file
@@ -60,19 +66,6 @@ contains
       if (warnings%left_out > 0) &
          & write (error_unit, "(a)") "and "//to_text(warnings%left_out)//" more warnings"
    end subroutine print_warnings
-
-   !> Write the blocks; the ending of the name says how
-   subroutine write_cut(file, cut, error)
-      character(len=*), intent(in) :: file  !! Name of the file
-      type(cut_model_t), intent(in) :: cut
-      type(error_t), allocatable, intent(out) :: error
-
-      if (index(file, ".vtu", back=.true.) == len(file) - 3) then
-         call write_cut_vtu(file, cut, error)
-      else
-         call write_cut_table(file, cut, error)
-      end if
-   end subroutine write_cut
 
    !> Print counts, areas, and what was dropped
    subroutine print_cut(screen, model, cut)

@@ -105,22 +105,15 @@ contains
       end if
       if (this%has_worst) row%worst_position = &
          & some_number(this%family%deck%value(vehicle_position)%number)
-      if (this%has_worst .and. row%verdict /= "collapsed") &
-         & remark = position_remark(row%worst_position%value, remark)
+      if (this%has_worst .and. row%verdict /= "collapsed") then
+         if (len(remark) > 0) remark = remark//"; "
+         remark = remark//"the least load factor is carried with the first axle at " &
+            & //to_text(row%worst_position%value)//" m"
+      end if
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
    end subroutine tell_case
-
-   !> Where the vehicle was put
-   pure function position_remark(position, before) result(remark)
-      real(wp), intent(in) :: position         !! The position [m]
-      character(len=*), intent(in) :: before
-      character(len=:), allocatable :: remark  !! All of it
-
-      remark = "the least load factor is carried with the first axle at "//to_text(position)//" m"
-      if (len(before) > 0) remark = before//"; "//remark
-   end function position_remark
 
    !> Fill the columns of the proof
    pure subroutine tell_proof(proof, row)

@@ -138,33 +138,22 @@ contains
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(error_t), allocatable, intent(out) :: error
-      type(state_t) :: state
-      integer(int32), allocatable :: whole(:)
-      real(wp), allocatable :: number(:)
-      integer(int64) :: n(2)
-      integer :: n_held
+      integer(int32), allocatable :: joint_whole(:, :)
+      real(wp), allocatable :: joint_number(:, :), held_force(:), reach(:)
 
-      n_held = 0
-      if (allocated(march%held_force)) n_held = size(march%held_force)
-      state%count = [owner_of(settings, system, contacts), size(contacts%joint), n_held, &
-         & march%steps, march%passes]
-      call make_room(state)
-      state%vertex = system%vertex
-      state%motion = system%motion
-      state%velocity = system%velocity
-      state%stress = system%stress
-      state%reach = 0.0_wp
-      if (allocated(march%reach)) state%reach = march%reach
-      if (n_held > 0) state%held_force = march%held_force
-      call pack_joints(system, contacts, state%joint_whole, state%joint_number)
-      associate (e => march%energy)
-         state%march = [march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, e%gravity, &
-            & e%work, e%friction, e%damping, e%impact, e%numerical]
+      allocate (held_force(0))
+      if (allocated(march%held_force)) held_force = march%held_force
+      allocate (reach(size(system%area)), source=0.0_wp)
+      if (allocated(march%reach)) reach = march%reach
+      call pack_joints(system, contacts, joint_whole, joint_number)
+      associate (e => march%energy, all => .true.)
+         call write_numbers(file, title, [owner_of(settings, system, contacts), &
+            & size(contacts%joint), size(held_force), march%steps, march%passes, &
+            & pack(joint_whole, all)], [pack(system%vertex, all), pack(system%motion, all), &
+            & pack(system%velocity, all), pack(system%stress, all), reach, held_force, &
+            & march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, e%gravity, e%work, &
+            & e%friction, e%damping, e%impact, e%numerical, pack(joint_number, all)], error)
       end associate
-      n = lengths(state%count)
-      allocate (whole(n(1)), number(n(2)))
-      call pass_state(.false., whole, number, state)
-      call write_numbers(file, title, whole, number, error)
    end subroutine save_restart
 
    !> Put blocks, contacts and march into the state of a file
@@ -188,7 +177,7 @@ contains
       fault = ""
       call check_counts(settings, system, contacts, whole, size(number), fault)
       if (fault == "" .and. .not. are_finite(number)) fault = "numbers that are none"
-      if (fault == "") call pass_state(.true., whole, number, state)
+      if (fault == "") call take_state(whole, number, state)
       if (fault == "") call take_blocks(settings, state, system, fault)
       if (fault == "") call take_march(settings, contacts, state, march, fault)
       if (fault == "") then
@@ -267,61 +256,36 @@ contains
       end if
    end subroutine check_counts
 
-   !> Carry a state to the numbers of a file, or from there
-   subroutine pass_state(reading, whole, number, state)
-      !> Whether the state is made from the numbers; otherwise they are made from it
-      logical, intent(in) :: reading
-      integer(int32), intent(inout) :: whole(:)
-      !> Its other numbers: (:)
-      real(wp), intent(inout) :: number(:)
-      !> The state; its counts are set if it is made
-      type(state_t), intent(inout) :: state
+   !> The state that the numbers of a file make
+   subroutine take_state(whole, number, state)
+      integer(int32), intent(in) :: whole(:)
+      real(wp), intent(in) :: number(:)  !! Its other numbers: (:)
+      type(state_t), intent(out) :: state
       integer :: at
 
-      if (reading) then
-         state%count = whole(:n_count)
-         call make_room(state)
-         state%joint_whole = reshape(whole(n_count + 1:), shape(state%joint_whole))
-      else
-         whole(:n_count) = state%count
-         whole(n_count + 1:) = reshape(state%joint_whole, [size(state%joint_whole)])
-      end if
+      state%count = whole(:n_count)
       at = 0
-      call pass(size(state%vertex), state%vertex)
-      call pass(size(state%motion), state%motion)
-      call pass(size(state%velocity), state%velocity)
-      call pass(size(state%stress), state%stress)
-      call pass(size(state%reach), state%reach)
-      call pass(size(state%held_force), state%held_force)
-      call pass(n_march, state%march)
-      call pass(size(state%joint_number), state%joint_number)
+      associate (n_block => state%count(1), n_vertex => state%count(2), n_joint => state%count(6))
+         state%joint_whole = reshape(whole(n_count + 1:), [n_joint_whole, n_joint])
+         state%vertex = reshape(next(2*n_vertex), [2, n_vertex])
+         state%motion = reshape(next(6*n_block), [6, n_block])
+         state%velocity = reshape(next(6*n_block), [6, n_block])
+         state%stress = reshape(next(3*n_block), [3, n_block])
+         state%reach = next(n_block)
+         state%held_force = next(state%count(7))
+         state%march = next(n_march)
+         state%joint_number = reshape(next(n_joint_number*n_joint), [n_joint_number, n_joint])
+      end associate
 
    contains
 
-      !> Carry the next numbers
-      subroutine pass(n, values)
-         integer, intent(in) :: n              !! How many
-         real(wp), intent(inout) :: values(n)  !! The numbers of the state: (n)
+      !> The next numbers of the file
+      function next(n) result(values)
+         integer, intent(in) :: n  !! How many
+         real(wp) :: values(n)     !! The numbers: (n)
 
-         if (reading) then
-            values = number(at + 1:at + n)
-         else
-            number(at + 1:at + n) = values
-         end if
+         values = number(at + 1:at + n)
          at = at + n
-      end subroutine pass
-   end subroutine pass_state
-
-   !> Make room for what a file holds
-   pure subroutine make_room(state)
-      type(state_t), intent(inout) :: state  !! The state; its counts are known
-
-      associate (n_block => state%count(1), n_joint => state%count(6))
-         allocate (state%vertex(2, state%count(2)))
-         allocate (state%motion(6, n_block), state%velocity(6, n_block), state%stress(3, n_block))
-         allocate (state%reach(n_block), state%held_force(state%count(7)))
-         allocate (state%joint_whole(n_joint_whole, n_joint))
-         allocate (state%joint_number(n_joint_number, n_joint))
-      end associate
-   end subroutine make_room
+      end function next
+   end subroutine take_state
 end module dda_restart

@@ -2,7 +2,6 @@
 module dda_shape_text
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : loaded_point_t
    use dda_deck, only : deck_t, has_group
@@ -78,27 +77,20 @@ contains
    pure subroutine add_bar_lines(scene, lines)
       type(scene_t), intent(in) :: scene
       type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: text
       integer :: i
 
       if (.not. allocated(scene%settings%boundary%bar)) return
       do i = 1, size(scene%settings%boundary%bar)
-         call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
+         associate (bar => scene%settings%boundary%bar(i), origin => scene%origin)
+            text = "bar "//fields([bar%point(:, 1) + origin, bar%point(:, 2) + origin], " ") &
+               & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)
+            if (.not. bar%pushes) text = text//" slack"
+            if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
+         end associate
+         call add_line(lines, text)
       end do
    end subroutine add_bar_lines
-
-   !> Add a bar
-   pure subroutine add_bar(bar, origin, lines)
-      type(bar_t), intent(in) :: bar
-      real(wp), intent(in) :: origin(2)
-      type(growing_text_t), intent(inout) :: lines
-      character(len=:), allocatable :: text
-
-      text = "bar "//fields([bar%point(:, 1) + origin, bar%point(:, 2) + origin], " ") &
-         & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)
-      if (.not. bar%pushes) text = text//" slack"
-      if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
-      call add_line(lines, text)
-   end subroutine add_bar
 
    !> What a file of blocks has no place for
    pure function shape_losses(deck) result(text)
