@@ -16,23 +16,15 @@ contains
 
    !> Product of two doubles as the sum of two (Dekker 1971)
    module procedure exact_product
-      real(wp) :: x(2), y(2)
+      real(wp) :: high(2), low(2)
 
+      ! numbers of half the digits that add up to each
+      high = 134217729.0_wp*[a, b]
+      high = high - (high - [a, b])
+      low = [a, b] - high
       product = a*b
-      x = halves(a)
-      y = halves(b)
-      rest = ((x(1)*y(1) - product) + x(1)*y(2) + x(2)*y(1)) + x(2)*y(2)
+      rest = ((high(1)*high(2) - product) + high(1)*low(2) + low(1)*high(2)) + low(1)*low(2)
    end procedure exact_product
-
-   !> Two numbers of half the digits that add up to one
-   pure function halves(value)
-      real(wp), intent(in) :: value  !! The one
-      real(wp) :: halves(2), high    !! The two
-
-      high = 134217729.0_wp*value
-      halves(1) = high - (high - value)
-      halves(2) = value - halves(1)
-   end function halves
 
    !> Read a decimal number of usual size, rounded to the nearest double
    module procedure read_short_decimal

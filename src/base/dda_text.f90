@@ -110,8 +110,8 @@ contains
          call shorten(value, beyond, doubt, digits, exponent, known)
          if (.not. known) call try_forms(value, digits, exponent)
       end if
-      n = 0
-      if (sign(1.0_wp, value) < 0.0_wp) call append("-", text, n)
+      n = merge(1, 0, sign(1.0_wp, value) < 0.0_wp)
+      text(:n) = "-"
       call put_plain(digits, exponent, text, n)
    end subroutine print_number
 
@@ -226,7 +226,7 @@ contains
       integer, intent(inout) :: n
       character(len=20) :: digits
       integer(int64) :: rest
-      integer :: n_digits
+      integer :: n_digits, whole
 
       rest = number
       do while (rest > 9)
@@ -234,35 +234,27 @@ contains
          rest = rest/10_int64
       end do
       call put_digits(rest, digits, n_digits)
-      if (exponent >= 0 .and. exponent < 16) then
-         call append(digits(:min(n_digits, exponent + 1)), text, n)
-         if (n_digits <= exponent + 1) then
-            call append(repeat("0", exponent + 1 - n_digits), text, n)
-         else
-            call append("."//digits(exponent + 2:n_digits), text, n)
-         end if
-      else if (exponent < 0 .and. exponent > -5) then
-         call append("0."//repeat("0", -exponent - 1), text, n)
-         call append(digits(:n_digits), text, n)
-      else
-         call append(digits(1:1), text, n)
-         if (n_digits > 1) call append("."//digits(2:n_digits), text, n)
-         call append(merge("e-", "e ", exponent < 0), text, n)
-         if (exponent >= 0) n = n - 1
-         call put_digits(abs(int(exponent, int64)), digits, n_digits)
-         call append(digits(:n_digits), text, n)
+      if (exponent < 0 .and. exponent > -5) then
+         text(n + 1:n + 1 - exponent) = "0.000"
+         n = n + 1 - exponent + n_digits
+         text(n - n_digits + 1:n) = digits
+         return
       end if
+      whole = merge(exponent + 1, 1, exponent >= 0 .and. exponent < 16)
+      text(n + 1:n + whole) = digits
+      n = n + whole
+      if (n_digits > whole) then
+         text(n + 1:n + 1) = "."
+         text(n + 2:n + 1 + n_digits - whole) = digits(whole + 1:)
+         n = n + 1 + n_digits - whole
+      end if
+      if (exponent > -5 .and. exponent < 16) return
+      text(n + 1:n + 2) = merge("e-", "e ", exponent < 0)
+      n = n + merge(2, 1, exponent < 0)
+      call put_digits(abs(int(exponent, int64)), digits, n_digits)
+      text(n + 1:n + n_digits) = digits
+      n = n + n_digits
    end subroutine put_plain
-
-   !> Put a text behind another one
-   pure subroutine append(more, text, n)
-      character(len=*), intent(in) :: more     !! What is put there
-      character(len=*), intent(inout) :: text  !! Has room for it
-      integer, intent(inout) :: n
-
-      text(n + 1:n + len(more)) = more
-      n = n + len(more)
-   end subroutine append
 
    !> How many digits a whole number has
    pure integer function count_digits(number)
@@ -280,18 +272,21 @@ contains
    !> Write the digits of a whole number
    pure subroutine put_digits(number, digits, n)
       integer(int64), intent(in) :: number
-      character(len=20), intent(out) :: digits  !! The digits, from the left
+      character(len=20), intent(out) :: digits  !! The digits, from the left, and zeros behind them
       integer, intent(out) :: n                 !! How many
+      character(len=20) :: right
       integer(int64) :: rest
       integer :: i
 
-      digits = ""
-      n = count_digits(number)
       rest = number
-      do i = n, 1, -1
-         digits(i:i) = achar(iachar("0") + int(mod(rest, 10_int64)))
+      do i = len(right), 1, -1
+         right(i:i) = achar(iachar("0") + int(mod(rest, 10_int64)))
          rest = rest/10_int64
+         if (rest == 0) exit
       end do
+      n = len(right) - i + 1
+      digits = repeat("0", len(digits))
+      digits(:n) = right(i:)
    end subroutine put_digits
 
    !> Decimal text of an integer
