@@ -1,7 +1,7 @@
 !> The command dda
 program dda
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_check, only : check_deck
+   use dda_check, only : check_file
    use dda_command_line, only : command_t, name_of, read_command
    use dda_cut, only : cut_file
    use dda_error, only : error_line, error_t
@@ -58,7 +58,7 @@ contains
       status = exit_status%bad_input
       select case (command%verb)
       case ("check")
-         call check_deck(command, name, status, error)
+         call check_file(command, name, status, error)
       case ("cut")
          call cut_file(command, name, status, error)
       case ("lines")

@@ -15,7 +15,7 @@ module dda_check
    implicit none
    private
 
-   public :: check_deck
+   public :: check_file
 
    interface
 
@@ -34,7 +34,7 @@ module dda_check
 contains
 
    !> Check a deck
-   subroutine check_deck(command, name, status, error)
+   subroutine check_file(command, name, status, error)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name  !! Name of the deck
       integer, intent(out) :: status        !! Exit status of this deck
@@ -56,7 +56,7 @@ contains
          call print_plan(command%screen, name, deck, scene)
       end if
       if (command%record) call print_line(command%screen, record)
-   end subroutine check_deck
+   end subroutine check_file
 
    !> The tables that a run would write, each with its first line, and its deck.record
    function record_text(deck, stem) result(text)
