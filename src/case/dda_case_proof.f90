@@ -12,7 +12,7 @@ submodule (dda_compute_case) dda_case_proof
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
    use dda_scene, only : searched_load
-   use dda_scene_graph, only : decides_as_graph, scene_graph
+   use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_settings, only : settings_t
    use dda_verdict, only : verdict
    implicit none
@@ -28,7 +28,7 @@ contains
       type(limit_load_t) :: limit
       real(wp), allocatable :: dead(:, :)
 
-      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       call prove_state(scene, graph, decision%outcome%verdict, proof)
       if (decision%outcome%verdict /= verdict%stable) return
@@ -62,7 +62,7 @@ contains
       if (allocated(critical%standing)) then
          call build_once(family, critical%stands, stands)
          if (.not. allocated(stands%contacts%joint)) return
-         if (.not. decides_as_graph(stands%settings, stands%contacts)) return
+         if (.not. has_limit_analysis(stands%settings, stands%contacts)) return
          call scene_graph(stands%settings, stands%system, stands%contacts, graph)
          call prove_state(stands, graph, verdict%stable, proof)
          proof%force_at = critical%stands
@@ -70,7 +70,7 @@ contains
       if (.not. allocated(critical%fallen)) return
       call build_once(family, critical%falls, falls)
       if (.not. allocated(falls%contacts%joint)) return
-      if (.not. decides_as_graph(falls%settings, falls%contacts)) return
+      if (.not. has_limit_analysis(falls%settings, falls%contacts)) return
       call scene_graph(falls%settings, falls%system, falls%contacts, graph)
       call prove_state(falls, graph, verdict%collapsed, other)
       if (.not. allocated(other%velocity)) return

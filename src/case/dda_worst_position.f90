@@ -16,7 +16,7 @@ submodule (dda_compute_case) dda_worst_position
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_scene, only : searched_load
-   use dda_scene_graph, only : decides_as_graph, scene_graph
+   use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
    use dda_submatrices, only : point_load
@@ -58,7 +58,7 @@ contains
 
       position = 0.0_wp
       found = .false.
-      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call take_bridge(deck, scene, bridge)
       call part_road(bridge, stretch)
       first = 1

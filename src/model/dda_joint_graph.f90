@@ -14,7 +14,7 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, crushes, keep_joints, rubs
+   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -49,6 +49,11 @@ module dda_joint_graph
       !> Compressive strength times length; huge where the joint does not crush; unallocated where
       !> none does: (n_joint) [N/m]
       real(wp), allocatable :: crush(:)
+      !> Tensile force that each corner of a whole joint carries, unallocated where none carries
+      !> any nor has cohesion: (2, n_joint) [N/m]
+      real(wp), allocatable :: pull(:, :)
+      !> Cohesion times length that each corner has while it is whole; likewise: (2, n_joint) [N/m]
+      real(wp), allocatable :: cohesion(:, :)
       !> Displacement by unit force at corner 1, corner 2 and along the joint: (3, n_joint) [m2/N]
       real(wp), allocatable :: compliance(:, :)
       !> Opening of the corners where nothing has moved: (2, n_joint) [m]
@@ -76,6 +81,13 @@ contains
          & .and. friction > 0.0_wp .and. friction < rough
    end function rubs
 
+   !> Whether a joint has strength that it loses where it slides or opens
+   pure logical function breaks(graph)
+      type(joint_graph_t), intent(in) :: graph
+
+      breaks = allocated(graph%cohesion)
+   end function breaks
+
    !> Whether a joint may be crushed
    pure logical function crushes(graph)
       type(joint_graph_t), intent(in) :: graph
@@ -99,6 +111,9 @@ contains
       graph%compliance = graph%compliance(:, k)
       graph%gap = graph%gap(:, k)
       if (allocated(graph%crush)) graph%crush = graph%crush(k)
+      if (.not. breaks(graph)) return
+      graph%pull = graph%pull(:, k)
+      graph%cohesion = graph%cohesion(:, k)
    end subroutine keep_joints
 
    !> Opening at both corners and slip of every joint

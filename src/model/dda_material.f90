@@ -5,7 +5,7 @@ module dda_material
    private
 
    public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
-   public :: friction_left, loses_strength
+   public :: breaks_at_once, friction_left, loses_strength
 
    !> What a block is made of
    type :: material_t
@@ -69,6 +69,14 @@ contains
       loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp &
          & .or. law%residual < law%friction
    end function loses_strength
+
+   !> Whether the first slip takes all strength that a joint can lose, but for its friction
+   elemental logical function breaks_at_once(law)
+      type(joint_law_t), intent(in) :: law
+
+      breaks_at_once = .not. (law%residual < law%friction .or. law%slip_length > 0.0_wp &
+         & .or. law%strength < huge(1.0_wp))
+   end function breaks_at_once
 
    !> Coefficient of friction of a joint that has lost some of its strength
    elemental real(wp) function friction_left(law, intact)

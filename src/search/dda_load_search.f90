@@ -4,7 +4,7 @@ submodule (dda_critical) dda_load_search
    use dda_decision, only : follow_from_rest, record_collapse, record_rest
    use dda_error, only : error_t
    use dda_graph_decision, only : see_fall, slide_along
-   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
@@ -117,7 +117,7 @@ contains
       to = high
       may_stand = .true.
       no_order = knows_no_order(scene%settings, graph)
-      if (.not. (right%falls_dead .or. left%falls_dead)) return
+      if (breaks(graph) .or. .not. (right%falls_dead .or. left%falls_dead)) return
       if (.not. may_seek(load, scene, no_order, to - from)) return
       if (.not. no_order .and. right%stands_upright .and. left%stands_upright) return
       call seek_rest(load, scene, graph, from, to, origin, found, n)
@@ -227,8 +227,8 @@ contains
       type(limit_load_t), intent(out) :: limit
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), tolerance
 
-      if (load == searched_load%tilt .and. .not. (only_weight(scene%settings) &
-         & .and. is_push(last))) return
+      if (breaks(graph) .or. load == searched_load%tilt .and. .not. &
+         & (only_weight(scene%settings) .and. is_push(last))) return
       dead = full_loads(with_coefficient(scene%settings, load, origin), scene, graph)
       ! gravity and a push across it are gravity that tilts
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)

@@ -14,7 +14,7 @@ submodule (dda_decision) dda_stages
    use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
    use dda_path_event, only : path_end
-   use dda_scene_graph, only : decides_as_graph, scene_graph
+   use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_verdict, only : outcome_t, verdict
    implicit none
 
@@ -46,7 +46,7 @@ contains
          last = 0.0_wp
          if (settings%dynamic .and. settings%current) then
             call move_through(settings, time, decision, album, onward, last)
-         else if (decides_as_graph(settings, decision%contacts)) then
+         else if (has_limit_analysis(settings, decision%contacts)) then
             call decide_at_rest(settings, time, decision, last)
          else
             decision%outcome%reason = "stages need friction alone and geometry = 'reference' " &

@@ -5,7 +5,7 @@
 !> of a joint and the mean mass of a block are 1, so that every threshold of a path is a plain
 !> number. An elastic displacement is of order 1.
 module dda_coulomb_joints
-   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_joint_graph, only : breaks, joint_graph_t, joint_kind
    use dda_kinds, only : wp
    implicit none
    private
@@ -82,6 +82,10 @@ contains
       joints%has_weight = unit > 0.0_wp
       if (.not. joints%has_weight) return
       joints%graph%gap = joints%graph%gap*(joints%force_unit/unit)
+      if (breaks(joints%graph)) then
+         joints%graph%pull = joints%graph%pull*(joints%force_unit/unit)
+         joints%graph%cohesion = joints%graph%cohesion*(joints%force_unit/unit)
+      end if
       joints%motion_unit = joints%motion_unit*(unit/joints%force_unit)
       joints%force_unit = unit
    end subroutine set_force_unit
@@ -99,10 +103,10 @@ contains
             shear = shear_role%tied
             select case (joints%graph%kind(j))
             case (joint_kind%contact)
-               shear = friction_role(joints%graph%friction(j))
+               shear = slide_role(joints%graph, j)
             case (joint_kind%corner)
                ends(2) = end_role%absent
-               shear = friction_role(joints%graph%friction(j))
+               shear = slide_role(joints%graph, j)
             case (joint_kind%corner_no_slip)
                ends(2) = end_role%absent
             case (joint_kind%pin)
@@ -115,12 +119,15 @@ contains
       end do
    end subroutine set_roles
 
-   !> What a joint with friction can do along itself
-   pure integer function friction_role(friction)
-      real(wp), intent(in) :: friction  !! Its coefficient
+   !> What a joint that may slide can do along itself
+   pure integer function slide_role(graph, j)
+      type(joint_graph_t), intent(in) :: graph
+      integer, intent(in) :: j  !! Number of the joint
 
-      friction_role = merge(shear_role%frictional, shear_role%absent, friction > 0.0_wp)
-   end function friction_role
+      slide_role = merge(shear_role%frictional, shear_role%absent, graph%friction(j) > 0.0_wp)
+      if (.not. breaks(graph)) return
+      if (any(graph%cohesion(:, j) > 0.0_wp)) slide_role = shear_role%frictional
+   end function slide_role
 
    !> Loads in the units of the joints
    pure function in_units(joints, load) result(scaled)

@@ -6,17 +6,19 @@
 !>    N = max(0, t),  gap = max(0, -compliance*t),  t = N_before - (opening + gap_before)/compliance
 !>    T = t_T within +-friction*(N1 + N2),          t_T = T_before - slip/compliance_T
 !>
-!> Where both corners are open the joint carries no shear force and forgets the one it had.
+!> Where both corners are open the joint carries no shear force and forgets the one it had. A whole
+!> joint carries more: N >= -pull, |T| <= cohesion + friction*(N1 + N2). A corner that opens loses
+!> that for good, and so do both where the joint slides.
 !>
 !> Equation (M4) of docs/method.md
 module dda_coulomb_law
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_joint_graph, only : add_joint_forces
+   use dda_joint_graph, only : add_joint_forces, breaks
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: coulomb_state_t, face, face_enum
+   public :: coulomb_state_t, face, face_enum, break_joint, strength
    public :: unloaded_state, apply_law, joint_stiffness, spring_forces, imbalance, &
       & force_faces, shear_face
 
@@ -45,6 +47,8 @@ module dda_coulomb_law
       real(wp), allocatable :: slip(:)
       !> What corner 1, corner 2 and the joint along itself do: (3, n_joint)
       integer, allocatable :: face(:, :)
+      !> Corners that have kept their strength; unallocated where none has any: (2, n_joint)
+      logical, allocatable :: whole(:, :)
       !> Load that it carries: (n_dof, n_block)
       real(wp), allocatable :: load(:, :)
    end type coulomb_state_t
@@ -68,6 +72,8 @@ contains
       state%force = 0.0_wp
       state%slip = 0.0_wp
       state%gap = joints%graph%gap
+      if (breaks(joints%graph)) state%whole = joints%graph%cohesion > 0.0_wp &
+         & .or. joints%graph%pull > 0.0_wp
       do j = 1, n_joint
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%absent) state%gap(i, j) = 0.0_wp
@@ -78,6 +84,25 @@ contains
          state%face(3, j) = shear_face(joints, j, state%face(:2, j), face%stuck)
       end do
    end function unloaded_state
+
+   !> Strength of a joint beside friction: how far its corners can be pulled, at most as far as the
+   !> apex of its law, and the shear force that it carries without a normal force
+   pure function strength(joints, state, j)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: strength(3)   !! Pull of corner 1, of corner 2, cohesion
+
+      strength = 0.0_wp
+      if (.not. allocated(state%whole)) return
+      associate (graph => joints%graph, whole => state%whole(:, j))
+         strength(:2) = merge(graph%pull(:, j), 0.0_wp, whole)
+         strength(3) = sum(graph%cohesion(:, j), whole)
+         if (joints%shear_role(j) == shear_role%frictional .and. &
+            & graph%friction(j)*sum(strength(:2)) > strength(3)) strength(:2) = &
+            & strength(:2)*(strength(3)/(graph%friction(j)*sum(strength(:2))))
+      end associate
+   end function strength
 
    !> What a joint does along itself, where it can do nothing else
    pure integer function shear_face(joints, j, ends, otherwise)
@@ -105,19 +130,20 @@ contains
       real(wp), intent(in), contiguous :: opening(:, :)
       !> State after; its motion and load are left alone
       type(coulomb_state_t), intent(inout) :: after
-      real(wp) :: bound, trial
+      real(wp) :: bond(3), bound, trial
       integer :: i, j
 
       do j = 1, size(opening, 2)
+         bond = strength(joints, before, j)
          do i = 1, 2
             associate (c => joints%graph%compliance(i, j), f => after%force(i, j))
                after%gap(i, j) = 0.0_wp
                select case (joints%end_role(i, j))
                case (end_role%contact)
                   trial = before%force(i, j) - (opening(i, j) + before%gap(i, j))/c
-                  f = max(trial, 0.0_wp)
-                  after%gap(i, j) = max(-trial*c, 0.0_wp)
-                  after%face(i, j) = merge(face%open, face%closed, trial < 0.0_wp)
+                  after%face(i, j) = merge(face%open, face%closed, trial < -bond(i))
+                  f = merge(0.0_wp, trial, after%face(i, j) == face%open)
+                  if (after%face(i, j) == face%open) after%gap(i, j) = -trial*c
                case (end_role%tied)
                   f = before%force(i, j) - (opening(i, j) + before%gap(i, j))/c
                   after%face(i, j) = face%closed
@@ -132,16 +158,64 @@ contains
          after%force(3, j) = trial
          if (joints%shear_role(j) == shear_role%frictional) then
             bound = joints%graph%friction(j)*(after%force(1, j) + after%force(2, j))
-            if (abs(trial) > bound) then
+            if (abs(trial) > bound + bond(3)) then
                after%face(3, j) = merge(face%slides, face%slides_back, trial > 0.0_wp)
-               after%force(3, j) = sign(bound, trial)
+               after%force(3, j) = sign(max(0.0_wp, bound), trial)
             end if
          end if
          after%face(3, j) = shear_face(joints, j, after%face(:2, j), after%face(3, j))
          if (after%face(3, j) == face%free) after%force(3, j) = 0.0_wp
          after%slip(j) = before%slip(j) + joints%graph%compliance(3, j)*(after%force(3, j) - trial)
       end do
+      if (.not. allocated(before%whole)) return
+      after%whole = before%whole
+      do j = 1, size(opening, 2)
+         call break_joint(joints, j, after)
+      end do
    end subroutine apply_law
+
+   !> Take from a joint the strength of what has opened or slides, and from its forces what the rest
+   !> does not carry
+   pure subroutine break_joint(joints, j, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j  !! Number of the joint
+      type(coulomb_state_t), intent(inout) :: state
+      real(wp) :: bond(3), bound, shear
+      logical :: broken, was_whole(2)
+      integer :: i
+
+      shear = state%force(3, j)
+      do
+         was_whole = state%whole(:, j)
+         state%whole(:, j) = was_whole .and. state%face(:2, j) == face%closed &
+            & .and. abs(state%face(3, j)) /= face%slides
+         broken = any(was_whole .neqv. state%whole(:, j))
+         bond = strength(joints, state, j)
+         do i = 1, 2
+            if (joints%end_role(i, j) /= end_role%contact) cycle
+            if (.not. state%force(i, j) < -bond(i)) cycle
+            state%gap(i, j) = -state%force(i, j)*joints%graph%compliance(i, j)
+            state%force(i, j) = 0.0_wp
+            state%face(i, j) = face%open
+            broken = .true.
+         end do
+         state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
+         if (joints%shear_role(j) == shear_role%frictional) then
+            bound = joints%graph%friction(j)*sum(state%force(:2, j)) + bond(3)
+            if (abs(state%force(3, j)) > bound .and. state%face(3, j) == face%stuck) then
+               state%face(3, j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
+               broken = .true.
+            end if
+            if (state%face(3, j) == face%free) then
+               state%force(3, j) = 0.0_wp
+            else if (state%face(3, j) /= face%stuck) then
+               state%force(3, j) = real(state%face(3, j), wp)*bound
+            end if
+         end if
+         if (.not. broken) exit
+      end do
+      state%slip(j) = state%slip(j) + joints%graph%compliance(3, j)*(state%force(3, j) - shear)
+   end subroutine break_joint
 
    !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)

@@ -23,6 +23,8 @@ module dda_event_rates
       logical, allocatable :: limit(:, :)
       !> Faces where they are given: (3, n_joint)
       integer, allocatable :: given(:, :)
+      !> Joints whose cohesion keeps them from sliding until a corner has opened: (n_joint)
+      logical, allocatable :: holds(:)
    end type rate_law_t
 
    !> Where the line of a motion meets a bend of the law
@@ -97,8 +99,9 @@ module dda_event_rates
       end function break_rate
 
       !> Faces of a joint beyond a bend
-      pure module subroutine cross_break(joints, break, opening, faces)
+      pure module subroutine cross_break(joints, law, break, opening, faces)
          type(coulomb_joints_t), intent(in) :: joints
+         type(rate_law_t), intent(in) :: law
          type(break_t), intent(in) :: break
          real(wp), intent(in) :: opening(:, :)
          integer, intent(inout) :: faces(:, :)
@@ -278,7 +281,7 @@ contains
          end if
          motion = motion + (sense*break%distance)*ahead
          opening = opening + (sense*break%distance)*wide
-         call cross_break(joints, break, opening, faces)
+         call cross_break(joints, law, break, opening, faces)
       end do
    end subroutine pivot_to_load
 end module dda_event_rates

@@ -14,7 +14,7 @@ module dda_load_jump
    private
 
    public :: motion_end, motion_end_enum, jump_t, moves_unbalanced
-   public :: far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance
+   public :: far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance, share_anew
 
    !> How a motion ends
    type :: motion_end_enum
@@ -125,6 +125,21 @@ contains
       if (end == motion_end%balanced) state = moved
       equations%most_pivots = most_pivots
    end subroutine nudge_to_balance
+
+   !> Let the blocks share out anew what a joint has ceased to carry, at the same load
+   pure subroutine share_anew(joints, equations, load, far, state, jump, end)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      real(wp), intent(in) :: load(:, :)  !! The load: (n_dof, n_block)
+      real(wp), intent(in) :: far         !! A motion beyond this is far
+      type(coulomb_state_t), intent(inout) :: state
+      type(jump_t), intent(inout) :: jump
+      integer, intent(out) :: end
+
+      jump%far = far
+      jump%tolerance = rounding*max(1.0_wp, maxval(abs(state%force)))
+      call jump_to_balance(joints, equations, load, state, jump, end)
+   end subroutine share_anew
 
    !> Let the blocks move at a load that is somewhat larger
    pure subroutine try_nudge(joints, equations, load_rate, opening_rate, more, state, jump, &

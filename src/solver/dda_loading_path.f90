@@ -15,12 +15,12 @@ module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, new_coulomb_joints, set_force_unit
-   use dda_coulomb_law, only : coulomb_state_t, imbalance
+   use dda_coulomb_law, only : coulomb_state_t, imbalance, unloaded_state
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
-   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
-      & nudge_to_balance
+      & nudge_to_balance, share_anew
    use dda_path_event, only : event_kind, event_t, move_on, next_event, path_end
    implicit none
    private
@@ -149,9 +149,20 @@ contains
       !> How it went; "reached" is 1 for the whole load
       type(path_result_t), intent(out) :: result
       type(jump_t) :: jump
+      type(path_rate_t) :: rate
       integer :: end
 
       call new_path(graph, dead_load, path)
+      if (breaks(graph)) then
+         ! what breaks, and when, depends on how the load grows
+         call new_rate(graph, rate)
+         rate%load = dead_load
+         state = unloaded_state(path%joints)
+         state%gap = graph%gap
+         call follow_path(path, state, rate, 1.0_wp, result)
+         path%softness = 0.0_wp
+         return
+      end if
       call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
          & jump, end)
       result%end = path_end%reached
@@ -166,7 +177,8 @@ contains
    pure subroutine follow_path(path, state, rate, h_end, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
-      !> In: a state in balance; out: the last one in balance on the way
+      !> In: a state in balance; out: the last one in balance on the way, whole but for what has
+      !> broken as it fell
       type(coulomb_state_t), intent(inout) :: state
       type(path_rate_t), intent(in) :: rate
       !> How much of it is asked for, as a multiple
@@ -222,13 +234,16 @@ contains
       type(path_rate_t), intent(in) :: way
       real(wp), intent(in) :: h_end
       type(path_result_t), intent(inout) :: result
+      type(coulomb_state_t) :: last
       type(event_t) :: event
       type(rates_t) :: rates
       real(wp) :: first_load(size(way%load, 1), size(way%load, 2)), last_jump, width
-      integer :: standstill, i
+      type(jump_t) :: jump
+      integer :: end, standstill, i
       logical :: found, slow
 
       first_load = state%load
+      end = motion_end%balanced
       standstill = 0
       last_jump = -1.0_wp
       width = nudge
@@ -243,10 +258,22 @@ contains
          if (found .and. rates%unbalanced <= rests_unbalanced) then
             event = next_event(path%joints, state, rates, h_end - result%reached)
             standstill = merge(standstill + 1, 0, event%distance < no_way)
+            if (allocated(state%whole)) last = state
             call move_on(path%joints, rates, event, state)
             result%reached = merge(h_end, result%reached + event%distance, &
                & event%kind == event_kind%none)
             result%n_event = result%n_event + 1
+            if (allocated(state%whole)) then
+               if (any(last%whole .neqv. state%whole)) call share_anew(path%joints, &
+                  & path%equations, first_load + result%reached*way%load, far_of(path, state), &
+                  & state, jump, end)
+               if (end /= motion_end%balanced) then
+                  call note_fall(end, jump, result)
+                  last%whole = state%whole
+                  state = last
+                  return
+               end if
+            end if
          else
             slow = result%reached - last_jump < slow_factor*width
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
@@ -260,6 +287,14 @@ contains
       result%end = path_end%undecided
       result%reason = path_reason%too_many
    end subroutine follow
+
+   !> A motion beyond this is far
+   pure real(wp) function far_of(path, state)
+      type(loading_path_t), intent(in) :: path
+      type(coulomb_state_t), intent(in) :: state
+
+      far_of = far_factor*max(path%softness*max(1.0_wp, maxval(abs(state%force))), path%given)
+   end function far_of
 
    !> Go on by a jump
    pure subroutine jump_on(path, state, way, width, h_end, result)
@@ -277,7 +312,7 @@ contains
       real(wp) :: before(size(state%motion, 1), size(state%motion, 2)), gained
       integer :: end
 
-      jump%far = far_factor*max(path%softness*max(1.0_wp, maxval(abs(state%force))), path%given)
+      jump%far = far_of(path, state)
       before = state%motion
       call nudge_to_balance(path%joints, path%equations, way%load, way%opening, width, &
          & h_end - result%reached, state, jump, gained, end)

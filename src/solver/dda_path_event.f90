@@ -2,7 +2,7 @@
 !> changes in proportion
 module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : coulomb_state_t, face, shear_face
+   use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength
    use dda_event_rates, only : rates_t
    use dda_kinds, only : wp
    implicit none
@@ -61,15 +61,17 @@ contains
       type(coulomb_state_t), intent(in) :: state  !! Where the assembly is
       type(rates_t), intent(in) :: rates
       real(wp), intent(in) :: longest             !! Distance within which an event counts
-      real(wp) :: bound(2)
+      real(wp) :: bond(3), bound(2)
       integer :: i, j
 
       event%distance = longest
       do j = 1, size(rates%face, 2)
+         bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
             if (rates%face(i, j) == face%closed) then
-               call meet(state%force(i, j), rates%force(i, j), event_kind%opens, j, i, event)
+               call meet(state%force(i, j) + bond(i), rates%force(i, j), event_kind%opens, j, i, &
+                  & event)
             else
                call meet(state%gap(i, j), rates%opening(i, j), event_kind%closes, j, i, event)
             end if
@@ -78,6 +80,7 @@ contains
          if (joints%shear_role(j) /= shear_role%frictional) cycle
          bound = joints%graph%friction(j) &
             & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
+         bound(1) = bound(1) + bond(3)
          call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), event_kind%slides, &
             & j, 0, event)
          call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), &
@@ -104,12 +107,13 @@ contains
       type(rates_t), intent(in) :: rates  !! Rates of the state
       type(event_t), intent(in) :: event  !! The event, or the end of the way
       type(coulomb_state_t), intent(inout) :: state
-      real(wp) :: shear
+      real(wp) :: bond(3), shear
       integer :: i, j
 
       state%motion = state%motion + event%distance*rates%motion
       state%face = rates%face
       do j = 1, size(rates%face, 2)
+         bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%tied) then
                state%force(i, j) = state%force(i, j) + event%distance*rates%force(i, j)
@@ -118,7 +122,8 @@ contains
                if (joints%end_role(i, j) == end_role%contact) state%gap(i, j) = &
                   & max(0.0_wp, state%gap(i, j) + event%distance*rates%opening(i, j))
             else
-               state%force(i, j) = max(0.0_wp, state%force(i, j) + event%distance*rates%force(i, j))
+               state%force(i, j) = max(0.0_wp - bond(i), state%force(i, j) &
+                  & + event%distance*rates%force(i, j))
                state%gap(i, j) = 0.0_wp
             end if
          end do
@@ -127,10 +132,14 @@ contains
             & state)
          state%slip(j) = state%slip(j) + event%distance*rates%opening(3, j) &
             & + joints%graph%compliance(3, j)*(state%force(3, j) - shear)
+         if (allocated(state%whole)) call break_joint(joints, j, state)
       end do
       j = event%joint
       select case (event%kind)
       case (event_kind%opens)
+         ! what a tensile force has stretched is a gap
+         state%gap(event%corner, j) = max(0.0_wp, -state%force(event%corner, j) &
+            & *joints%graph%compliance(event%corner, j))
          state%force(event%corner, j) = 0.0_wp
          state%face(event%corner, j) = face%open
          state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
@@ -144,6 +153,8 @@ contains
          state%face(3, j) = merge(face%slides, face%slides_back, event%kind == event_kind%slides)
          call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
       end select
+      if (allocated(state%whole) .and. event%kind /= event_kind%none) &
+         & call break_joint(joints, j, state)
    end subroutine move_on
 
    !> Set the shear force of a joint as what it does allows
@@ -153,18 +164,20 @@ contains
       integer, intent(in) :: does    !! What it does along itself
       real(wp), intent(in) :: trial  !! The force if it sticks
       type(coulomb_state_t), intent(inout) :: state
-      real(wp) :: bound
+      real(wp) :: bond(3), bound
 
       bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j))
       select case (does)
       case (face%stuck)
          state%force(3, j) = trial
-         if (joints%shear_role(j) == shear_role%frictional) state%force(3, j) = &
-            & max(-bound, min(bound, trial))
+         if (joints%shear_role(j) == shear_role%frictional) then
+            bond = strength(joints, state, j)
+            state%force(3, j) = max(-bound - bond(3), min(bound + bond(3), trial))
+         end if
       case (face%free)
          state%force(3, j) = 0.0_wp
       case default
-         state%force(3, j) = real(does, wp)*bound
+         state%force(3, j) = real(does, wp)*max(0.0_wp, bound)
       end select
    end subroutine take_shear
 end module dda_path_event

@@ -6,51 +6,61 @@
 !> pieces.
 submodule (dda_event_rates) dda_rate_law
    use dda_coulomb_joints, only : end_role, shear_role
-   use dda_coulomb_law, only : face, shear_face
+   use dda_coulomb_law, only : face, shear_face, strength
    implicit none
 
    !> A force below this part of a block's weight is none, a gap that it would close is none
    real(wp), parameter :: weak_force = 1.0e-9_wp
    !> A joint at its limit sticks unless its shear force would grow beyond it by this share
    real(wp), parameter :: slide_margin = 1.0e-12_wp
+   !> A whole joint is not opened by less than this share of the largest rate
+   real(wp), parameter :: rounding = 1.0e-11_wp
 
 contains
 
    !> The law of a state
    module procedure set_rate_law
-      real(wp) :: bound
+      real(wp) :: bond(3), bound
       integer :: i, j
       logical :: pushes(2)
 
       allocate (law%weak(2, size(state%slip)), law%limit(2, size(state%slip)))
-      allocate (law%given(3, size(state%slip)))
+      allocate (law%given(3, size(state%slip)), law%holds(size(state%slip)))
       do j = 1, size(state%slip)
+         bond = strength(joints, state, j)
          do i = 1, 2
-            pushes(i) = joints%end_role(i, j) == end_role%tied .or. state%force(i, j) > weak_force
+            pushes(i) = joints%end_role(i, j) == end_role%tied &
+               & .or. state%force(i, j) + bond(i) > weak_force
             law%weak(i, j) = .not. (pushes(i) .or. joints%end_role(i, j) == end_role%absent &
                & .or. state%gap(i, j) > weak_force*joints%graph%compliance(i, j))
             law%given(i, j) = merge(face%closed, face%open, pushes(i))
          end do
-         law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)
-         bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j))
+         law%holds(j) = bond(3) > 0.0_wp
+         law%given(3, j) = face%stuck
+         if (.not. law%holds(j)) &
+            & law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)
+         bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j)) + bond(3)
          law%limit(:, j) = .not. any(pushes)
-         if (any(pushes)) law%limit(:, j) = [bound - state%force(3, j) <= weak_force, &
-            & bound + state%force(3, j) <= weak_force]
+         if (any(pushes) .or. law%holds(j)) law%limit(:, j) = &
+            & [bound - state%force(3, j), bound + state%force(3, j)] <= weak_force
          if (joints%shear_role(j) /= shear_role%frictional) law%limit(:, j) = .false.
       end do
    end procedure set_rate_law
 
    !> What joints do with rates of opening
    module procedure follow_law
-      real(wp) :: beyond(2), margin
+      real(wp) :: beyond(2), margin, still
       integer :: i, j
 
       faces = law%given
+      still = rounding*maxval(abs(opening))
       do j = 1, size(faces, 2)
          do i = 1, 2
-            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) > 0.0_wp)
+            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) &
+               & > merge(still, 0.0_wp, law%holds(j)))
          end do
-         if (any(law%weak(:, j))) faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
+         if (any(law%weak(:, j)) .and. .not. law%holds(j)) &
+            & faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
          beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
          margin = slide_margin*abs(opening(3, j))/joints%graph%compliance(3, j)
@@ -146,7 +156,7 @@ contains
          if (faces(3, j) == face%free) faces(3, j) = merge(face%slides_back, face%slides, &
             & opening(3, j) > 0.0_wp)
          if (joints%shear_role(j) /= shear_role%frictional) faces(3, j) = face%stuck
-         faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
+         if (.not. law%holds(j)) faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
       end if
    end procedure cross_break
 

@@ -10,7 +10,7 @@ module dda_graph_decision
    use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t
    use dda_first_fall, only : find_coulomb_fall, find_first_motion
-   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_graph, only : breaks, crushes, joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, decide_on_way, load_decision_t, load_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
@@ -55,6 +55,10 @@ contains
       logical :: dead_alone, on_way
 
       call scene_graph(settings, system, contacts, graph)
+      if (breaks(graph)) then
+         call follow_breaking(settings, system, graph, verdict)
+         return
+      end if
       allocate (load(3, graph%n_block))
       stations = stations_of(settings, system, graph, present(start))
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
@@ -93,6 +97,26 @@ contains
       path%no_start = path%no_start .and. verdict%end == path_end%reached
       verdict = path
    end subroutine decide_graph
+
+   !> Follow joints that break: no limit analysis knows them, so that the path alone decides.
+   !> Gravity acts as it is where it points upwards, as on what hangs, or where the blocks fall
+   !> upright
+   pure subroutine follow_breaking(settings, system, graph, verdict)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      type(graph_verdict_t), intent(out) :: verdict
+
+      logical :: upright
+
+      upright = cos(settings%tilt) > 0.0_wp
+      call follow_stations(settings, system, graph, load_stations(settings, upright), verdict)
+      if (verdict%no_start .and. upright .and. abs(settings%tilt) > 0.0_wp) &
+         & call follow_stations(settings, system, graph, load_stations(settings, .false.), verdict)
+      verdict%no_start = .false.
+      verdict%is_told = .true.
+      verdict%unproven = verdict%end == path_end%undecided
+   end subroutine follow_breaking
 
    !> Blocks that fall by their dead loads fall before what is live could hold them
    pure subroutine see_dead_fall(settings, system, graph, stations, path)

@@ -5,7 +5,7 @@ module dda_graph_report
    use dda_boundary, only : value_at
    use dda_contact_types, only : joint_place_t, rows_of_joint
    use dda_contacts, only : contacts_t, joint_place
-   use dda_coulomb_law, only : face
+   use dda_coulomb_law, only : coulomb_state_t, face
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_motion
    use dda_kinds, only : wp
@@ -39,6 +39,7 @@ contains
       integer :: j
 
       call scene_graph(settings, system, contacts, graph)
+      if (allocated(verdict%state)) call keep_whole(verdict%state, contacts)
       allocate (rate(3, size(graph%kind)))
       call joint_motion(graph, verdict%mechanism, rate)
       contacts%increment = rate(:, :size(contacts%joint))
@@ -90,6 +91,7 @@ contains
       if (settings%n_dof == 6) call strain_blocks(settings, last_history_time(settings), &
          & contacts%force, force(:, n + 1:), contacts, system)
       if (.not. allocated(verdict%state)) return
+      call keep_whole(verdict%state, contacts)
       associate (state => verdict%state)
          contacts%gap(1:2, :) = state%gap(:, :n)
          contacts%gap(3, :) = state%slip(:n)
@@ -103,6 +105,15 @@ contains
          end do
       end associate
    end subroutine show_state
+
+   !> Which contacts have kept their strength
+   pure subroutine keep_whole(state, contacts)
+      type(coulomb_state_t), intent(in) :: state
+      type(contacts_t), intent(inout) :: contacts
+
+      if (allocated(state%whole)) contacts%intact = merge(1.0_wp, 0.0_wp, &
+         & state%whole(:, :size(contacts%joint)))
+   end subroutine keep_whole
 
    !> Set strains and stresses of the blocks that can move: area*stress = moment of the forces
    pure subroutine strain_blocks(settings, time, force, pin_force, contacts, system)

@@ -7,15 +7,15 @@ module dda_scene_graph
    use dda_contacts, only : contacts_t, joint_place
    use dda_coulomb_law, only : coulomb_state_t
    use dda_deformation, only : displacement_matrix
-   use dda_joint_graph, only : joint_graph_t, joint_kind, rubs
+   use dda_joint_graph, only : breaks, joint_graph_t, joint_kind, rubs
    use dda_kinds, only : wp
-   use dda_material, only : loses_strength
+   use dda_material, only : breaks_at_once, loses_strength
    use dda_settings, only : flow_rule, settings_t
    use dda_submatrices, only : mass_matrix
    implicit none
    private
 
-   public :: scene_graph, has_pure_friction, decides_as_graph, has_friction, graph_verdict_t
+   public :: scene_graph, decides_as_graph, has_friction, has_limit_analysis, graph_verdict_t
 
    !> Mass of such a node over that of a block
    real(wp), parameter :: node_mass = 1.0e-6_wp
@@ -108,6 +108,7 @@ contains
                & system%centroid(:, contacts%joint(j)%block(k)), no_motion, n_rigid)
          end do
       end do
+      if (.not. has_pure_friction(contacts)) call add_strength(contacts, graph)
       compliance = 1.0_wp
       if (n > 0) compliance = minval(graph%compliance(:, :n))/pin_stiffness
       do i = 1, size(pin)
@@ -129,6 +130,22 @@ contains
       e = graph%n_block - size(graph%bound)
       graph%mass(:, e + 1:) = node_mass*sum(graph%mass(1, :e))/real(max(1, e), wp)
    end subroutine scene_graph
+
+   !> Cohesion and tensile strength of joints that lose them where they slide or open
+   pure subroutine add_strength(contacts, graph)
+      type(contacts_t), intent(in) :: contacts
+      type(joint_graph_t), intent(inout) :: graph
+      integer :: j
+
+      allocate (graph%pull(2, size(graph%kind)), graph%cohesion(2, size(graph%kind)), &
+         & source=0.0_wp)
+      do j = 1, size(contacts%joint)
+         associate (joint => contacts%joint(j))
+            graph%pull(:, j) = joint%law%tension*joint%contact%length
+            graph%cohesion(:, j) = joint%law%cohesion*joint%contact%length
+         end associate
+      end do
+   end subroutine add_strength
 
    !> Bounded forces of a scene that have a bound: each has a carrier without weight in the graph
    pure integer function n_carrier(settings)
@@ -266,20 +283,40 @@ contains
       allocate (graph%gap(2, n), source=0.0_wp)
    end subroutine allocate_joints
 
-   !> Whether a scene is decided so: at rest, where the blocks are, by friction alone
+   !> Whether a scene is decided so: at rest, where the blocks are, by friction, or on a loading
+   !> path by strength that the first slip or opening takes
    pure logical function decides_as_graph(settings, contacts)
       type(settings_t), intent(in) :: settings
       type(contacts_t), intent(in) :: contacts
 
-      decides_as_graph = .not. (settings%dynamic .or. settings%current &
-         & .or. settings%collapse_displacement > 0.0_wp)
-      if (decides_as_graph) decides_as_graph = has_pure_friction(contacts)
+      decides_as_graph = keeps_places(settings)
+      if (decides_as_graph .and. .not. has_pure_friction(contacts)) decides_as_graph = &
+         & settings%verdict_flow == flow_rule%coulomb &
+         & .and. all(breaks_at_once(contacts%joint%law))
    end function decides_as_graph
 
-   !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
+   !> Whether limit analysis knows a scene: it is decided by friction alone
+   pure logical function has_limit_analysis(settings, contacts)
+      type(settings_t), intent(in) :: settings
+      type(contacts_t), intent(in) :: contacts
+
+      has_limit_analysis = keeps_places(settings)
+      if (has_limit_analysis) has_limit_analysis = has_pure_friction(contacts)
+   end function has_limit_analysis
+
+   !> Whether blocks are at rest and keep their places
+   pure logical function keeps_places(settings)
+      type(settings_t), intent(in) :: settings
+
+      keeps_places = .not. (settings%dynamic .or. settings%current &
+         & .or. settings%collapse_displacement > 0.0_wp)
+   end function keeps_places
+
+   !> Whether friction has a say, or strength that is lost: where joints cannot slide, or slide
+   !> freely, both rules are one
    pure logical function has_friction(graph)
       type(joint_graph_t), intent(in) :: graph
 
-      has_friction = any(rubs(graph%kind, graph%friction))
+      has_friction = breaks(graph) .or. any(rubs(graph%kind, graph%friction))
    end function has_friction
 end module dda_scene_graph
