@@ -219,47 +219,47 @@ contains
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: i             !! Place of the joint in the problem
       type(problem_t), intent(inout) :: p  !! The problem; the matrix receives the stiffness
-      real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
+      real(wp), dimension(6, 3, 2) :: row, steep
       real(wp) :: unit(3)
-      integer :: b, d, first, k, one
+      integer :: b, first, k, n, one
 
-      associate (row => springs%row(:size(steep, 1), :, :, p%joint(i)), m => p%matrix)
-         ! R S, of columns opening 1, opening 2, slip
-         do k = 1, 3
-            unit = 0.0_wp
-            unit(k) = 1.0_wp
-            unit = answer(springs, p, i, unit)
-            do one = 1, 2
-               steep(:, k, one) = row(:, 1, one)*unit(1) + row(:, 2, one)*unit(2) &
-                  & + row(:, 3, one)*unit(3)
-            end do
-         end do
+      n = size(p%balance, 1)
+      row(:n, :, :) = springs%row(:n, :, :, p%joint(i))
+      ! R S, of columns opening 1, opening 2, slip
+      do k = 1, 3
+         unit = 0.0_wp
+         unit(k) = 1.0_wp
+         unit = answer(springs, p, i, unit)
+         steep(:n, k, :) = row(:n, 1, :)*unit(1) + row(:n, 2, :)*unit(2) + row(:n, 3, :)*unit(3)
+      end do
+      associate (m => p%matrix, e => p%entry(i))
          do one = 1, 2
             b = p%block(one, i)
-            if (b == 0) cycle
-            do d = 1, 3
-               call add_outer(steep(:, d, one), row(:, d, one), m%diagonal(:, :, b))
-            end do
+            if (b > 0) call add_rows(n, steep(:, :, one), row(:, :, one), m%diagonal(:, :, b))
          end do
-         if (p%entry(i) == 0) return
-         first = merge(1, 2, m%pair(1, p%entry(i)) == p%block(1, i))
-         do d = 1, 3
-            call add_outer(steep(:, d, first), row(:, d, 3 - first), m%coupling(:, :, p%entry(i)))
-            call add_outer(steep(:, d, 3 - first), row(:, d, first), m%upper(:, :, p%entry(i)))
-         end do
+         if (e == 0) return
+         first = merge(1, 2, m%pair(1, e) == p%block(1, i))
+         call add_rows(n, steep(:, :, first), row(:, :, 3 - first), m%coupling(:, :, e))
+         call add_rows(n, steep(:, :, 3 - first), row(:, :, first), m%upper(:, :, e))
       end associate
    end subroutine add_springs
 
-   !> Add the product of a column and a row
-   pure subroutine add_outer(column, row, matrix)
-      real(wp), intent(in) :: column(:), row(:)  !! The column, and the row: (n_dof)
-      real(wp), intent(inout) :: matrix(:, :)    !! Receives it: (n_dof, n_dof)
-      integer :: c
+   !> Add the product of three columns and three rows
+   pure subroutine add_rows(n, steep, row, matrix)
+      integer, intent(in) :: n                 !! Unknowns of a block
+      real(wp), intent(in) :: steep(6, 3)      !! The columns, n of each
+      real(wp), intent(in) :: row(6, 3)        !! The rows, n of each
+      real(wp), intent(inout) :: matrix(n, n)  !! Receives it
+      integer :: c, i
 
-      do c = 1, size(row)
-         matrix(:, c) = matrix(:, c) + column*row(c)
+      do c = 1, n
+         ! three unknowns at a time, so that the compiler knows the length
+         do i = 1, n, 3
+            matrix(i:i + 2, c) = matrix(i:i + 2, c) + steep(i:i + 2, 1)*row(c, 1) &
+               & + steep(i:i + 2, 2)*row(c, 2) + steep(i:i + 2, 3)*row(c, 3)
+         end do
       end do
-   end subroutine add_outer
+   end subroutine add_rows
 
    !> Forces of a joint's springs that are pressed together
    pure function answer(springs, p, i, drive) result(force)
