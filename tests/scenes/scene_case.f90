@@ -13,6 +13,7 @@ module scene_case
    use dda_scene_check, only : check_scene
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    use scene_deck, only : lines_of
+   use scratch_folder, only : scratch
    implicit none
    private
 
@@ -73,7 +74,7 @@ contains
          call write_text(name//".blocks", lines_of(blocks)//new_line("a"))
       end if
       call write_text(name//".nml", head//lines_of(groups)//new_line("a"))
-      call read_deck(name//".nml", none, deck, error)
+      call read_deck(scratch(name//".nml"), none, deck, error)
       if (.not. allocated(error)) call check_scene(deck, scene, error)
       if (allocated(deck%warnings%item)) then
          do i = 1, size(deck%warnings%item)
@@ -97,7 +98,7 @@ contains
          if (allocated(system%motion)) told%motion = system%motion
          if (allocated(system%bar)) told%bar_force = system%bar%force
          if (allocated(system%absent)) told%absent = system%absent
-         if (present(restart)) call save_restart(restart, this%scene%settings, system, &
+         if (present(restart)) call save_restart(scratch(restart), this%scene%settings, system, &
             & this%decision%contacts, this%onward, error)
       end associate
    end subroutine tell
@@ -110,13 +111,13 @@ contains
       told%warnings = ""
    end subroutine begin_anew
 
-   !> Write a text to a file
+   !> Write a text to a file of the scratch folder, where the deck stands
    subroutine write_text(file, text)
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: text
       integer :: unit
 
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="replace")
+      open (newunit=unit, file=scratch(file), access="stream", form="unformatted", status="replace")
       write (unit) text
       close (unit)
    end subroutine write_text

@@ -1,0 +1,22 @@
+!> Where tests write: beside the folder of the test programs, wherever they are started
+module scratch_folder
+   implicit none
+   private
+
+   public :: scratch
+
+contains
+
+   !> Path of a file that a test writes
+   function scratch(file) result(path)
+      !> Its name
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable :: path
+      integer :: n
+
+      call get_command_argument(0, length=n)
+      allocate (character(len=n) :: path)
+      call get_command_argument(0, path)
+      path = path(:index(path, "/", back=.true.))//"../scratch/"//file
+   end function scratch
+end module scratch_folder
