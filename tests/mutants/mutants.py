@@ -215,8 +215,12 @@ class Copy:
 
     def failing(self, level: str) -> list[tuple[str, str]]:
         """Programs and tests of a level that fail."""
-        programs = [program for program in PROGRAMS[level] if program in self.commands]
-        return [(program, test) for program in programs for test in self.run(program)]
+        failed = []
+        for program in (program for program in PROGRAMS[level] if program in self.commands):
+            tests = self.run(program)
+            print(f"     {program}: {len(tests)} of its tests fail", flush=True)
+            failed += [(program, test) for test in tests]
+        return failed
 
     def first_failing(self, checks: list[tuple[str, str]]) -> tuple[str, str] | None:
         """The first of several tests that fails."""
@@ -256,28 +260,27 @@ def judge(fault: Fault, copy: Copy, levels: list[str]) -> dict[str, object]:
         return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
 
 
-def judge_together(faults: list[Fault], copy: Copy, level: str) -> dict[Fault, str]:
-    """Which test of a level finds each of several faults."""
-    found: dict[Fault, str] = {}
+def judge_together(faults: list[Fault], copy: Copy, level: str) -> Iterator[tuple[Fault, str]]:
+    """Which test of a level finds each of several faults, as soon as it is known."""
     excused: set[tuple[str, str]] = set()
+    sound: set[tuple[str, str]] = set()
     left = faults
     while left:
         with copy.faulty(left) as compiles:
             failing = [check for check in copy.failing(level) if check not in excused] if compiles else []
-        by: dict[Fault, tuple[str, str]] = {}
+        found, known = [], len(excused)
         for fault in left if failing else []:
             with copy.faulty([fault]):
-                check = copy.first_failing(failing)
-            if check:
-                by[fault] = check
-        unsound = {check for check in set(by.values()) if copy.first_failing([check])}
-        excused |= unsound
-        news = {fault: ": ".join(check) for fault, check in by.items() if check not in unsound}
-        if not news and not unsound:  # nothing fails, or only with several faults together
-            break
-        found |= news
-        left = [fault for fault in left if fault not in news]
-    return found
+                check = copy.first_failing([check for check in failing if check not in excused])
+            if check and check not in sound and copy.first_failing([check]):
+                excused.add(check)
+            elif check:
+                sound.add(check)
+                found.append(fault)
+                yield fault, ": ".join(check)
+        if not found and len(excused) == known:  # nothing fails, or only with several faults together
+            return
+        left = [fault for fault in left if fault not in found]
 
 
 def read_faults(path: Path, root: Path) -> list[Fault]:
@@ -372,14 +375,15 @@ def judge_all(faults: list[Fault], rows: list[dict[str, object]], copy: Copy, as
             group = list(lines.values())[::-1][:asked.together]
             left = [number for number in left if number not in group]
             start = time.monotonic()
-            found = judge_together([faults[number] for number in group], copy, level)
-            for number in group:
-                if faults[number] in found:
-                    rows[number].update(result="found", level=level, found_by=found[faults[number]],
-                                        seconds=round((time.monotonic() - start)/len(group), 1))
-                    tell(faults[number], rows[number])
-            write_table(table, rows)
-            print(f"{level}: {len(found)} of {len(group)}, {time.monotonic() - start:.0f} s", flush=True)
+            count = 0
+            for fault, test in judge_together([faults[number] for number in group], copy, level):
+                number = faults.index(fault)
+                rows[number].update(result="found", level=level, found_by=test,
+                                    seconds=round(time.monotonic() - start, 1))
+                tell(fault, rows[number])
+                write_table(table, rows)
+                count += 1
+            print(f"{level}: {count} of {len(group)}, {time.monotonic() - start:.0f} s", flush=True)
 
 
 def tell(fault: Fault, row: dict[str, object]) -> None:
