@@ -241,10 +241,10 @@ contains
       integer :: r
 
       first = 0
-      least = huge(1.0_wp)
+      least = 0.0_wp
       do r = 1, 4
          if (.not. change(r) > no_share) cycle
-         if (.not. max(share(r), 0.0_wp) < least*change(r)) cycle
+         if (first > 0 .and. .not. max(share(r), 0.0_wp) < least*change(r)) cycle
          first = r
          least = max(share(r), 0.0_wp)/change(r)
       end do

@@ -207,6 +207,7 @@ contains
       type(joint_face_t), intent(inout) :: face(:)
       integer, intent(out) :: changes  !! How many forces disagree
       real(wp) :: force(3), excess, opening(3), least
+      logical :: sticks
       integer :: i, k
 
       changes = 0
@@ -223,13 +224,15 @@ contains
          end do
          if (.not. p%given(3, i)) cycle
          excess = abs(force(3)) - shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force))
+         sticks = .not. springs%cone(p%joint(i))%limit < huge(1.0_wp)
          if (all(face(i)%open)) then
             if (face(i)%slip == 0) changes = changes + 1
             if (face(i)%slip == 0) face(i)%slip = 1
          else if (face(i)%slip == 0 .and. excess > least) then
             face(i)%slip = merge(1, -1, force(3) > 0.0_wp)
             changes = changes + 1
-         else if (face(i)%slip*opening(3) > least) then
+         else if (face(i)%slip*opening(3) > least .or. sticks .and. face(i)%slip /= 0) then
+            ! what cannot slide does not go on as it did while it was open
             face(i)%slip = 0
             changes = changes + 1
          end if
