@@ -48,7 +48,7 @@ contains
 
       n = size(graph%kind)
       rays%n_block = graph%n_block
-      rays%block = graph%block
+      allocate (rays%block, source=graph%block)
       rays%length = unit_of_length(graph)
       allocate (rays%arm(n_side, 6, n), source=0.0_wp)
       allocate (rays%bounded(n_side, n), rays%free(n_side, n))
