@@ -78,8 +78,8 @@ contains
       type(held_point_t), allocatable :: pin(:)
       real(wp), parameter :: no_motion(6) = 0.0_wp
       type(joint_place_t) :: place
-      real(wp) :: full(6, 6), compliance
-      integer :: b, e, i, j, k, n
+      real(wp) :: compliance
+      integer :: i, j, k, n
 
       allocate (pin, source=pins(settings, system))
       n = size(contacts%joint)
@@ -119,8 +119,18 @@ contains
          graph%row(:, :, 2, j) = pin_rows(pin(i), system%centroid(:, pin(i)%block))
       end do
       call add_bar_joints(settings, system, n + size(pin) + n_bounded_joint(settings), graph)
-      allocate (graph%mass(n_rigid, graph%n_block), source=1.0_wp)
+      call set_masses(system, graph)
       call add_bounded(settings, system, compliance, n + size(pin), graph)
+   end subroutine scene_graph
+
+   !> Masses of the blocks, and of the nodes of bars
+   pure subroutine set_masses(system, graph)
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(inout) :: graph
+      real(wp) :: full(6, 6)
+      integer :: b, e
+
+      allocate (graph%mass(n_rigid, graph%n_block), source=1.0_wp)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -129,7 +139,7 @@ contains
       end do
       e = graph%n_block - size(graph%bound)
       graph%mass(:, e + 1:) = node_mass*sum(graph%mass(1, :e))/real(max(1, e), wp)
-   end subroutine scene_graph
+   end subroutine set_masses
 
    !> Cohesion and tensile strength of joints that lose them where they slide or open
    pure subroutine add_strength(contacts, graph)
