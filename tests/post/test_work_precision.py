@@ -177,8 +177,10 @@ def test_what_the_plan_saves_is_reported_and_the_answer_stays(tmp_path, capsys):
     rows = [line.strip("| ").split(" | ") for line in printed.splitlines()[2:]]
     answers = {row[1]: row[-1] for row in rows}
     assert answers["joints searched among polygons"] == "stable"
-    for part in ("strain: 6 unknowns a block", "strength that can break", "condition"):
+    for part in ("strain: 6 unknowns a block", "condition"):
         assert float(answers[part]) < 1e-10
+    # joints that break have no limit analysis, whose mechanisms are traced: the bracket is halved to its tolerance
+    assert float(answers["strength that can break"]) < 1e-8
     # moving blocks differ by what elasticity makes of them
     assert 1e-5 < float(answers["blocks that move, contacts that follow"]) < 1e-2
     assert all(float(row[2]) > 0.0 for row in rows)
