@@ -43,6 +43,9 @@ module dda_coulomb_joints
       logical :: has_weight = .false.         !! Whether a load has chosen the unit of force
    end type coulomb_joints_t
 
+   !> Strength below this part of a block's weight is none
+   real(wp), parameter :: faint = 1.0e-8_wp
+
 contains
 
    !> Joints in units of their own
@@ -68,8 +71,18 @@ contains
          scaled%mass(3:, :) = scaled%mass(3:, :)/joints%arm_unit**2
       end associate
       call set_force_unit(joints, load)
+      call drop_faint_strength(joints)
       call set_roles(joints)
    end subroutine new_coulomb_joints
+
+   !> Strength that no force feels is none: dry joints have a start of their own
+   pure subroutine drop_faint_strength(joints)
+      type(coulomb_joints_t), intent(inout) :: joints
+
+      if (.not. (breaks(joints%graph) .and. joints%has_weight)) return
+      if (any(joints%graph%cohesion > faint) .or. any(joints%graph%pull > faint)) return
+      deallocate (joints%graph%cohesion, joints%graph%pull)
+   end subroutine drop_faint_strength
 
    !> Choose the unit of force, and with it that of motion; not by a load that is zero
    pure subroutine set_force_unit(joints, load)

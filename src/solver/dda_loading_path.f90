@@ -153,7 +153,7 @@ contains
       integer :: end
 
       call new_path(graph, dead_load, path)
-      if (breaks(graph)) then
+      if (breaks(path%joints%graph)) then
          ! what breaks, and when, depends on how the load grows
          call new_rate(graph, rate)
          rate%load = dead_load

@@ -35,7 +35,7 @@ contains
                & .or. state%gap(i, j) > weak_force*joints%graph%compliance(i, j))
             law%given(i, j) = merge(face%closed, face%open, pushes(i))
          end do
-         law%holds(j) = bond(3) > 0.0_wp
+         law%holds(j) = bond(3) > weak_force
          law%given(3, j) = face%stuck
          if (.not. law%holds(j)) &
             & law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)

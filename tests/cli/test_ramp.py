@@ -9,6 +9,7 @@ import pytest
 from block_scene import block
 from dda_command import run_dda
 
+BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 LEVEL = (0.0, 0.25011638446681367, 0.6035971503472201, 0.9749743829203876, 1.2410130403590103, 1.517347052446026)
 RIGHT = 2.980916829816682
 HEAD = (
@@ -68,11 +69,15 @@ def critical_push(folder: Path, law: str, blocks: str = wall()) -> float:
         return float(next(csv.DictReader(table))["critical"])
 
 
-def test_a_trace_of_cohesion_is_none(tmp_path: Path) -> None:
-    """A millionth of a pascal breaks before anything is felt: the wall falls where the dry one does."""
-    for friction in (20, 35, 50):
-        dry = critical_push(tmp_path, f"friction_deg = {friction}")
-        assert critical_push(tmp_path, f"friction_deg = {friction}, cohesion = 1e-6") == pytest.approx(dry, rel=1e-6)
+@pytest.mark.parametrize("bricks", ["3x8", "4x8", "5x10"])
+def test_a_trace_of_cohesion_is_none(tmp_path: Path, bricks: str) -> None:
+    """What breaks before anything is felt: a wall of bricks falls where the dry one does."""
+    blocks = (BENCHMARKS / f"dry_wall_{bricks}.blocks").read_text()
+    dry = critical_push(tmp_path, "friction_deg = 33.0", blocks)
+    for cohesion in (1e-9, 1e-6, 1e-3, 1.0):
+        push = critical_push(tmp_path, f"friction_deg = 33.0, cohesion = {cohesion!r}", blocks)
+        assert push == pytest.approx(dry, rel=1e-6)
+    assert dry < critical_push(tmp_path, "friction_deg = 33.0, cohesion = 1e5", blocks)
 
 
 def test_a_wall_of_one_piece_tips_about_its_toe(tmp_path: Path) -> None:
