@@ -87,13 +87,15 @@ contains
       end associate
    end subroutine decide_by_graph
 
-   !> Whether joints slide in the state that Coulomb's law has led to: no elastic sharing without
-   !> slip is looked for then
+   !> Whether joints slide in the state that Coulomb's law has led to, or have strength, of which
+   !> the path alone knows what is lost: no elastic sharing without slip is looked for then
    pure logical function has_slid(proof)
       type(graph_verdict_t), intent(in) :: proof
 
       has_slid = .false.
       if (.not. allocated(proof%state)) return
+      has_slid = allocated(proof%state%whole)
+      if (has_slid) return
       associate (force => proof%state%force)
          ! where two corners touch without force nothing resists
          has_slid = any(abs(proof%state%face(3, :)) == face%slides &

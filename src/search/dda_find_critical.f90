@@ -78,6 +78,7 @@ contains
       part(1)%low = value
       part(1)%start = value
       part(2)%high = value
+      part(2)%start = min(search%start, value)
       first = merge(2, 1, critical%verdict == verdict%stable)
       steps = critical%steps
       passes = critical%passes

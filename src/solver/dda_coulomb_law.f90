@@ -83,6 +83,7 @@ contains
          end do
          state%face(3, j) = shear_face(joints, j, state%face(:2, j), face%stuck)
       end do
+      if (allocated(state%whole)) state%whole = state%whole .and. state%face(:2, :) == face%closed
    end function unloaded_state
 
    !> Strength of a joint beside friction: how far its corners can be pulled, at most as far as the

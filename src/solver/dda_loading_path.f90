@@ -10,6 +10,8 @@
 !> move at a fixed load until they find balance (a jump) or fall. The first load at which they fall
 !> is the collapse; a state in balance can go on with any other rate.
 !>
+!> Joints that break are loaded from nothing by what is dead, too.
+!>
 !> Equation (M4) of docs/method.md
 module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
@@ -21,7 +23,7 @@ module dda_loading_path
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
       & nudge_to_balance, share_anew
-   use dda_path_event, only : event_kind, event_t, move_on, next_event, path_end
+   use dda_path_event, only : event_kind, event_t, go_back, move_on, next_event, path_end
    implicit none
    private
 
@@ -269,8 +271,8 @@ contains
                   & state, jump, end)
                if (end /= motion_end%balanced) then
                   call note_fall(end, jump, result)
-                  last%whole = state%whole
-                  state = last
+                  call go_back(path%joints, rates, event, first_load + result%reached*way%load, &
+                     & last, state)
                   return
                end if
             end if

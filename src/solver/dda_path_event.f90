@@ -8,7 +8,8 @@ module dda_path_event
    implicit none
    private
 
-   public :: event_t, event_kind, event_kind_enum, next_event, move_on, hold_forces, path_end
+   public :: event_t, event_kind, event_kind_enum, path_end
+   public :: go_back, hold_forces, move_on, next_event
 
    !> What can happen to a joint
    type :: event_kind_enum
@@ -39,6 +40,9 @@ module dda_path_event
 
    !> Names of the ends of a path
    type(path_end_enum), parameter :: path_end = path_end_enum()
+
+   !> Share of the way to an event at which it has not happened
+   real(wp), parameter :: before_event = 1.0_wp - 4.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -156,6 +160,25 @@ contains
       if (allocated(state%whole) .and. event%kind /= event_kind%none) &
          & call break_joint(joints, j, state)
    end subroutine move_on
+
+   !> Go back from a fall to where it broke: forces are those just before, what has broken is told
+   pure subroutine go_back(joints, rates, event, load, last, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(rates_t), intent(in) :: rates          !! Rates that led to the event
+      type(event_t), intent(in) :: event          !! What broke a joint
+      real(wp), intent(in) :: load(:, :)          !! Load at the event: (n_dof, n_block)
+      type(coulomb_state_t), intent(in) :: last   !! State after the event before
+      type(coulomb_state_t), intent(inout) :: state
+      type(coulomb_state_t) :: there
+
+      there = last
+      call move_on(joints, rates, event_t(before_event*event%distance), there)
+      there%load = load
+      ! what opens at once has broken at the event before
+      if (any(there%whole .neqv. last%whole)) there = last
+      there%whole = state%whole
+      state = there
+   end subroutine go_back
 
    !> Set the shear force of a joint as what it does allows
    pure subroutine take_shear(joints, j, does, trial, state)

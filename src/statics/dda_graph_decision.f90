@@ -3,7 +3,8 @@
 !> What no forces can balance falls under every law of friction: limit analysis decides that first,
 !> by forces or by a mechanism. What remains is decided by the loading path under Coulomb friction:
 !> dead loads at once, then what is live, from event to event, with slip remembered. The first load
-!> at which the blocks fall is the collapse, and all beyond it is collapsed.
+!> at which the blocks fall is the collapse, and all beyond it is collapsed. Joints that break have
+!> no limit analysis: the path alone decides.
 module dda_graph_decision
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at

@@ -80,6 +80,17 @@ def test_a_trace_of_cohesion_is_none(tmp_path: Path, bricks: str) -> None:
     assert dry < critical_push(tmp_path, "friction_deg = 33.0, cohesion = 1e5", blocks)
 
 
+def test_the_joint_of_a_mortared_block_is_told_with_the_push_that_breaks_it(tmp_path: Path) -> None:
+    """Just before the joint breaks its shear is the push and its moment that of the push at mid-height."""
+    blocks = block(box(-5.0, -1.0, 6.0, 0.0), "fixed") + block(box(0.0, 0.0, 1.0, 2.0))
+    push = critical_push(tmp_path, "friction_deg = 30, cohesion = 2e4, tension = 1e4", blocks)
+    with (tmp_path / "s" / "joints.csv").open() as table:
+        joint = next(csv.DictReader(table))
+    weight = 2200.0 * 9.81 * 2.0
+    assert abs(float(joint["shear_force"])) == pytest.approx(push * weight, rel=1e-6)
+    assert float(joint["normal_force"]) == pytest.approx(weight, rel=1e-9)
+
+
 def test_a_wall_of_one_piece_tips_about_its_toe(tmp_path: Path) -> None:
     """Mortar that never breaks on a dry base: the push over the weight is the width over the height."""
     base = "material 2\njoint 1 2 cohesion 0 tension 0\n"
