@@ -179,7 +179,6 @@ contains
             side%limit = origin + side%limit
             return
          end if
-         side%stands_upright = .true.
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, load, far)
          stations = load_stations(settings, .true.)
@@ -187,6 +186,7 @@ contains
             & side%has_limit .or. limit%state == limit_state%unbounded, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%falls_dead = proof%no_start
+         side%stands_upright = .not. proof%no_start
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
          if (load == searched_load%tilt .and. only_weight(scene%settings)) &

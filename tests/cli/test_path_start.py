@@ -228,3 +228,18 @@ def test_a_fall_between_directions_that_limit_analysis_lets_stand_is_reported_in
     # in steps it takes minutes
     done = run_dda("run", "deck.nml", cwd=tmp_path, timeout=40)
     assert done.returncode == 0 and "collapsed" in done.stdout, done.stderr
+
+
+def test_a_block_that_slides_upright_and_holds_on_a_slope_is_found(tmp_path: Path) -> None:
+    """A dead push of 0.6 of the weight, friction 25 degrees: gravity turned by a to the left holds the block where
+    |0.6 - sin a| is at most tan 25 cos a."""
+    weight = 2240.0 * 9.81 * 4.0
+    text = ("block fixed\n-20 -1\n20 -1\n20 0\n-20 0\nblock\n0 0\n4 0\n4 1\n0 1\n"
+            f"load block 2 2 0.5 {0.6 * weight!r} 0\n")
+    (found,) = rows(tmp_path, text, "&joint friction_deg = 25.0 /\n"
+                    "&search parameter = 'gravity_direction_deg', low = -160.0, high = -20.0 /")
+    turn = math.degrees(math.asin(0.6 * math.cos(math.radians(25.0))))
+    assert found["verdict"] == "found"
+    assert float(found["critical"]) == pytest.approx(-90.0 - (turn - 25.0), rel=1e-6)
+    other = (tmp_path / "deck" / "log.txt").read_text().rpartition("it also collapses at ")[2]
+    assert float(other) == pytest.approx(-90.0 - (turn + 25.0), rel=1e-6)
