@@ -1,10 +1,11 @@
-!> Critical value under the original's scheme: a bracket of two runs, halved
+!> Critical value under Shi's scheme: a bracket of two runs, halved
 submodule (dda_compute_case) dda_limerick_search
    use dda_deck, only : deck_t
    use dda_deck_keys, only : deck_key
    use dda_deck_set, only : put_number
    use dda_key_value, only : number_fits
    use dda_scene_plan, only : plan_scene
+   use dda_search, only : keep_decision
    use dda_verdict, only : verdict
    implicit none
 
@@ -42,24 +43,32 @@ contains
    !> Pictures of the run nearest to critical that was found to fall, else to stand
    module procedure repeat_with_pictures
       type(decision_t) :: decision
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
       type(deck_t) :: deck
+      type(scene_t) :: scene
+      logical :: fits
 
-      deck = family%deck
-      if (allocated(critical%fallen)) then
-         call put_number(deck, family%parameter, critical%falls, &
-            & deck%value(family%parameter%key)%place, error)
-      else if (allocated(critical%standing)) then
-         call put_number(deck, family%parameter, critical%stands, &
-            & deck%value(family%parameter%key)%place, error)
-      else
-         return
-      end if
-      if (allocated(error)) return
-      call deck_scene(deck, plan_scene(deck), scene)
-      call decide_limerick(deck, scene, decision, album)
+      if (.not. (allocated(critical%fallen) .or. allocated(critical%standing))) return
+      call put_value(family, merge(critical%falls, critical%stands, allocated(critical%fallen)), &
+         & deck, scene, fits)
+      if (fits) call decide_limerick(deck, scene, decision, album)
    end procedure repeat_with_pictures
+
+   !> Deck and scene of a value of the searched parameter, if it can have it
+   pure subroutine put_value(family, value, deck, scene, fits)
+      type(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      type(deck_t), intent(out) :: deck
+      type(scene_t), intent(out) :: scene
+      logical, intent(out) :: fits  !! Whether it can
+      type(error_t), allocatable :: error
+
+      fits = number_fits(deck_key(family%parameter%key), value)
+      if (.not. fits) return
+      deck = family%deck
+      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      fits = .not. allocated(error)
+      if (fits) call deck_scene(deck, plan_scene(deck), scene)
+   end subroutine put_value
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)
@@ -97,39 +106,30 @@ contains
       type(deck_family_t), intent(in) :: family
       real(wp), intent(in) :: value  !! The value
       type(critical_t), intent(inout) :: critical
-      integer, intent(out) :: answer
+      integer, intent(out) :: answer  !! One of verdict
       type(decision_t), allocatable :: decision
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
       type(deck_t) :: deck
+      type(scene_t) :: scene
+      logical :: fits
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      critical%undecided_at = value
-      critical%reason = "the searched parameter cannot have this value"
-      if (.not. number_fits(deck_key(family%parameter%key), value)) return
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      if (allocated(error)) return
+      call put_value(family, value, deck, scene, fits)
+      if (.not. fits) then
+         critical%reason = "the searched parameter cannot have this value"
+         critical%undecided_at = value
+         return
+      end if
       allocate (decision)
-      call deck_scene(deck, plan_scene(deck), scene)
       call decide_limerick(deck, scene, decision)
-      critical%steps = critical%steps + decision%outcome%steps
-      critical%passes = critical%passes + decision%outcome%passes
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
-      answer = decision%outcome%verdict
-      if (allocated(decision%outcome%reason)) critical%reason = decision%outcome%reason
-      if (answer == verdict%completed) then
-         answer = verdict%undecided
-         critical%reason = "a dynamic run ends completed, neither stable nor collapsed"
-      end if
-      if (answer == verdict%collapsed) then
-         critical%falls = value
-         call move_alloc(decision, critical%fallen)
-      else if (answer == verdict%stable) then
-         critical%stands = value
-         call move_alloc(decision, critical%standing)
-      end if
+      associate (outcome => decision%outcome)
+         if (outcome%verdict == verdict%completed) then
+            outcome%verdict = verdict%undecided
+            outcome%reason = "a dynamic run ends completed, neither stable nor collapsed"
+         end if
+         answer = outcome%verdict
+      end associate
+      call keep_decision(critical, value, decision)
    end subroutine decide_at
 
 end submodule dda_limerick_search

@@ -11,6 +11,7 @@ submodule (dda_critical) dda_find_critical
    use dda_error, only : error_t
    use dda_scene, only : link_once, searched_load
    use dda_scene_graph, only : decides_as_graph
+   use dda_search, only : keep_decision
    use dda_verdict, only : verdict
    implicit none
 
@@ -172,21 +173,9 @@ contains
          critical%current = scene%settings%current
          call decide(scene%settings, scene%system, scene%contacts, decision, verdict_only=.true.)
       end if
-      critical%steps = critical%steps + decision%outcome%steps
-      critical%passes = critical%passes + decision%outcome%passes
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
       answer = decision%outcome%verdict
       call shed(decision, keeps_joints=.true.)
-      if (answer == verdict%collapsed) then
-         critical%falls = value
-         call move_alloc(decision, critical%fallen)
-      else if (answer == verdict%stable) then
-         critical%stands = value
-         call move_alloc(decision, critical%standing)
-      else
-         critical%reason = decision%outcome%reason
-         critical%undecided_at = value
-      end if
+      call keep_decision(critical, value, decision)
    end subroutine decide_at
 
    !> Decide again what is told of a search, where its joint graph does: how it falls, as to follow
@@ -200,22 +189,17 @@ contains
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene
+      real(wp) :: value
 
-      call family%build(merge(critical%falls, critical%stands, wanted == verdict%collapsed), &
-         & scene, error)
+      value = merge(critical%falls, critical%stands, wanted == verdict%collapsed)
+      call family%build(value, scene, error)
       if (allocated(error)) return
       if (.not. decides_as_graph(scene%settings, scene%contacts)) return
       allocate (decision)
       call decide(scene%settings, scene%system, scene%contacts, decision)
-      critical%steps = critical%steps + decision%outcome%steps
-      critical%factorisations = critical%factorisations + decision%outcome%factorisations
       if (decision%outcome%verdict /= wanted) return
       call shed(decision, keeps_joints=.true.)
-      if (wanted == verdict%collapsed) then
-         call move_alloc(decision, critical%fallen)
-      else
-         call move_alloc(decision, critical%standing)
-      end if
+      call keep_decision(critical, value, decision)
    end subroutine tell_whole
 
    !> Give back what a search does not ask a kept decision for

@@ -4,11 +4,11 @@ module dda_search
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_scene, only : link_t, scene_t
-   use dda_verdict, only : outcome_t
+   use dda_verdict, only : outcome_t, verdict
    implicit none
    private
 
-   public :: search_t, critical_t, decision_t, proof_t
+   public :: search_t, critical_t, decision_t, proof_t, keep_decision
 
    !> What is searched
    type :: search_t
@@ -141,5 +141,32 @@ module dda_search
       !> Which of them there are
       logical :: has_thrust(2) = .false.
    end type proof_t
+
+contains
+
+   !> Count a decision and keep it on its side of the bracket; of one that is neither stable nor
+   !> collapsed keep why
+   pure subroutine keep_decision(critical, value, decision)
+      type(critical_t), intent(inout) :: critical
+      real(wp), intent(in) :: value  !! Where it was made
+      type(decision_t), allocatable, intent(inout) :: decision
+
+      associate (outcome => decision%outcome)
+         critical%steps = critical%steps + outcome%steps
+         critical%passes = critical%passes + outcome%passes
+         critical%factorisations = critical%factorisations + outcome%factorisations
+      end associate
+      select case (decision%outcome%verdict)
+      case (verdict%collapsed)
+         critical%falls = value
+         call move_alloc(decision, critical%fallen)
+      case (verdict%stable)
+         critical%stands = value
+         call move_alloc(decision, critical%standing)
+      case default
+         if (allocated(decision%outcome%reason)) critical%reason = decision%outcome%reason
+         critical%undecided_at = value
+      end select
+   end subroutine keep_decision
 
 end module dda_search

@@ -8,7 +8,7 @@ submodule (dda_critical) dda_time_search
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
-   use dda_search, only : decision_t
+   use dda_search, only : decision_t, keep_decision
    use dda_verdict, only : verdict
    implicit none
 
@@ -164,33 +164,19 @@ contains
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      critical%undecided_at = value
       call family%build(value, scene, error)
       if (allocated(error)) then
          critical%reason = error%message
+         critical%undecided_at = value
          return
       end if
       allocate (decision)
       call decide(scene%settings, scene%system, scene%contacts, decision)
-      associate (outcome => decision%outcome)
-         critical%steps = critical%steps + outcome%steps
-         critical%passes = critical%passes + outcome%passes
-         critical%factorisations = critical%factorisations + outcome%factorisations
-         answer = outcome%verdict
-         if (answer == verdict%completed) answer = verdict%stable
-         outcome%verdict = answer
-         if (allocated(outcome%reason)) critical%reason = outcome%reason
-      end associate
+      if (decision%outcome%verdict == verdict%completed) decision%outcome%verdict = verdict%stable
+      answer = decision%outcome%verdict
+      call keep_decision(critical, value, decision)
       if (answer == verdict%undecided) return
-      if (answer == verdict%collapsed) then
-         call move_alloc(decision, critical%fallen)
-         critical%falls = value
-         runs%kept(2) = value
-      else
-         call move_alloc(decision, critical%standing)
-         critical%stands = value
-         runs%kept(1) = value
-      end if
+      runs%kept(merge(2, 1, answer == verdict%collapsed)) = value
       i = count(runs%value(:runs%n) < value)
       if (any(.not. abs(runs%value(:runs%n) - value) > 0.0_wp)) return
       if (runs%n == size(runs%value)) return
