@@ -26,7 +26,7 @@ ROOMS = {
     "solver": "Joints on a graph: interior springs, Coulomb's law, loading path, proofs",
     "statics": "Equilibrium without steps: the joint graph of a scene, chains, histories of loads",
     "step": "Steps and runs (Shi: df)",
-    "limerick": "The original's scheme",
+    "limerick": "Shi's scheme",
     "search": "One decision, critical values, mechanisms; knows no deck",
     "scene": "The scene of a deck",
     "case": "One case of a deck: what it computes, and the rows that it writes",

@@ -141,7 +141,7 @@ contains
       end if
    end function tables_text
 
-   !> Print what a case of the original's scheme is made of
+   !> Print what a case of Shi's scheme is made of
    subroutine print_limerick_plan(screen, deck, scene)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck

@@ -29,7 +29,7 @@ module dda_case
       logical :: searches = .false., tells_tables = .true.
       !> Whether its verdict is proven
       logical :: proves = .true.
-      !> Whether the original's scheme decides
+      !> Whether Shi's scheme decides
       logical :: limerick = .false.
       !> The scenes of the search
       type(deck_family_t) :: family

@@ -138,7 +138,7 @@ module dda_compute_case
          type(proof_t), intent(out) :: proof
       end subroutine prove_search
 
-      !> Run what a deck describes under the original's scheme
+      !> Run what a deck describes under Shi's scheme
       pure module subroutine decide_limerick(deck, scene, decision, album)
          type(deck_t), intent(in) :: deck
          type(scene_t), intent(in) :: scene
@@ -209,7 +209,7 @@ contains
       if (nint(this%family%deck%value(output_frames)%number) > 0) call take_pictures(this)
    end subroutine search_critical
 
-   !> Search the critical value of the original's scheme
+   !> Search the critical value of Shi's scheme
    pure subroutine search_limerick(this)
       type(case_t), intent(inout) :: this
       type(error_t), allocatable :: error

@@ -1,4 +1,4 @@
-!> A run of the original's scheme as a decision of ours: its verdict and the joints at its end
+!> A run of Shi's scheme as a decision of ours: its verdict and the joints at its end
 submodule (dda_compute_case) dda_limerick_decision
    use dda_contact_types, only : place_joint
    use dda_contacts, only : contacts_t
@@ -19,7 +19,7 @@ submodule (dda_compute_case) dda_limerick_decision
 
 contains
 
-   !> Run what a deck describes under the original's scheme
+   !> Run what a deck describes under Shi's scheme
    module procedure decide_limerick
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run

@@ -1,4 +1,4 @@
-!> Contacts of the original's scheme: a vertex against an edge, or two corners with two lines; how
+!> Contacts of Shi's scheme: a vertex against an edge, or two corners with two lines; how
 !> they begin, and what they carry from step to step (Shi: df06, df07)
 module dda_limerick_contact
    use dda_kinds, only : wp

@@ -1,4 +1,4 @@
-!> A run of the original's scheme to its verdict
+!> A run of Shi's scheme to its verdict
 module dda_limerick_run
    use dda_block_system, only : n_unknown
    use dda_error, only : error_t

@@ -1,4 +1,4 @@
-!> What a run of the original's scheme carries from step to step
+!> What a run of Shi's scheme carries from step to step
 module dda_limerick_state
    use dda_block_system, only : n_unknown
    use dda_kinds, only : wp

@@ -1,4 +1,4 @@
-!> One step of the original's scheme: its length and the stiffness of its contacts, both chosen by
+!> One step of Shi's scheme: its length and the stiffness of its contacts, both chosen by
 !> the last motion, and where it takes the blocks (Shi: df24, df25)
 module dda_limerick_step
    use dda_error, only : error_t, fatal_error

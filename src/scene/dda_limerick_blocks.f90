@@ -91,7 +91,7 @@ contains
       point = (1.0_wp - inset)*corner + inset*sum(corner)/real(size(corner), wp)
    end function inner_points
 
-   !> Whether the original's scheme can run a plan: it holds points where they are, in both
+   !> Whether Shi's scheme can run a plan: it holds points where they are, in both
    !> directions, knows no motion of the ground, and begins every static step at rest
    pure subroutine check_limerick_blocks(plan, file, dynamic, error)
       type(block_plan_t), intent(in) :: plan

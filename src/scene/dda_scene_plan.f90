@@ -39,7 +39,7 @@ module dda_scene_plan
       integer :: displacement = 5
       !> The joint forces of a single decision are wanted, and strain shares them out
       integer :: forces = 6
-      !> The original's scheme has strain
+      !> Shi's scheme has strain
       integer :: original = 7
       !> Blocks from files, whose joints have laws and whose states have stress of their own
       integer :: files = 8

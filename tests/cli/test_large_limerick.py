@@ -36,7 +36,7 @@ pytestmark = pytest.mark.skipif(not HAS_XML, reason="the program was built witho
 
 
 def check(folder: Path, geometry: str = GEOMETRY, analysis: str = ANALYSIS) -> subprocess.CompletedProcess[str]:
-    """Check a model of lines under the original's scheme.
+    """Check a model of lines under Shi's scheme.
 
     Parameters
     ----------

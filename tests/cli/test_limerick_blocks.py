@@ -1,4 +1,4 @@
-"""Files of blocks under the original's scheme: what it decides, and what it refuses."""
+"""Files of blocks under Shi's scheme: what it decides, and what it refuses."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ def test_small_run_writes_tables_and_figures(tmp_path, capsys):
         rows = list(csv.DictReader(lines))
     fine = [row for row in rows if row["method"] == RIGID and "tolerance = 1e-08" in row["setting"]]
     assert float(fine[0]["error"]) < 1e-8
-    original = [float(row["error"]) for row in rows if row["method"] == "the original's scheme"]
+    original = [float(row["error"]) for row in rows if row["method"] == "Shi's scheme"]
     assert original and all(0.01 < error < 0.5 for error in original)
     assert {row["on_front"] for row in rows} == {"0", "1"}
     for ending in ("svg", "png"):

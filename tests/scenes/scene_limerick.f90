@@ -1,4 +1,4 @@
-!> Models of the original's scheme built block by block
+!> Models of Shi's scheme built block by block
 module scene_limerick
    use dda_boundary, only : held_point_t
    use dda_kinds, only : wp

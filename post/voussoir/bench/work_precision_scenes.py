@@ -14,7 +14,7 @@ RIGID = "DDA, rigid blocks"
 ELASTIC = "DDA, elastic blocks"
 COULOMB = "DDA, Coulomb friction"
 ASSOCIATED = "DDA, associated limit"
-ORIGINAL = "the original's scheme"
+ORIGINAL = "Shi's scheme"
 SIMPLEX = "HiGHS, simplex (associated)"
 INTERIOR = "HiGHS, interior point (associated)"
 #: Tolerances of searches by dda, and of the original's

@@ -121,7 +121,7 @@ def other_columns(campaign: Campaign) -> Iterator[Finding]:
         total = sum(1 for _ in _values(campaign, column))
         if shares:
             yield Finding(
-                f"{column}: the original's scheme and constants",
+                f"{column}: Shi's scheme and constants",
                 f"{len(shares)} of {total} arches were found; they deviate from the paper's own values by at most "
                 f"{100 * max(shares):.1f} %, by {100 * float(np.median(shares)):.2f} % in the middle.",
             )
