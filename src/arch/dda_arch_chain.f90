@@ -180,7 +180,7 @@ contains
                & spring/max(rays%length(max(1, b - 1)), rays%length(min(b, n))))
             joint%compliance = 0.0_wp
             joint%friction = numbers%law%friction
-            joint%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
+            joint%no_slip = numbers%law%no_slip
             joint%arm = 0.0_wp
          end associate
       end do
@@ -207,7 +207,7 @@ contains
          & *(rays%direction(2, first)*rays%point(1, first)) - rays%direction(1, first) &
          & *(radius*rays%point(2, first) - chain%block(n)%centroid(2)), thickness, &
          & chain%joint(n)%compliance)
-      if (numbers%no_slip_springing) chain%joint([1, n + 1])%limit = huge(1.0_wp)
+      if (numbers%no_slip_springing) chain%joint([1, n + 1])%no_slip = .true.
       if (numbers%halved) call add_plane(rays, chain)
       call weigh(chain)
    end subroutine arch_chain
@@ -245,7 +245,7 @@ contains
       chain%keystone = rays%keystone
       chain%joint(last)%stiffness = 2.0_wp*chain%joint(last)%stiffness
       chain%joint(last)%friction = 0.0_wp
-      chain%joint(last)%limit = 0.0_wp
+      chain%joint(last)%no_slip = .false.
    end subroutine add_plane
 
    !> Moments of unit forces along the normal and along the tangent of a joint

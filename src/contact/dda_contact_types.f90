@@ -8,7 +8,7 @@
 module dda_contact_types
    use dda_block_system, only : block_system_t
    use dda_deformation, only : tangent_matrix
-   use dda_friction_cone, only : cone_t
+   use dda_friction_cone, only : cone_kind, cone_t
    use dda_kinds, only : wp
    use dda_material, only : friction_left, joint_law_t
    use dda_vector, only : along, right_normal
@@ -339,7 +339,7 @@ contains
       whole = intact*joint%contact%length
       shift = [joint%law%tension*whole, 0.0_wp]
       if (joint%law%no_slip) then
-         cone%limit = huge(1.0_wp)
+         cone%kind = cone_kind%no_slip
          return
       end if
       cone%friction = friction_left(joint%law, maxval(intact(:joint%n_contact)))

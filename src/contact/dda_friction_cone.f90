@@ -13,7 +13,7 @@ module dda_friction_cone
    implicit none
    private
 
-   public :: joint_face_t, cone_t, project, apply_face, is_stuck
+   public :: joint_face_t, cone_t, cone_kind_enum, cone_kind, project, apply_face, is_stuck
    public :: contact_state, contact_state_enum, shear_bound
 
    !> Face of the cone on which the force of a joint lies
@@ -24,6 +24,16 @@ module dda_friction_cone
       integer :: slip = 0
    end type joint_face_t
 
+   !> What bounds the force of a joint
+   type :: cone_kind_enum
+      integer :: frictional = 0  !! Limit and friction bound the shear force
+      integer :: no_slip = 1     !! Nothing bounds the shear force; limit and friction are 0
+      integer :: mirror = 2      !! A plane of symmetry: any normal forces and no shear force
+   end type cone_kind_enum
+
+   !> Names of the kinds of cones
+   type(cone_kind_enum), parameter :: cone_kind = cone_kind_enum()
+
    !> Bounds of the joint force
    type :: cone_t
       !> Coefficient of friction; 0 where the limit alone bounds the shear force
@@ -32,8 +42,8 @@ module dda_friction_cone
       real(wp) :: limit = 0.0_wp
       !> Whether the joint has one corner only: the second stays open
       logical :: single = .false.
-      !> Whether it is a plane of symmetry through a block: any normal forces and no shear force
-      logical :: mirror = .false.
+      !> One of `cone_kind`
+      integer :: kind = cone_kind%frictional
    end type cone_t
 
    !> Shi's states of a contact
@@ -56,7 +66,7 @@ contains
       type(joint_face_t), intent(out) :: face
       real(wp) :: excess
 
-      if (cone%mirror) then
+      if (cone%kind == cone_kind%mirror) then
          force = [trial(1:2), 0.0_wp]
          face%slip = 1
          return
@@ -68,6 +78,7 @@ contains
          force(2) = 0.0_wp
          face%open(2) = .true.
       end if
+      if (cone%kind == cone_kind%no_slip) return
       excess = abs(trial(3)) - cone%limit - cone%friction*(force(1) + force(2))
       if (.not. excess > 0.0_wp) return
       call return_to_limit(cone, trial, force, face)
@@ -104,18 +115,15 @@ contains
       force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
    end subroutine return_to_limit
 
-   !> Largest shear force that a joint carries; one that cannot slide can part
+   !> Largest shear force that a joint carries; one that cannot slide carries any until it parts
    pure real(wp) function shear_bound(cone, normal)
       type(cone_t), intent(in) :: cone
       !> Normal forces beyond the tension that the contacts carry: (3), the third not used [N/m]
       real(wp), intent(in) :: normal(3)
 
-      shear_bound = cone%limit
-      if (cone%limit < huge(1.0_wp)) then
-         shear_bound = cone%limit + cone%friction*(normal(1) + normal(2))
-      else if (.not. (normal(1) > 0.0_wp .or. normal(2) > 0.0_wp)) then
-         shear_bound = 0.0_wp
-      end if
+      shear_bound = cone%limit + cone%friction*(normal(1) + normal(2))
+      if (cone%kind == cone_kind%no_slip .and. (normal(1) > 0.0_wp .or. normal(2) > 0.0_wp)) &
+         & shear_bound = huge(1.0_wp)
    end function shear_bound
 
    !> Whether a face is the inside of the cone
@@ -125,7 +133,8 @@ contains
       is_stuck = face%slip == 0 .and. .not. any(face%open)
    end function is_stuck
 
-   !> A face as an affine map: force = tangent*trial + constant as long as the face is held
+   !> A face as an affine map: force = tangent*trial + constant as long as the face is held. What
+   !> cannot slide and does has parted: it carries no shear force
    pure subroutine apply_face(cone, face, tangent, constant)
       type(cone_t), intent(in) :: cone
       type(joint_face_t), intent(in) :: face

@@ -30,8 +30,8 @@ module dda_chain
       real(wp) :: compliance = 0.0_wp
       !> Coefficient of friction
       real(wp) :: friction = 0.0_wp
-      !> Shear force that it carries without normal force; huge if it cannot slide [N/m]
-      real(wp) :: limit = 0.0_wp
+      !> Whether it cannot slide
+      logical :: no_slip = .false.
       !> Moments of unit forces along normal and tangent at its middle about the centre of the block
       !> before it and of the block behind it: (2, 2) [m]
       real(wp) :: arm(2, 2) = 0.0_wp

@@ -70,7 +70,7 @@ contains
             ! the plane of symmetry is smooth
             n = size(chain%joint) - merge(1, 0, chain%halved)
             if (settings%verdict_flow == flow_rule%coulomb &
-               & .and. any(chain%joint(:n)%limit <= 0.0_wp)) &
+               & .and. .not. all(chain%joint(:n)%no_slip)) &
                & call stick_all_along(chain, settings%tilt, contacts%face, decided)
          end if
          if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &

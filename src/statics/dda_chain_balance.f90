@@ -1,7 +1,7 @@
 !> Balance of the forces of a chain: those of all joints follow from three numbers at one of them
 module dda_chain_balance
    use dda_chain, only : chain_t
-   use dda_friction_cone, only : cone_t
+   use dda_friction_cone, only : cone_kind, cone_t
    use dda_kinds, only : wp
    implicit none
    private
@@ -19,8 +19,9 @@ contains
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: j  !! Number of the joint
 
-      cone_of = cone_t(friction=chain%joint(j)%friction, limit=chain%joint(j)%limit, &
-         & mirror=chain%keystone .and. j == size(chain%joint))
+      cone_of = cone_t(friction=chain%joint(j)%friction)
+      if (chain%joint(j)%no_slip) cone_of = cone_t(kind=cone_kind%no_slip)
+      if (chain%keystone .and. j == size(chain%joint)) cone_of = cone_t(kind=cone_kind%mirror)
    end function cone_of
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
@@ -89,8 +90,8 @@ contains
       real(wp), intent(in) :: force(3)  !! N1, N2, T [N/m]
       integer, intent(in) :: j
 
-      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp .and. abs(force(3)) &
-         & <= chain%joint(j)%limit + chain%joint(j)%friction*(force(1) + force(2))
+      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp .and. (chain%joint(j)%no_slip &
+         & .or. abs(force(3)) <= chain%joint(j)%friction*(force(1) + force(2)))
    end function holds
 
    !> Forces of all joints after a change of the unknowns

@@ -179,7 +179,7 @@ contains
             along = abs(this%tangent(1)*s(1) + this%tangent(2)*s(2))
             moment = abs(s(3) - this%middle(1)*s(2) + this%middle(2)*s(1))
             room = (normal - moment/this%half)/2.0_wp
-            if (is_rough(chain, j)) room = min(room, this%limit + this%friction*normal - along)
+            if (is_rough(chain, j)) room = min(room, this%friction*normal - along)
          end associate
          if (.not. room < least) cycle
          least = room
@@ -204,7 +204,7 @@ contains
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: j  !! Number of the joint
 
-      is_rough = chain%joint(j)%limit < huge(1.0_wp) &
+      is_rough = .not. chain%joint(j)%no_slip &
          & .and. .not. (chain%halved .and. j == size(chain%joint))
    end function is_rough
 
@@ -226,7 +226,7 @@ contains
       else
          row(:3) = chain%joint(joint)%friction*(g(1, :) + g(2, :)) &
             & + merge(-1, 1, bound == 3)*g(3, :)
-         row(5) = -chain%joint(joint)%limit - chain%joint(joint)%friction*(force(1) + force(2)) &
+         row(5) = -chain%joint(joint)%friction*(force(1) + force(2)) &
             & - merge(-1, 1, bound == 3)*force(3)
       end if
       if (chain%halved) row(2) = 0.0_wp

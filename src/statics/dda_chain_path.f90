@@ -357,8 +357,8 @@ contains
       slides = .false.
       ! the plane of symmetry is smooth
       do j = 1, size(chain%joint) - merge(1, 0, chain%halved)
-         slides = slides .or. abs(state%force(3, j)) > chain%joint(j)%limit &
-            & + chain%joint(j)%friction*(state%force(1, j) + state%force(2, j))
+         slides = slides .or. .not. chain%joint(j)%no_slip .and. abs(state%force(3, j)) &
+            & > chain%joint(j)%friction*(state%force(1, j) + state%force(2, j))
       end do
    end function slides
 

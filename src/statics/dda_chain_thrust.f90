@@ -97,8 +97,11 @@ contains
       safety = huge(1.0_wp)
       do i = 1, size(coarse)
          force = joint_force(chain, load, reaction, coarse(i))
-         safety(i) = min(force(1), force(2), chain%joint(coarse(i))%limit - abs(force(3)) &
-            & + chain%joint(coarse(i))%friction*(force(1) + force(2)))
+         safety(i) = min(force(1), force(2))
+         associate (joint => chain%joint(coarse(i)))
+            if (.not. joint%no_slip) safety(i) = min(safety(i), &
+               & joint%friction*(force(1) + force(2)) - abs(force(3)))
+         end associate
       end do
       is_near = .false.
       do i = 1, size(coarse)
@@ -157,7 +160,8 @@ contains
             normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
             along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
             moment = (s(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1))/joint%half
-            if (normal >= abs(moment) .and. abs(along) <= joint%limit + joint%friction*normal) cycle
+            if (normal >= abs(moment) .and. (abs(along) <= joint%friction*normal &
+               & .or. joint%no_slip)) cycle
          end associate
          call add_failing(chain, [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along], j, &
             & energy, beyond)

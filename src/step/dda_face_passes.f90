@@ -6,7 +6,7 @@
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
 submodule (dda_settle_in_time:dda_contact_interior) dda_face_passes
    use dda_contact_view, only : contact_view_t
-   use dda_friction_cone, only : joint_face_t, shear_bound
+   use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
    implicit none
 
    !> Compliance of a force that does not follow its opening, over that of the blocks
@@ -224,7 +224,7 @@ contains
          end do
          if (.not. p%given(3, i)) cycle
          excess = abs(force(3)) - shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force))
-         sticks = .not. springs%cone(p%joint(i))%limit < huge(1.0_wp)
+         sticks = springs%cone(p%joint(i))%kind == cone_kind%no_slip
          if (all(face(i)%open)) then
             if (face(i)%slip == 0) changes = changes + 1
             if (face(i)%slip == 0) face(i)%slip = 1

@@ -4,7 +4,7 @@
 !> Equation (M4) of docs/method.md
 module dda_friction
    use dda_contact_types, only : joint_springs_t
-   use dda_friction_cone, only : cone_t
+   use dda_friction_cone, only : cone_kind, cone_t
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_small_systems, only : least_squares
@@ -62,13 +62,14 @@ contains
          begun%passes = state%passes
          state = begun
       end if
-      state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
+      state%cone = cone_t(kind=cone_kind%no_slip)
       state%face%slip = 0
       state%unsettled_work = 0.0_wp
       call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
       if (.not. state%settled) return
       bound = coulomb_bound(springs, state)
-      if (all(abs(state%force(3, :)) <= bound + tolerance)) return
+      if (all(abs(state%force(3, :)) <= bound + tolerance &
+         & .or. springs%cone%kind == cone_kind%no_slip)) return
       call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
    end subroutine iterate_friction
 
@@ -88,7 +89,8 @@ contains
       integer :: correction, stale
       logical :: resolved
 
-      state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
+      state%cone = cone_t()
+      state%cone%kind = springs%cone%kind
       stale = 0
       least = huge(least)
       resolved = .false.
@@ -96,8 +98,7 @@ contains
          state%cone%limit = bound
          call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
          if (.not. state%settled) return
-         change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
-            & springs%cone%limit < huge(1.0_wp))
+         change = coulomb_bound(springs, state) - bound
          largest = maxval(abs(change))
          state%unsettled_work = sum(abs(change*state%increment(3, :)))
          if (largest <= tolerance .or. resolved) return
@@ -141,7 +142,8 @@ contains
       end associate
    end subroutine accelerate
 
-   !> Largest shear forces that the joints carry with the normal forces that they have
+   !> Largest shear forces that the joints carry with the normal forces that they have; 0 where they
+   !> cannot slide
    pure function coulomb_bound(springs, state) result(bound)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state

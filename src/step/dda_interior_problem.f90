@@ -3,6 +3,7 @@ submodule (dda_settle_in_time) dda_interior_problem
    use dda_block_factor, only : factorise, plan_factor, substitute
    use dda_block_matrix, only : set_pattern
    use dda_contact_types, only : unbounded
+   use dda_friction_cone, only : cone_kind
    implicit none
 
    !> Compliance of the springs over that of the blocks, and at the most over that of typical ones:
@@ -76,7 +77,7 @@ contains
             given = p%unit(:, i) > 0.0_wp
             where (.not. given) p%unit(:, i) = 1.0_wp
             p%bounded(1:2, i) = given(1:2) .and. springs%shift(1:2, j) < unbounded
-            p%bounded(3:4, i) = given(3) .and. springs%cone(j)%limit < huge(1.0_wp)
+            p%bounded(3:4, i) = given(3) .and. springs%cone(j)%kind /= cone_kind%no_slip
             p%force_before(:, i) = force(:, j)
          end associate
       end do

@@ -11,6 +11,7 @@ module dda_settle_in_time
    use dda_contact_types, only : joint_springs_t
    use dda_contact_view, only : contact_view_t
    use dda_fixed_points, only : correct_fixed_forces
+   use dda_friction_cone, only : cone_kind
    use dda_friction, only : accelerate, anderson_t, coulomb_bound
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
@@ -235,45 +236,44 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
       real(wp), dimension(size(springs%stiffness)) :: bound, change, next, now, wrong
-      logical :: glued(size(springs%stiffness))
+      logical, dimension(size(springs%stiffness)) :: are_now, glued
       real(wp) :: least
       type(anderson_t) :: known
       integer :: correction
 
-      glued = .not. springs%cone%limit < huge(1.0_wp)
-      bound = friction_of(springs, state)
+      bound = coulomb_bound(springs, state)
+      glued = are_glued(springs, state)
       least = huge(least)
       do correction = 1, max_corrections
          state%cone%friction = 0.0_wp
          state%cone%limit = bound
+         state%cone%kind = merge(cone_kind%no_slip, cone_kind%frictional, glued)
          call settle_forces(settings, target, opening, equations, springs, state)
          if (.not. state%settled) return
-         now = friction_of(springs, state)
+         now = coulomb_bound(springs, state)
+         are_now = are_glued(springs, state)
          change = now - bound
          wrong = 0.0_wp
-         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > bound + change) &
-            & wrong = abs(change)
+         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > now) &
+            & wrong = merge(abs(change), equations%force_scale, are_now .eqv. glued)
          if (maxval(wrong) <= fine*equations%force_scale) return
          least = min(least, maxval(wrong))
-         call accelerate(known, merge(0.0_wp, bound, glued), merge(0.0_wp, change, glued), next)
-         bound = max(0.0_wp, merge(now, next, glued))
+         call accelerate(known, bound, change, next)
+         bound = max(0.0_wp, next)
+         glued = are_now
       end do
       state%settled = least <= coarse_bound*equations%force_scale
    end subroutine settle_bounds
 
-   !> What friction allows with the normal forces as they are; joints that cannot slide can part
-   pure function friction_of(springs, state) result(bound)
+   !> Whether the joints cannot slide: what has parted can
+   pure function are_glued(springs, state)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
-      real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
-      integer :: j
+      logical :: are_glued(size(springs%stiffness))  !! The joints: (n_joint)
 
-      bound = coulomb_bound(springs, state)
-      do j = 1, size(bound)
-         if (.not. springs%cone(j)%limit < huge(1.0_wp) .and. all(state%face(j)%open)) &
-            & bound(j) = 0.0_wp
-      end do
-   end function friction_of
+      are_glued = springs%cone%kind == cone_kind%no_slip &
+         & .and. .not. (state%face%open(1) .and. state%face%open(2))
+   end function are_glued
 
    !> Sweep the contacts, and in a motion with them the bars
    pure subroutine sweep_with_bars(equations, springs, state)

@@ -26,7 +26,7 @@ contains
             corner = chain%joint(j)%middle + real(end, wp)*chain%joint(j)%half*chain%joint(j)%tangent
             gap = moved(chain, motion, j, corner) - moved(chain, motion, j - 1, corner)
             slip = 0.0_wp
-            if (chain%joint(j)%limit < huge(1.0_wp)) &
+            if (.not. chain%joint(j)%no_slip) &
                & slip = chain%joint(j)%friction*abs(dot_product(gap, chain%joint(j)%tangent))
             least_opening = min(least_opening, dot_product(gap, normal) - slip)
          end do
