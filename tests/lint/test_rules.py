@@ -169,7 +169,7 @@ def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: st
 
 
 @pytest.mark.parametrize(("names", "registry"), [
-    ("dda_key_names", ("dda_deck_keys", "dda_arch_keys")), ("dda_map_key_names", ("dda_map_keys",))])
+    ("dda_key_names", ("dda_deck_keys", "dda_arch_keys")), ("dda_map_keys", ("dda_map_keys",))])
 def test_keys_are_named_in_the_order_of_the_registry(names: str, registry: tuple[str, ...]) -> None:
     folder = REPOSITORY / "src" / "input"
     enums = (folder / f"{names}.f90").read_text(encoding="utf-8").split("end enum")[:-1]
