@@ -1,7 +1,8 @@
 !> A run of Shi's scheme as a decision of ours: its verdict and the joints at its end
 submodule (dda_compute_case) dda_limerick_decision
    use dda_contact_types, only : place_joint
-   use dda_contacts, only : contacts_t
+   use dda_block_system, only : begin_motion
+   use dda_contacts, only : begin_forces, contacts_t
    use dda_frames, only : frame_is_due, keep_frame
    use dda_key_names, only : scene_kind
    use dda_kinds, only : wp
@@ -103,8 +104,10 @@ contains
       integer :: n
 
       system = scene%system
+      call begin_motion(system)
       if (allocated(system%bar)) system%bar%force = run%blocks%bolt_force
       contacts = scene%contacts
+      call begin_forces(contacts)
       call place_corners(deck%value(scene_kind)%text, run, system)
       call tell_joints(scene, model, run, system%moved, contacts)
       ! blocks of the scheme are those of the scene, in their order

@@ -1,5 +1,6 @@
 !> The blocks of a restart file, and what a run carries from step to step
 submodule (dda_restart) dda_restart_blocks
+   use dda_block_system, only : begin_motion
    use dda_block_update, only : displaced_blocks
    use dda_step_context, only : energy_t
    implicit none
@@ -47,6 +48,7 @@ contains
             & fault = "fixed blocks that move"
       end do
       if (fault /= "") return
+      call begin_motion(system)
       system%motion = state%motion
       system%velocity = state%velocity
       system%stress = state%stress

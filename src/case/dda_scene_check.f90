@@ -164,7 +164,9 @@ contains
       integer :: i
 
       if (any(scene%system%unit_weight > 0.0_wp)) return
-      if (any(abs(scene%system%initial_stress) > 0.0_wp)) return
+      if (allocated(scene%system%initial_stress)) then
+         if (any(abs(scene%system%initial_stress) > 0.0_wp)) return
+      end if
       associate (boundary => scene%settings%boundary)
          if (allocated(boundary%base_acceleration%time)) return
          if (allocated(boundary%loaded)) then

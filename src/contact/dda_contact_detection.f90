@@ -3,7 +3,7 @@ module dda_contact_detection
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : edge_to_edge_joint, joint_springs_t, joint_t, mohr_coulomb, &
       & new_joint_springs, place_joint
-   use dda_contacts, only : contacts_t, place_all_joints
+   use dda_contacts, only : begin_forces, contacts_t, place_all_joints
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_settings, only : settings_t
@@ -32,26 +32,22 @@ contains
          joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
       call set_joints(joint, contacts)
+      call begin_forces(contacts)
    end subroutine find_contacts
 
-   !> Take these joints, closed and free of force, without springs and without memory
+   !> Take these joints, of which nothing is known yet
    pure subroutine set_joints(joint, contacts)
       !> The joints: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
       !> The contacts; their search is kept
       type(contacts_t), intent(inout) :: contacts
-      integer :: n
 
-      n = size(joint)
       call move_alloc(joint, contacts%joint)
       if (allocated(contacts%place)) deallocate (contacts%place)
       if (allocated(contacts%face)) deallocate (contacts%face)
       if (allocated(contacts%force)) deallocate (contacts%force, contacts%gap, contacts%increment)
       if (allocated(contacts%trial)) deallocate (contacts%trial, contacts%past_slip)
       if (allocated(contacts%intact)) deallocate (contacts%intact)
-      allocate (contacts%face(n))
-      allocate (contacts%force(3, n), source=0.0_wp)
-      allocate (contacts%gap, contacts%increment, source=contacts%force)
       contacts%springs = joint_springs_t()
    end subroutine set_joints
 
@@ -59,6 +55,7 @@ contains
    pure subroutine begin_memory(contacts)
       type(contacts_t), intent(inout) :: contacts
 
+      call begin_forces(contacts)
       if (allocated(contacts%trial)) return
       allocate (contacts%trial, source=0.0_wp*contacts%force)
       allocate (contacts%past_slip(size(contacts%joint)), source=0.0_wp)
@@ -98,6 +95,7 @@ contains
       end do
       call set_joints(joint, contacts)
       if (allocated(old%place)) contacts%place = old%place(k)
+      if (.not. allocated(old%face)) return
       contacts%face = old%face(k)
       contacts%force = old%force(:, k)
       contacts%gap = old%gap(:, k)

@@ -80,9 +80,6 @@ contains
          joint(j)%contact%closed_at = gap(1:2)
       end do
       call set_joints(joint, contacts)
-      do j = 1, size(contacts%joint)
-         contacts%face(j)%open(2) = contacts%joint(j)%n_contact == 1
-      end do
    end subroutine search_contacts
 
    !> Contacts where the blocks are now; their springs carry what openings and slip make of them

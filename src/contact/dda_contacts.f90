@@ -9,8 +9,8 @@ module dda_contacts
    implicit none
    private
 
-   public :: edge_pairs_t, joint_search_t, contacts_t, move_contacts, place_all_joints
-   public :: joint_place
+   public :: edge_pairs_t, joint_search_t, contacts_t, begin_forces, joint_place, move_contacts
+   public :: place_all_joints
 
    !> Pairs of edges that were near, and how far their corners can go before others may be
    type :: edge_pairs_t
@@ -43,7 +43,8 @@ module dda_contacts
       type(joint_place_t), allocatable :: place(:)
       !> Their springs
       type(joint_springs_t) :: springs
-      !> Face of the friction cone that each joint's force lies on: (n_joint)
+      !> Face of the friction cone that each joint's force lies on; this and what follows only where
+      !> something is known of it: (n_joint)
       type(joint_face_t), allocatable :: face(:)
       !> Trial force N1, N2, T of the springs, from the first step on: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
@@ -91,6 +92,17 @@ contains
          call place_joint(system, system%vertex, contacts%joint(j), place, gap)
       end if
    end function joint_place
+
+   !> Faces, forces and openings of joints that have carried nothing yet
+   pure subroutine begin_forces(contacts)
+      type(contacts_t), intent(inout) :: contacts
+
+      if (allocated(contacts%face)) return
+      allocate (contacts%face(size(contacts%joint)))
+      contacts%face%open(2) = contacts%joint%n_contact == 1
+      allocate (contacts%force(3, size(contacts%joint)), source=0.0_wp)
+      allocate (contacts%gap, contacts%increment, source=contacts%force)
+   end subroutine begin_forces
 
    !> Hand contacts over without a copy of what is large
    pure subroutine move_contacts(from, to)

@@ -7,12 +7,14 @@ module dda_block_system
    implicit none
    private
 
-   public :: block_system_t, move_system, new_block_system, n_unknown, set_initial_state
+   public :: block_system_t, n_unknown, new_block_system
+   public :: begin_motion, forget_rest, move_system, set_initial_state
 
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
 
-   !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1
+   !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1. What
+   !> begins with the corners where the blocks are now is there only where blocks may have moved
    type :: block_system_t
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
@@ -73,17 +75,11 @@ contains
       n = size(first_vertex) - 1
       allocate (system%first_vertex, source=first_vertex)
       allocate (system%vertex, source=vertex)
-      allocate (system%moved, source=vertex)
       allocate (system%fixed, source=fixed)
       allocate (system%materials(1))
       system%materials(1) = material
       allocate (system%area(n), system%centroid(2, n), system%second(3, n))
       allocate (system%density(n), system%unit_weight(n), system%material(n), system%equation(n))
-      allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), system%stress(3, n))
-      allocate (system%initial_stress(3, n), source=0.0_wp)
-      system%motion = 0.0_wp
-      system%velocity = 0.0_wp
-      system%stress = 0.0_wp
       system%material = 1
       system%density = material%density
       system%unit_weight = 0.0_wp
@@ -96,7 +92,29 @@ contains
          if (.not. fixed(b)) movable = movable + 1
          system%equation(b) = merge(0, movable, fixed(b))
       end do
+      call begin_motion(system)
    end function new_block_system
+
+   !> Give blocks that have never moved what motion changes
+   pure subroutine begin_motion(system)
+      type(block_system_t), intent(inout) :: system
+      integer :: n
+
+      if (allocated(system%motion)) return
+      n = size(system%area)
+      allocate (system%moved, source=system%vertex)
+      allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), source=0.0_wp)
+      allocate (system%stress(3, n), system%initial_stress(3, n), source=0.0_wp)
+   end subroutine begin_motion
+
+   !> Take from blocks that begin at rest and free of stress what motion changes
+   pure subroutine forget_rest(system)
+      type(block_system_t), intent(inout) :: system
+
+      if (any(abs(system%velocity) > 0.0_wp) .or. any(abs(system%stress) > 0.0_wp)) return
+      deallocate (system%moved, system%motion, system%velocity, system%stress, &
+         & system%initial_stress)
+   end subroutine forget_rest
 
    !> Hand blocks over without a copy of what is large
    pure subroutine move_system(from, to)

@@ -1,7 +1,7 @@
 !> From blocks as a user gives them to a scene ready to run; water becomes forces on their corners
 module dda_block_scene
    use dda_block_input, only : block_plan_t, unsupported_block
-   use dda_block_system, only : new_block_system, set_initial_state
+   use dda_block_system, only : forget_rest, new_block_system, set_initial_state
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_box_tree, only : box_tree_t, find_boxes, new_box_tree
    use dda_contact_search, only : new_joint_search
@@ -246,6 +246,7 @@ contains
             system%unit_weight(b) = unit_weight(plan%material(b))
             call set_initial_state(system, b, plan%velocity(:, b), plan%stress(:, b))
          end do
+         call forget_rest(system)
          if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law)

@@ -3,7 +3,7 @@ submodule (dda_critical) dda_collapse_trace
    use dda_assembly, only : new_equations, solve_faces
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks
-   use dda_block_system, only : block_system_t
+   use dda_block_system, only : begin_motion, block_system_t
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_unfold, only : fold
    use dda_contact_types, only : joint_springs_t, new_joint_springs, same_joint
@@ -236,6 +236,7 @@ contains
       call family%build(value, scene, error)
       usable = .not. allocated(error)
       if (.not. usable) return
+      call begin_motion(scene%system)
       call mechanism_power(mechanism%blocks, scene, power, noise, usable)
       critical%factorisations = critical%factorisations + 1
    end subroutine power_at

@@ -6,7 +6,9 @@
 !> the verdict is that of the joint graph, with a proof, and the run only tells how the forces are
 !> shared out.
 submodule (dda_decision) dda_decide
+   use dda_block_system, only : begin_motion
    use dda_boundary, only : held_at_start
+   use dda_contacts, only : begin_forces
    use dda_coulomb_law, only : face
    use dda_forward, only : run_to_verdict
    use dda_frames, only : blank_album, keep_pictures
@@ -75,8 +77,10 @@ contains
       else
          decision%system = system
          decision%contacts = contacts
+         call begin_forces(decision%contacts)
          decision%outcome%reason = proof%reason
       end if
+      call begin_motion(decision%system)
       associate (outcome => decision%outcome)
          outcome%steps = outcome%steps + proof%n_event + 1
          outcome%jumps = outcome%jumps + proof%n_jump
@@ -199,6 +203,7 @@ contains
       album = blank_album(album)
       run%settings = settings
       run%system = decision%system
+      call begin_motion(run%system)
       run%contacts = decision%contacts
       call keep_pictures(run, .false., album)
    end subroutine show_end
@@ -254,7 +259,7 @@ contains
          decision%outcome%verdict = verdict%undecided
          return
       end if
-      settled%system%velocity = system%velocity
+      if (allocated(system%velocity)) settled%system%velocity = system%velocity
       decision%outcome = settled%outcome
       march%held_force = rest%held_force
       call follow_coulomb(settings, settled%system, settled%contacts, decision, album, march)

@@ -5,9 +5,11 @@
 !> fits where it stands, without force, and then gets its weight. A dynamic run goes on with the
 !> velocities of the blocks that stay.
 submodule (dda_decision) dda_stages
+   use dda_block_system, only : begin_motion
    use dda_boundary, only : present_at, stage_times
    use dda_contact_detection, only : keep_contacts
    use dda_contact_search, only : forget_pairs
+   use dda_contacts, only : begin_forces
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : unloaded_state
    use dda_graph_decision, only : decide_graph
@@ -181,8 +183,10 @@ contains
       else
          decision%system = system
          decision%contacts = contacts
+         call begin_forces(decision%contacts)
          decision%outcome%reason = proof%reason
       end if
+      call begin_motion(decision%system)
    end subroutine record_stage
 
    !> Whether what was decided does not stand without any slip: its forces are not those of the way
@@ -230,7 +234,7 @@ contains
       do b = 1, size(present)
          if (present(b) .and. .not. system%fixed(b)) n = n + 1
          system%equation(b) = merge(n, 0, present(b) .and. .not. system%fixed(b))
-         if (.not. present(b)) system%velocity(:, b) = 0.0_wp
+         if (allocated(system%velocity) .and. .not. present(b)) system%velocity(:, b) = 0.0_wp
       end do
       system%absent = .not. present
       contacts%search%absent = .not. present

@@ -1,10 +1,10 @@
 !> Blocks and contacts as a verdict of the joint graph has them
 module dda_graph_report
    use dda_bar_joints, only : keep_bar_forces
-   use dda_block_system, only : block_system_t
+   use dda_block_system, only : begin_motion, block_system_t
    use dda_boundary, only : value_at
    use dda_contact_types, only : joint_place_t, rows_of_joint
-   use dda_contacts, only : contacts_t, joint_place
+   use dda_contacts, only : begin_forces, contacts_t, joint_place
    use dda_coulomb_law, only : coulomb_state_t, face
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_motion
@@ -39,6 +39,7 @@ contains
       integer :: j
 
       call scene_graph(settings, system, contacts, graph)
+      call begin_forces(contacts)
       if (allocated(verdict%state)) call keep_whole(verdict%state, contacts)
       allocate (rate(3, size(graph%kind)))
       call joint_motion(graph, verdict%mechanism, rate)
@@ -81,6 +82,8 @@ contains
       real(wp), allocatable :: force(:, :)
       integer :: b, j, n
 
+      call begin_motion(system)
+      call begin_forces(contacts)
       n = size(contacts%joint)
       allocate (force(3, 0))
       if (allocated(verdict%force)) force = verdict%force

@@ -1,8 +1,8 @@
 !> Forward analysis: a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_block_factor, only : factored_condition
-   use dda_block_system, only : block_system_t, move_system
-   use dda_contacts, only : contacts_t, move_contacts
+   use dda_block_system, only : begin_motion, block_system_t, move_system
+   use dda_contacts, only : begin_forces, contacts_t, move_contacts
    use dda_energy, only : keep_energy
    use dda_error, only : error_t
    use dda_frames, only : album_t, keep_pictures
@@ -70,6 +70,8 @@ contains
       type(run_t) :: run
       type(error_t), allocatable :: error
 
+      call begin_motion(system)
+      call begin_forces(contacts)
       if (maxval(system%equation) == 0) then
          ! nothing can move
          outcome%verdict = merge(verdict%completed, verdict%stable, settings%dynamic)
