@@ -185,7 +185,7 @@ contains
 
       spring = 0.0_wp
       do j = 1, size(face, 2)
-         ratio = merge(x%flow(:, j)/x%slack(:, j), 0.0_wp, face(:, j))
+         ratio = ratio_of(x, face, j)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%absent) cycle
             spring(i, i, j) = 1.0_wp/(joints%graph%compliance(i, j) + ratio(i))
@@ -211,32 +211,32 @@ contains
       type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
       real(wp), parameter :: rounding = 1.0e-15_wp
-      type(coulomb_interior_t) :: part
-      real(wp) :: drive(3, size(face, 2)), left(size(step%motion, 1), size(step%motion, 2))
-      real(wp) :: last, ratio(4, size(face, 2)), source(4, size(face, 2))
-      integer :: turn
+      real(wp) :: drive(3, size(face, 2)), force(3, size(face, 2))
+      real(wp), dimension(size(step%motion, 1), size(step%motion, 2)) :: left, motion
+      real(wp) :: last, source(4)
+      integer :: j, turn
 
-      ratio = merge(x%flow/x%slack, 0.0_wp, face)
-      source = merge(rest%product/x%slack - ratio*rest%slack, 0.0_wp, face)
-      drive = rest%opening
-      drive(:2, :) = drive(:2, :) + source(:2, :)
-      drive(3, :) = drive(3, :) + source(3, :) - source(4, :)
+      do j = 1, size(face, 2)
+         source = merge(rest%product(:, j)/x%slack(:, j) - ratio_of(x, face, j)*rest%slack(:, j), &
+            & 0.0_wp, face(:, j))
+         drive(:2, j) = rest%opening(:2, j) + source(:2)
+         drive(3, j) = rest%opening(3, j) + source(3) - source(4)
+      end do
       step%motion = 0.0_wp
       step%force = 0.0_wp
       step%slack = merge(rest%slack, 0.0_wp, face)
       left = rest%balance
-      part = step
       last = huge(1.0_wp)
       do turn = 0, max_correction
-         part%motion = left
-         call answer_joints(joints, face, ratio, drive, part)
-         call add_joint_forces(joints%graph, part%force, part%motion)
-         call substitute(matrix%factor, part%motion)
-         step%motion = step%motion + part%motion
-         call joint_motion(joints%graph, part%motion, part%force)
-         call answer_joints(joints, face, ratio, drive - part%force, part)
-         step%force = step%force + part%force
-         step%slack = step%slack + part%slack
+         motion = left
+         call answer_joints(joints, face, x, drive, force)
+         call add_joint_forces(joints%graph, force, motion)
+         call substitute(matrix%factor, motion)
+         step%motion = step%motion + motion
+         call joint_motion(joints%graph, motion, force)
+         drive = drive - force
+         call answer_joints(joints, face, x, drive, force, step%slack)
+         step%force = step%force + force
          drive = 0.0_wp
          call imbalance(joints, rest%balance - damping*joints%graph%mass*step%motion, &
             & step%force, left)
@@ -248,34 +248,50 @@ contains
 
    !> Forces of the springs under a drive, and what they add to the slacks, as sums that cancel
    !> nothing
-   pure subroutine answer_joints(joints, face, ratio, drive, part)
+   pure subroutine answer_joints(joints, face, x, drive, force, slack)
       type(coulomb_joints_t), intent(in) :: joints
       logical, intent(in) :: face(:, :)
-      real(wp), intent(in) :: ratio(:, :)  !! Flow over slack: (4, n_joint)
-      real(wp), intent(in) :: drive(:, :)  !! What the springs are pressed together by: (3, n_joint)
-      type(coulomb_interior_t), intent(inout) :: part
-      real(wp) :: bound, spring
+      type(coulomb_interior_t), intent(in) :: x
+      !> What the springs are pressed together by: (3, n_joint)
+      real(wp), intent(in) :: drive(:, :)
+      real(wp), intent(out) :: force(:, :)              !! The forces: (3, n_joint)
+      real(wp), intent(inout), optional :: slack(:, :)  !! Receives what is added: (4, n_joint)
+      real(wp) :: bound, more(4), r(4), spring
       integer :: i, j
 
-      part%force = 0.0_wp
-      part%slack = 0.0_wp
       do j = 1, size(drive, 2)
-         associate (c => joints%graph%compliance(:, j), f => part%force(:, j), r => ratio(:, j))
+         r = ratio_of(x, face, j)
+         more = 0.0_wp
+         associate (c => joints%graph%compliance(:, j), f => force(:, j))
+            f = 0.0_wp
             do i = 1, 2
                if (joints%end_role(i, j) == end_role%absent) cycle
                f(i) = drive(i, j)/(c(i) + r(i))
             end do
-            part%slack(:2, j) = merge(f(:2), 0.0_wp, face(:2, j))
-            if (joints%shear_role(j) == shear_role%absent) cycle
-            spring = 1.0_wp/(c(3) + r(3) + r(4))
-            bound = joints%graph%friction(j)*(f(1) + f(2))
-            f(3) = (drive(3, j) - (r(3) - r(4))*bound)*spring
-            if (.not. face(3, j)) cycle
-            part%slack(3, j) = (bound*(c(3) + 2.0_wp*r(4)) + drive(3, j))*spring
-            part%slack(4, j) = (bound*(c(3) + 2.0_wp*r(3)) - drive(3, j))*spring
+            more(:2) = merge(f(:2), 0.0_wp, face(:2, j))
+            if (joints%shear_role(j) /= shear_role%absent) then
+               spring = 1.0_wp/(c(3) + r(3) + r(4))
+               bound = joints%graph%friction(j)*(f(1) + f(2))
+               f(3) = (drive(3, j) - (r(3) - r(4))*bound)*spring
+               if (face(3, j)) then
+                  more(3) = (bound*(c(3) + 2.0_wp*r(4)) + drive(3, j))*spring
+                  more(4) = (bound*(c(3) + 2.0_wp*r(3)) - drive(3, j))*spring
+               end if
+            end if
          end associate
+         if (present(slack)) slack(:, j) = slack(:, j) + more
       end do
    end subroutine answer_joints
+
+   !> Flow over slack at the faces of a joint
+   pure function ratio_of(x, face, j) result(ratio)
+      type(coulomb_interior_t), intent(in) :: x
+      logical, intent(in) :: face(:, :)
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: ratio(4)      !! None where there is no face: (4)
+
+      ratio = merge(x%flow(:, j)/x%slack(:, j), 0.0_wp, face(:, j))
+   end function ratio_of
 
    !> The longest step, 1 at most, that keeps a share of every slack and flow
    pure real(wp) function longest(face, x, step, share)
