@@ -283,8 +283,6 @@ contains
       plan%fixed = [plan%fixed, fixed]
       plan%material = [plan%material, material]
       plan%line = [plan%line, 1]
-      plan%velocity = reshape([plan%velocity, [0.0_wp, 0.0_wp, 0.0_wp]], [3, n + 1])
-      plan%stress = reshape([plan%stress, [0.0_wp, 0.0_wp, 0.0_wp]], [3, n + 1])
    end subroutine add_block
 
    !> Add a chord of the upper face of the last block; what leans over carries nothing

@@ -73,8 +73,6 @@ contains
          call make_room(plan%fixed, n + 1)
          call make_room(plan%material, n + 1)
          call make_room(plan%line, n + 1)
-         call make_room(plan%velocity, n + 1)
-         call make_room(plan%stress, n + 1)
          plan%vertex(:, n_vertex + 1:n_vertex + size(vertex, 2)) = vertex
          n_vertex = n_vertex + size(vertex, 2)
          n = n + 1
@@ -82,8 +80,6 @@ contains
          plan%fixed(n) = fixed
          plan%material(n) = material
          plan%line(n) = line
-         plan%velocity(:, n) = 0.0_wp
-         plan%stress(:, n) = 0.0_wp
       end associate
    end subroutine put_block
 
@@ -110,8 +106,8 @@ contains
          plan%fixed = from%fixed(:n)
          plan%material = from%material(:n)
          plan%line = from%line(:n)
-         plan%velocity = from%velocity(:, :n)
-         plan%stress = from%stress(:, :n)
+         plan%starts = from%starts(:growing%n_start)
+         plan%start = from%start(:, :growing%n_start)
          plan%materials = from%materials
          plan%laws = from%laws(:growing%n_law)
          plan%water = from%water

@@ -42,6 +42,7 @@ module dda_read_blocks
       type(block_plan_t) :: plan  !! The plan; its arrays are longer than what they hold
       integer :: n_block = 0      !! Number of blocks
       integer :: n_vertex = 0     !! Number of corners
+      integer :: n_start = 0      !! Number of blocks that begin with a velocity or a stress
       integer :: n_law = 0        !! Number of laws
    end type growing_plan_t
 
@@ -278,9 +279,12 @@ contains
          if (allocated(error)) return
          call add_plan_block(growing, reading%entry%row(:2, :reading%entry%n_row), given(1), &
             & nint(value(1)), head%number, reading%file, warnings, error)
-         if (allocated(error)) return
-         growing%plan%velocity(:, growing%n_block) = value(2:4)
-         growing%plan%stress(:, growing%n_block) = value(5:7)
+         if (allocated(error) .or. .not. any(given(3:4))) return
+         growing%n_start = growing%n_start + 1
+         call make_room(growing%plan%starts, growing%n_start)
+         call make_room(growing%plan%start, growing%n_start)
+         growing%plan%starts(growing%n_start) = growing%n_block
+         growing%plan%start(:, growing%n_start) = value(2:7)
       end associate
    end subroutine close_block
 

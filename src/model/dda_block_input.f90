@@ -48,10 +48,11 @@ module dda_block_input
       logical, allocatable :: fixed(:)
       !> Number of each block's material: (n_block)
       integer, allocatable :: material(:)
-      !> Velocity of the centre and spin at the beginning: (3, n_block) [m/s, m/s, rad/s]
-      real(wp), allocatable :: velocity(:, :)
-      !> Stress sx, sy, txy at the beginning: (3, n_block) [Pa]
-      real(wp), allocatable :: stress(:, :)
+      !> Blocks that begin with a velocity or a stress: (n_start)
+      integer, allocatable :: starts(:)
+      !> Velocity of the centre, spin, and stress sx, sy, txy of each of them: (6, n_start)
+      !> [m/s, m/s, rad/s, Pa, Pa, Pa]
+      real(wp), allocatable :: start(:, :)
       !> Line of the file where each block begins: (n_block)
       integer, allocatable :: line(:)
       !> Materials beside that of the deck
@@ -76,8 +77,8 @@ contains
       type(block_plan_t), intent(out) :: plan
 
       allocate (plan%first_vertex(1), source=1)
-      allocate (plan%vertex(2, 0), plan%fixed(0), plan%material(0), plan%velocity(3, 0))
-      allocate (plan%stress(3, 0), plan%line(0), plan%materials(0), plan%laws(0))
+      allocate (plan%vertex(2, 0), plan%fixed(0), plan%material(0), plan%starts(0))
+      allocate (plan%start(6, 0), plan%line(0), plan%materials(0), plan%laws(0))
       allocate (plan%water(0))
    end subroutine new_plan
 

@@ -244,7 +244,9 @@ contains
          do b = 1, size(plan%fixed)
             system%density(b) = material(plan%material(b))%density
             system%unit_weight(b) = unit_weight(plan%material(b))
-            call set_initial_state(system, b, plan%velocity(:, b), plan%stress(:, b))
+         end do
+         do b = 1, size(plan%starts)
+            call set_initial_state(system, plan%starts(b), plan%start(:3, b), plan%start(4:, b))
          end do
          call forget_rest(system)
          if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))

@@ -40,8 +40,12 @@ contains
          associate (material => model%material(b + 1))
             material%material_t = scene%system%materials(plan%material(b))
             material%unit_weight = scene%system%unit_weight(b)
-            material%stress = plan%stress(:, b)
-            if (.not. plan%fixed(b)) material%velocity = plan%velocity(:, b)
+         end associate
+      end do
+      do b = 1, size(plan%starts)
+         associate (block => plan%starts(b), material => model%material(plan%starts(b) + 1))
+            material%stress = plan%start(4:, b)
+            if (.not. plan%fixed(block)) material%velocity = plan%start(:3, b)
          end associate
       end do
       model%material(1) = model%material(1 + max(1, findloc(plan%fixed, .false., dim=1)))
@@ -110,8 +114,9 @@ contains
             & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
          return
       end if
-      do b = 1, size(plan%fixed)
-         if (dynamic .or. .not. any(abs(plan%velocity(:, b)) > 0.0_wp)) cycle
+      do i = 1, size(plan%starts)
+         if (dynamic .or. .not. any(abs(plan%start(:3, i)) > 0.0_wp)) cycle
+         b = plan%starts(i)
          call fatal_error(error, "mode = 'limerick' begins every static step at rest, but block " &
             & //to_text(b)//" has a velocity; remove it or set limerick%dynamic = .true.", file, &
             & plan%line(b))

@@ -94,10 +94,8 @@ contains
       plan%first_vertex = [(4*b - 3, b=1, n + 1)]
       plan%fixed = [(b == 1, b=1, n)]
       plan%material = spread(1, 1, n)
-      deallocate (plan%vertex, plan%velocity, plan%stress)
-      allocate (plan%vertex(2, 4*n), plan%velocity(3, n), plan%stress(3, n))
-      plan%velocity = 0.0_wp
-      plan%stress = 0.0_wp
+      deallocate (plan%vertex)
+      allocate (plan%vertex(2, 4*n))
    end subroutine empty_plan
 
    !> Put a rectangle into a plan
