@@ -54,6 +54,8 @@ contains
             decision%outcome%reason = "stages need friction alone and geometry = 'reference' " &
                & //"in a static run, geometry = 'current' in a dynamic one"
          end if
+         call begin_motion(decision%system)
+         call begin_forces(decision%contacts)
          call enter_stage(settings, last, scene%system, scene%contacts)
       end associate
    end procedure decide_in_stages
@@ -183,10 +185,8 @@ contains
       else
          decision%system = system
          decision%contacts = contacts
-         call begin_forces(decision%contacts)
          decision%outcome%reason = proof%reason
       end if
-      call begin_motion(decision%system)
    end subroutine record_stage
 
    !> Whether what was decided does not stand without any slip: its forces are not those of the way
