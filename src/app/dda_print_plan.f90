@@ -70,7 +70,7 @@ contains
    pure logical function has_strength(scene)
       type(scene_t), intent(in) :: scene
 
-      associate (law => scene%contacts%joint%law)
+      associate (law => scene%contacts%law(scene%contacts%joint%law))
          has_strength = any(law%cohesion > 0.0 .or. law%tension > 0.0 &
             & .and. (law%no_slip .or. .not. law%friction > 0.0))
       end associate

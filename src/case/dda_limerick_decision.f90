@@ -181,7 +181,7 @@ contains
       do j = 1, size(contacts%joint)
          if (any(contacts%face(j)%open(:contacts%joint(j)%n_contact))) cycle
          ! shear springs give no more before the joint slides
-         law = finite_law(contacts%joint(j)%law)
+         law = finite_law(contacts%law(contacts%joint(j)%law))
          if (abs(contacts%gap(3, j)) > model%constants%stiffness_ratio*law%friction*deepest) &
             & contacts%face(j)%slip = nint(sign(1.0_wp, contacts%gap(3, j)))
       end do

@@ -1,6 +1,7 @@
 !> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
 submodule (dda_restart) dda_restart_joints
    use dda_contact_detection, only : begin_memory, set_joints
+   use dda_contact_search, only : law_between
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
    use dda_outline, only : outline_of, outline_t
    implicit none
@@ -96,8 +97,7 @@ contains
          joint(j)%found = .true.
          joint(j)%n_contact = whole(1, j)
          joint(j)%block = blocks_of(outline, whole(:, j), 1)
-         joint(j)%law = contacts%search%law(system%material(joint(j)%block(1)), &
-            & system%material(joint(j)%block(2)))
+         joint(j)%law = law_between(contacts%search, system%material(joint(j)%block))
          joint(j)%length = number(1, j)
          joint(j)%contact%edge_side = whole(2:3, j)
          joint(j)%contact%length = number(2:3, j)

@@ -57,7 +57,8 @@ contains
 
       do j = 1, size(scene%contacts%joint)
          associate (joint => scene%contacts%joint(j))
-            if (.not. (joint%law%strength < huge(1.0_wp) .and. joint%n_contact == 1)) cycle
+            if (.not. (scene%contacts%law(joint%law)%strength < huge(1.0_wp) &
+               & .and. joint%n_contact == 1)) cycle
             call fatal_error(error, "compressive_strength needs joints with a width, got a "// &
                & "corner of blocks "//to_text(joint%block(1))//" and "//to_text(joint%block(2)) &
                & //" on an edge, which any force crushes; cut the corner off, or remove "// &

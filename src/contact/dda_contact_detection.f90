@@ -29,8 +29,9 @@ contains
 
       allocate (joint(size(edge_pair, 2)))
       do j = 1, size(joint)
-         joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
+         joint(j) = edge_to_edge_joint(system, edge_pair(:, j), j)
       end do
+      allocate (contacts%law, source=law)
       call set_joints(joint, contacts)
       call begin_forces(contacts)
    end subroutine find_contacts
@@ -73,7 +74,7 @@ contains
       if (allocated(contacts%springs%row)) return
       call place_all_joints(system, contacts)
       call new_joint_springs(system, merge(1.0_wp, 0.0_wp, settings%current)*system%motion, &
-         & contacts%joint, contacts%place, settings%penalty_ratio, settings%n_dof, &
+         & contacts%joint, contacts%law, contacts%place, settings%penalty_ratio, settings%n_dof, &
          & contacts%springs)
       call set_strength(contacts)
    end subroutine raise_springs
@@ -112,8 +113,10 @@ contains
       integer :: j
 
       do j = 1, size(contacts%joint)
-         call mohr_coulomb(contacts%joint(j), contacts%intact(:, j), contacts%springs%cone(j), &
-            & contacts%springs%shift(:, j))
+         associate (joint => contacts%joint(j))
+            call mohr_coulomb(joint, contacts%law(joint%law), contacts%intact(:, j), &
+               & contacts%springs%cone(j), contacts%springs%shift(:, j))
+         end associate
       end do
    end subroutine set_strength
 
@@ -136,8 +139,8 @@ contains
          contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
       end do
       before = contacts%springs
-      call new_joint_springs(system, system%motion, contacts%joint, contacts%place, &
-         & penalty_ratio, n_dof, contacts%springs)
+      call new_joint_springs(system, system%motion, contacts%joint, contacts%law, &
+         & contacts%place, penalty_ratio, n_dof, contacts%springs)
       contacts%springs%cone = before%cone
       contacts%springs%shift = before%shift
       do j = 1, size(contacts%joint)

@@ -13,7 +13,7 @@ module dda_contact_search
    use dda_box_tree, only : box_pairs, box_tree_t, least_nearby, least_values, new_box_tree
    use dda_contact_types, only : joint_t
    use dda_contacts, only : edge_pairs_t, joint_search_t
-   use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
+   use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t, take_joints
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_outline, only : measure_edges, outline_of, outline_t
@@ -23,7 +23,7 @@ module dda_contact_search
    private
 
    public :: find_edge_pairs, remember_edge_pairs, new_joint_search, forget_pairs, look_around
-   public :: touching_joints, near_joints
+   public :: law_between, touching_joints, near_joints
 
    !> Least and most margin over the size of a block
    real(wp), parameter :: least = 0.05_wp, most = 0.5_wp
@@ -159,6 +159,14 @@ contains
       allocate (new_joint_search%law, source=law)
    end function new_joint_search
 
+   !> Number of the law between two materials among the laws of the contacts
+   pure integer function law_between(search, material)
+      type(joint_search_t), intent(in) :: search
+      integer, intent(in) :: material(2)  !! Numbers of the materials: (2)
+
+      law_between = material(1) + size(search%law, 1)*(material(2) - 1)
+   end function law_between
+
    !> Look everywhere again: blocks have come or gone
    pure subroutine forget_pairs(search)
       type(joint_search_t), intent(inout) :: search
@@ -292,11 +300,9 @@ contains
          end if
          first = last + 1
       end do
-      allocate (joint(list%n))
-      do j = 1, list%n
-         joint(j) = list%joint(j)
-         joint(j)%law = search%law(system%material(joint(j)%block(1)), &
-            & system%material(joint(j)%block(2)))
+      call take_joints(list, joint)
+      do j = 1, size(joint)
+         joint(j)%law = law_between(search, system%material(joint(j)%block))
       end do
    end subroutine find_joints
 

@@ -73,6 +73,7 @@ contains
       real(wp) :: gap(3)
       integer :: j
 
+      contacts%law = pack(contacts%search%law, .true.)
       call touching_joints(contacts%search, system, joint)
       do j = 1, size(joint)
          call lock_joint(system, system%vertex, joint(j))
@@ -119,8 +120,8 @@ contains
       call set_joints(joint, contacts)
       call move_alloc(place, contacts%place)
       call begin_memory(contacts)
-      call new_joint_springs(system, system%motion, contacts%joint, contacts%place, &
-         & penalty_ratio, n_dof, contacts%springs)
+      call new_joint_springs(system, system%motion, contacts%joint, contacts%law, &
+         & contacts%place, penalty_ratio, n_dof, contacts%springs)
       do j = 1, size(contacts%joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &

@@ -55,8 +55,8 @@ module dda_contact_types
       real(wp) :: length = 0.0_wp
       !> Whether a search has found it; otherwise it was given and is kept
       logical :: found = .false.
-      !> Bounds of the joint force
-      type(joint_law_t) :: law
+      !> Number of the law of the joint force among those of the contacts
+      integer :: law = 1
    end type joint_t
 
    !> Where a joint is
@@ -139,8 +139,8 @@ contains
       type(block_system_t), intent(in) :: system
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
-      !> Law of the joint
-      type(joint_law_t), intent(in) :: law
+      !> Number of its law
+      integer, intent(in) :: law
       real(wp) :: start(2), finish(2)
 
       start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
@@ -216,12 +216,15 @@ contains
    end function slip_at
 
    !> Springs of all joints
-   pure subroutine new_joint_springs(system, motion, joint, place, penalty_ratio, n_dof, springs)
+   pure subroutine new_joint_springs(system, motion, joint, law, place, penalty_ratio, n_dof, &
+      & springs)
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
+      !> Laws that they may have: (n_law)
+      type(joint_law_t), intent(in) :: law(:)
       !> Where they are: (n_joint)
       type(joint_place_t), intent(in) :: place(:)
       !> Contact stiffness over the stiffness of the block across the joint
@@ -242,7 +245,8 @@ contains
          springs%equation(:, j) = system%equation(joint(j)%block)
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j), &
             & place(j))
-         call mohr_coulomb(joint(j), [1.0_wp, 1.0_wp], springs%cone(j), springs%shift(:, j))
+         call mohr_coulomb(joint(j), law(joint(j)%law), [1.0_wp, 1.0_wp], springs%cone(j), &
+            & springs%shift(:, j))
       end do
       if (n > 0 .and. .not. springs%give) &
          & springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
@@ -325,8 +329,9 @@ contains
    !> Bounds of a joint's force and the tension that its contacts carry. The tension is at most that
    !> at the apex of the Mohr-Coulomb cone; a contact that has slid or parted has neither cohesion
    !> nor tension, and a joint of which none is whole its residual friction
-   pure subroutine mohr_coulomb(joint, intact, cone, shift)
+   pure subroutine mohr_coulomb(joint, law, intact, cone, shift)
       type(joint_t), intent(in) :: joint
+      type(joint_law_t), intent(in) :: law
       !> Share that is left of each contact's strength: (2)
       real(wp), intent(in) :: intact(2)
       !> Bounds of the force, with the cone moved by the tension
@@ -337,13 +342,13 @@ contains
 
       cone%single = joint%n_contact == 1
       whole = intact*joint%contact%length
-      shift = [joint%law%tension*whole, 0.0_wp]
-      if (joint%law%no_slip) then
+      shift = [law%tension*whole, 0.0_wp]
+      if (law%no_slip) then
          cone%kind = cone_kind%no_slip
          return
       end if
-      cone%friction = friction_left(joint%law, maxval(intact(:joint%n_contact)))
-      cohesion = joint%law%cohesion*sum(whole)
+      cone%friction = friction_left(law, maxval(intact(:joint%n_contact)))
+      cohesion = law%cohesion*sum(whole)
       if (cone%friction*sum(shift) > cohesion) shift = shift*(cohesion/(cone%friction*sum(shift)))
       cone%limit = max(0.0_wp, cohesion - cone%friction*sum(shift))
    end subroutine mohr_coulomb

@@ -38,6 +38,8 @@ module dda_contacts
    type :: contacts_t
       !> The joints: (n_joint)
       type(joint_t), allocatable :: joint(:)
+      !> Laws that they have: (n_law)
+      type(joint_law_t), allocatable :: law(:)
       !> Where they are; unallocated before the first step, where they are where the blocks began:
       !> (n_joint)
       type(joint_place_t), allocatable :: place(:)
@@ -120,6 +122,7 @@ contains
       type(contacts_t), intent(inout) :: from, to
 
       call move_alloc(from%joint, to%joint)
+      call move_alloc(from%law, to%law)
       call move_alloc(from%place, to%place)
       call move_alloc(from%face, to%face)
       call move_alloc(from%trial, to%trial)

@@ -13,7 +13,7 @@ module dda_entrance
    private
 
    public :: neighbourhood_t, joint_list_t, add_joints, add_single, contact_key, join_edges
-   public :: was_closed
+   public :: take_joints, was_closed
 
    !> What a search looks at
    type :: neighbourhood_t
@@ -33,10 +33,18 @@ module dda_entrance
       integer(int64), allocatable :: closed(:)
    end type neighbourhood_t
 
-   !> Joints found so far
+   !> Joints of a piece of a list
+   integer, parameter :: most_joints = 64
+
+   !> A piece of a list
+   type :: joint_piece_t
+      type(joint_t), allocatable :: joint(:)  !! Its joints: (most_joints)
+   end type joint_piece_t
+
+   !> Joints found so far, in pieces: one array that grew would need its room several times
    type :: joint_list_t
-      integer :: n = 0                        !! Number of joints
-      type(joint_t), allocatable :: joint(:)  !! The joints, the first n of them
+      integer :: n = 0                              !! Number of joints
+      type(joint_piece_t), allocatable :: piece(:)  !! The joints, all pieces but the last full
    end type joint_list_t
 
    !> Two edges lie together if their directions differ by no more than this sine
@@ -315,13 +323,39 @@ contains
       !> The joint; its blocks are set
       type(joint_t), intent(inout) :: joint
       type(joint_list_t), intent(inout) :: list
+      type(joint_piece_t), allocatable :: more(:)
+      integer :: i, k
 
       joint%block = near%outline%block(pair)
       joint%found = .true.
-      if (.not. allocated(list%joint)) allocate (list%joint(64))
-      ! the second half is room
-      if (list%n == size(list%joint)) list%joint = [list%joint, list%joint]
+      k = list%n/most_joints + 1
+      if (.not. allocated(list%piece)) allocate (list%piece(16))
+      if (k > size(list%piece)) then
+         allocate (more(2*k))
+         do i = 1, k - 1
+            call move_alloc(list%piece(i)%joint, more(i)%joint)
+         end do
+         call move_alloc(more, list%piece)
+      end if
+      if (.not. allocated(list%piece(k)%joint)) allocate (list%piece(k)%joint(most_joints))
       list%n = list%n + 1
-      list%joint(list%n) = joint
+      list%piece(k)%joint(list%n - (k - 1)*most_joints) = joint
    end subroutine add_joint
+
+   !> Take all joints out of a list
+   pure subroutine take_joints(list, joint)
+      type(joint_list_t), intent(inout) :: list                !! The list, empty afterwards
+      type(joint_t), allocatable, intent(out) :: joint(:)      !! The joints: (n)
+      integer :: i, n
+
+      allocate (joint(list%n))
+      do i = 1, list%n, most_joints
+         n = min(most_joints, list%n - i + 1)
+         associate (piece => list%piece(i/most_joints + 1))
+            joint(i:i + n - 1) = piece%joint(:n)
+            deallocate (piece%joint)
+         end associate
+      end do
+      list%n = 0
+   end subroutine take_joints
 end module dda_entrance

@@ -5,7 +5,7 @@ module dda_material
    private
 
    public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
-   public :: breaks_at_once, friction_left, loses_strength
+   public :: breaks_at_once, friction_left, loses_strength, weakens
 
    !> What a block is made of
    type :: material_t
@@ -66,9 +66,15 @@ contains
    elemental logical function loses_strength(law)
       type(joint_law_t), intent(in) :: law
 
-      loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp &
-         & .or. law%residual < law%friction
+      loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp .or. weakens(law)
    end function loses_strength
+
+   !> Whether a joint that has slid has less friction
+   elemental logical function weakens(law)
+      type(joint_law_t), intent(in) :: law
+
+      weakens = law%residual < law%friction
+   end function weakens
 
    !> Whether the first slip takes all strength that a joint can lose, but for its friction
    elemental logical function breaks_at_once(law)

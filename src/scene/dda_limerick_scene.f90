@@ -125,7 +125,7 @@ contains
       integer :: i
 
       allocate (model%law(1, 2))
-      model%law(1, :) = finite_law(scene%contacts%joint([2, 1])%law)
+      model%law(1, :) = finite_law(scene%contacts%law(scene%contacts%joint([2, 1])%law))
       ! the abutments' faces, and the voussoirs' edges upon them
       model%edge_law([nv + 4, nv + 8]) = 2
       model%edge_law(model%first_vertex(2) - 1) = 2

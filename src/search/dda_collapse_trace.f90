@@ -56,7 +56,9 @@ contains
          if (size(critical%fallen%system%bar) > 0) return
       end if
       if (allocated(critical%fallen%contacts%joint)) then
-         if (any(critical%fallen%contacts%joint%law%strength < huge(1.0_wp))) return
+         associate (contacts => critical%fallen%contacts)
+            if (any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp))) return
+         end associate
       end if
       call freeze(family, critical, mechanism)
       x(1) = critical%falls
@@ -257,6 +259,7 @@ contains
       settings = scene%settings
       settings%n_dof = 3
       call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
+         & scene%contacts%law, &
          & [(joint_place(scene%system, scene%contacts, b), b=1, size(scene%contacts%joint))], &
          & settings%penalty_ratio, settings%n_dof, springs)
       call new_equations(scene%system, springs, settings, equations)

@@ -15,6 +15,7 @@ submodule (dda_decision) dda_decide
    use dda_graph_decision, only : decide_graph
    use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
+   use dda_material, only : weakens
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph
    use dda_settings, only : flow_rule
@@ -114,7 +115,7 @@ contains
       type(contacts_t), intent(in) :: contacts
 
       may_run = .not. (allocated(settings%boundary%bounded) &
-         & .or. any(contacts%joint%law%strength < huge(1.0_wp)))
+         & .or. any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp)))
    end function may_run
 
    !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
@@ -212,7 +213,7 @@ contains
    module procedure decide_by_steps
       type(settings_t) :: convex
 
-      if (any(contacts%joint%law%residual < contacts%joint%law%friction)) then
+      if (any(weakens(contacts%law(contacts%joint%law)))) then
          ! what slides as it opens wears another way, so that its fall proves nothing
          call follow_coulomb(settings, system, contacts, decision, album)
          return

@@ -87,10 +87,11 @@ contains
       graph%n_dof = n_rigid
       call add_nodes(settings, graph)
       call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
-         & any(contacts%joint%law%strength < huge(1.0_wp)), graph)
+         & any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp)), graph)
       do j = 1, n
          place = joint_place(system, contacts, j)
-         associate (single => contacts%joint(j)%n_contact == 1, law => contacts%joint(j)%law)
+         associate (single => contacts%joint(j)%n_contact == 1, &
+            & law => contacts%law(contacts%joint(j)%law))
             graph%block(:, j) = system%equation(contacts%joint(j)%block)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
@@ -150,9 +151,9 @@ contains
       allocate (graph%pull(2, size(graph%kind)), graph%cohesion(2, size(graph%kind)), &
          & source=0.0_wp)
       do j = 1, size(contacts%joint)
-         associate (joint => contacts%joint(j))
-            graph%pull(:, j) = joint%law%tension*joint%contact%length
-            graph%cohesion(:, j) = joint%law%cohesion*joint%contact%length
+         associate (joint => contacts%joint(j), law => contacts%law(contacts%joint(j)%law))
+            graph%pull(:, j) = law%tension*joint%contact%length
+            graph%cohesion(:, j) = law%cohesion*joint%contact%length
          end associate
       end do
    end subroutine add_strength
@@ -244,7 +245,7 @@ contains
    pure logical function has_pure_friction(contacts)
       type(contacts_t), intent(in) :: contacts
 
-      has_pure_friction = .not. any(loses_strength(contacts%joint%law))
+      has_pure_friction = .not. any(loses_strength(contacts%law(contacts%joint%law)))
    end function has_pure_friction
 
    !> Held points of blocks that could move
@@ -302,7 +303,7 @@ contains
       decides_as_graph = keeps_places(settings)
       if (decides_as_graph .and. .not. has_pure_friction(contacts)) decides_as_graph = &
          & settings%verdict_flow == flow_rule%coulomb &
-         & .and. all(breaks_at_once(contacts%joint%law))
+         & .and. all(breaks_at_once(contacts%law(contacts%joint%law)))
    end function decides_as_graph
 
    !> Whether limit analysis knows a scene: it is decided by friction alone

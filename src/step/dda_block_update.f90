@@ -123,15 +123,16 @@ contains
       end if
       breaks = .false.
       do j = 1, size(contacts%joint)
-         if (.not. loses_strength(contacts%joint(j)%law)) cycle
+         if (.not. loses_strength(contacts%law(contacts%joint(j)%law))) cycle
          left = contacts%intact(:, j)
          if (contacts%face(j)%slip /= 0) left = worn(left, abs(contacts%increment(3, j)), &
-            & contacts%joint(j)%law%slip_length)
+            & contacts%law(contacts%joint(j)%law)%slip_length)
          where (contacts%face(j)%open) left = 0.0_wp
          if (.not. any(left < contacts%intact(:, j))) cycle
          breaks = .true.
          contacts%intact(:, j) = left
-         call mohr_coulomb(contacts%joint(j), contacts%intact(:, j), contacts%springs%cone(j), &
+         call mohr_coulomb(contacts%joint(j), contacts%law(contacts%joint(j)%law), &
+            & contacts%intact(:, j), contacts%springs%cone(j), &
             & contacts%springs%shift(:, j))
       end do
    end subroutine update_contacts
