@@ -13,7 +13,8 @@ module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : imbalance, joint_stiffness, spring_forces
-   use dda_coulomb_matrix, only : coulomb_matrix_t, factor_stiffness, new_matrix
+   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix, &
+      & new_matrix
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : wp
    use dda_small_systems, only : eliminate_full, substitute_full
@@ -115,19 +116,20 @@ contains
    pure subroutine factor_faces(equations, joints)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp) :: stiffness(3, 3, size(equations%place))
+      real(wp) :: stiffness(3, 3)
       integer :: i, j
 
       equations%usable = equations%base%n_factorisation < equations%most_factorisations
       if (.not. equations%usable) return
-      do j = 1, size(stiffness, 3)
-         stiffness(:, :, j) = joint_stiffness(joints, j, equations%face(:, j))
+      call begin_matrix(equations%base, joints, equations%damping)
+      do j = 1, size(equations%place)
+         stiffness = joint_stiffness(joints, j, equations%face(:, j))
          do i = 1, 3
-            stiffness(i, i, j) = stiffness(i, i, j) &
-               & + equations%viscosity/joints%graph%compliance(i, j)
+            stiffness(i, i) = stiffness(i, i) + equations%viscosity/joints%graph%compliance(i, j)
          end do
+         call add_stiffness(equations%base, joints, j, stiffness)
       end do
-      call factor_stiffness(equations%base, joints, stiffness, equations%damping)
+      call factor_matrix(equations%base)
       equations%usable = equations%base%factor%usable
       equations%base_face = equations%face
       equations%place(equations%joint(:equations%n_change)) = 0

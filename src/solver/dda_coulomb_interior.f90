@@ -15,7 +15,7 @@ module dda_coulomb_interior
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_coulomb_law, only : imbalance
-   use dda_coulomb_matrix, only : coulomb_matrix_t, factor_stiffness
+   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix
    use dda_joint_graph, only : add_joint_forces, joint_motion
    use dda_kinds, only : wp
    implicit none
@@ -180,24 +180,27 @@ contains
       real(wp), intent(in) :: damping
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
-      real(wp) :: ratio(4), spring(3, 3, size(face, 2))
+      real(wp) :: ratio(4), spring(3, 3)
       integer :: i, j
 
-      spring = 0.0_wp
+      call begin_matrix(matrix, joints, damping)
       do j = 1, size(face, 2)
+         spring = 0.0_wp
          ratio = ratio_of(x, face, j)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%absent) cycle
-            spring(i, i, j) = 1.0_wp/(joints%graph%compliance(i, j) + ratio(i))
+            spring(i, i) = 1.0_wp/(joints%graph%compliance(i, j) + ratio(i))
          end do
-         if (joints%shear_role(j) == shear_role%absent) cycle
-         spring(3, 3, j) = 1.0_wp/(joints%graph%compliance(3, j) + ratio(3) + ratio(4))
-         do i = 1, 2
-            spring(3, i, j) = -joints%graph%friction(j)*(ratio(3) - ratio(4))*spring(i, i, j) &
-               & *spring(3, 3, j)
-         end do
+         if (joints%shear_role(j) /= shear_role%absent) then
+            spring(3, 3) = 1.0_wp/(joints%graph%compliance(3, j) + ratio(3) + ratio(4))
+            do i = 1, 2
+               spring(3, i) = -joints%graph%friction(j)*(ratio(3) - ratio(4))*spring(i, i) &
+                  & *spring(3, 3)
+            end do
+         end if
+         call add_stiffness(matrix, joints, j, spring)
       end do
-      call factor_stiffness(matrix, joints, spring, damping)
+      call factor_matrix(matrix)
    end subroutine factor_springs
 
    !> The step that brings what is left to nothing, corrected until forces balance

@@ -8,7 +8,7 @@ module dda_coulomb_matrix
    implicit none
    private
 
-   public :: coulomb_matrix_t, new_matrix, factor_stiffness
+   public :: coulomb_matrix_t, add_stiffness, begin_matrix, factor_matrix, new_matrix
 
    !> The factor, in whose place the matrix is assembled
    type :: coulomb_matrix_t
@@ -48,28 +48,29 @@ contains
       matrix%coupling = unpack(place, couples, spread(0, 1, size(couples)))
    end subroutine new_matrix
 
-   !> Assemble and factor
-   pure subroutine factor_stiffness(matrix, joints, stiffness, damping)
+   !> Begin to add up the matrix, with a multiple of the mass
+   pure subroutine begin_matrix(matrix, joints, damping)
       type(coulomb_matrix_t), intent(inout) :: matrix
       type(coulomb_joints_t), intent(in) :: joints
-      !> S of each joint, rows N1, N2, T, columns opening 1, opening 2, slip: (3, 3, n_joint)
-      real(wp), intent(in) :: stiffness(:, :, :)
-      !> Multiple of the mass
-      real(wp), intent(in) :: damping
-      integer :: b, j
+      real(wp), intent(in) :: damping  !! The multiple
+      integer :: b
+
+      associate (lower => matrix%factor%panels%lower)
+         lower = 0.0_wp
+         matrix%factor%panels%upper = 0.0_wp
+         do b = 1, joints%graph%n_block
+            lower(matrix%diagonal(b):matrix%diagonal(b) + 8:4) = damping*joints%graph%mass(:, b)
+         end do
+      end associate
+   end subroutine begin_matrix
+
+   !> Factor what has been added up
+   pure subroutine factor_matrix(matrix)
+      type(coulomb_matrix_t), intent(inout) :: matrix
+      integer :: b
 
       associate (lower => matrix%factor%panels%lower, upper => matrix%factor%panels%upper)
-         lower = 0.0_wp
-         upper = 0.0_wp
-         do b = 1, joints%graph%n_block
-            associate (at => matrix%diagonal(b))
-               lower(at:at + 8:4) = damping*joints%graph%mass(:, b)
-            end associate
-         end do
-         do j = 1, size(stiffness, 3)
-            call add_stiffness(matrix, joints, j, stiffness(:, :, j), lower, upper)
-         end do
-         do b = 1, joints%graph%n_block
+         do b = 1, size(matrix%diagonal)
             associate (at => matrix%diagonal(b))
                upper(at:at + 8) = lower([at, at + 3, at + 6, at + 1, at + 4, at + 7, at + 2, &
                   & at + 5, at + 8])
@@ -78,21 +79,20 @@ contains
       end associate
       call factorise_in_place(matrix%factor)
       matrix%n_factorisation = matrix%n_factorisation + 1
-   end subroutine factor_stiffness
+   end subroutine factor_matrix
 
    !> Add the stiffness of a joint to the matrix; above the diagonal to its transpose
-   pure subroutine add_stiffness(matrix, joints, j, stiffness, lower, upper)
-      type(coulomb_matrix_t), intent(in) :: matrix
+   pure subroutine add_stiffness(matrix, joints, j, stiffness)
+      type(coulomb_matrix_t), intent(inout) :: matrix
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j                 !! Number of the joint
       real(wp), intent(in) :: stiffness(3, 3)  !! Rows N1, N2, T; columns opening 1, opening 2, slip
-      real(wp), intent(inout) :: lower(*)      !! Numbers on the diagonal and below
-      real(wp), intent(inout) :: upper(*)      !! Transposes of those above the diagonal
       real(wp) :: product(3, 3)
       integer :: one, other
 
       associate (block => joints%graph%block(:, j), row => joints%graph%row(:, :, :, j), &
-         & at => abs(matrix%coupling(j)))
+         & at => abs(matrix%coupling(j)), lower => matrix%factor%panels%lower, &
+         & upper => matrix%factor%panels%upper)
          do one = 1, 2
             if (block(one) > 0) call add_product(row(:, :, one), stiffness, row(:, :, one), &
                & lower(matrix%diagonal(block(one))))
