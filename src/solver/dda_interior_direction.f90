@@ -12,7 +12,7 @@ module dda_interior_direction
    private
 
    public :: turn_t
-   public :: direct, direct_again, refine_direction, balance_direction, respond_to_live_load
+   public :: direct, direct_again, refine_direction, find_balance, respond_to_live_load
 
    !> What one turn works on
    type :: turn_t
@@ -140,10 +140,24 @@ contains
       call add_ray_forces(rays, turn%dx, turn%rest)
    end subroutine see_rest
 
-   !> Correct a direction by the motion that balances what it leaves. The power of the rest on the
+   !> Correct a direction by the motion that balances what it leaves
+   pure subroutine balance_direction(rays, path, point, springs, turn)
+      type(joint_rays_t), intent(in) :: rays
+      type(load_path_t), intent(in) :: path
+      type(interior_point_t), intent(in) :: point
+      type(ray_matrix_t), intent(inout) :: springs
+      type(turn_t), intent(inout) :: turn
+
+      call find_balance(rays, path, point, springs, turn)
+      turn%ds = turn%ds + (1.0_wp - path%compliance*springs%stiffness)*turn%rate
+      turn%dx = turn%dx - springs%stiffness*turn%rate
+   end subroutine balance_direction
+
+   !> The motion that balances what a direction leaves, and its rates: of the direction all but the
+   !> changes of x and s by these. The power of the rest on the
    !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
    !> to cancel
-   pure subroutine balance_direction(rays, path, point, springs, turn)
+   pure subroutine find_balance(rays, path, point, springs, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
@@ -162,7 +176,5 @@ contains
       turn%dfactor = turn%dfactor + step - taken
       turn%dv = turn%dv + turn%response
       turn%rate = turn%rate + step*turn%unit_rate
-      turn%ds = turn%ds + (1.0_wp - path%compliance*springs%stiffness)*turn%rate
-      turn%dx = turn%dx - springs%stiffness*turn%rate
-   end subroutine balance_direction
+   end subroutine find_balance
 end module dda_interior_direction

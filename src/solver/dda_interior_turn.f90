@@ -2,7 +2,7 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_interior_turn
-   use dda_interior_direction, only : balance_direction, direct, direct_again, refine_direction, &
+   use dda_interior_direction, only : direct, direct_again, find_balance, refine_direction, &
       & respond_to_live_load, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
@@ -237,22 +237,24 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
-      real(wp), dimension(n_side, size(turn%dx, 2)) :: dx, ds
-      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share), soft(n_side)
+      real(wp) :: dx(n_side, size(turn%dx, 2))
+      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
       integer :: i, j, best
 
       dx = turn%dx
-      ds = turn%ds
       dv = turn%dv
       dfactor = turn%dfactor
       do j = 1, size(dx, 2)
-         soft = change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), ds(:, j), &
-            & turn%aim(:, j))*rays%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
-         turn%dx(:, j) = turn%dx(:, j) + soft
-         turn%ds(:, j) = turn%ds(:, j) + path%compliance*soft
+         turn%dx(:, j) = dx(:, j) + change_of_x(j)
       end do
-      call balance_direction(rays, path, point, springs, turn)
-      steps = steps_of_shares(rays, point, turn, dx, ds)
+      call find_balance(rays, path, point, springs, turn)
+      ! the rates are not needed any more and make room for what s would change by
+      do j = 1, size(dx, 2)
+         turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*turn%rate(:, j)
+         turn%rate(:, j) = turn%ds(:, j) + path%compliance*change_of_x(j) &
+            & + (1.0_wp - path%compliance*springs%stiffness(:, j))*turn%rate(:, j)
+      end do
+      steps = steps_of_shares(rays, point, turn, dx)
       best = n_share
       do i = n_share - 1, 1, -1
          if (product(steps(:, i)) > 1.02_wp*product(steps(:, best))) best = i
@@ -261,22 +263,34 @@ contains
       share = real(best, wp)/real(n_share, wp)
       do j = 1, size(dx, 2)
          turn%aim(:, j) = turn%aim(:, j) + share*change_of_aim(wish, point%x(:, j), &
-            & point%s(:, j), dx(:, j), ds(:, j), turn%aim(:, j))*rays%bounded(:, j)
+            & point%s(:, j), dx(:, j), turn%ds(:, j), turn%aim(:, j))*rays%bounded(:, j)
       end do
       turn%dx = dx + share*(turn%dx - dx)
-      turn%ds = ds + share*(turn%ds - ds)
+      turn%ds = turn%ds + share*(turn%rate - turn%ds)
       turn%dv = dv + share*(turn%dv - dv)
       turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
+
+   contains
+
+      !> Change of x at unchanged rates of a joint
+      pure function change_of_x(j) result(change)
+         integer, intent(in) :: j    !! Number of the joint
+         real(wp) :: change(n_side)  !! The change
+
+         change = change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), turn%ds(:, j), &
+            & turn%aim(:, j))*rays%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
+      end function change_of_x
    end subroutine add_correction
 
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the
    !> turn changed is taken
-   pure function steps_of_shares(rays, point, turn, dx, ds) result(steps)
+   pure function steps_of_shares(rays, point, turn, dx) result(steps)
       type(joint_rays_t), intent(in) :: rays
       type(interior_point_t), intent(in) :: point
+      !> The direction of x, that of s before, and in the place of its rates the one of s
       type(turn_t), intent(in) :: turn
-      real(wp), intent(in) :: dx(:, :), ds(:, :)  !! The direction before: (n_side, n_joint)
-      real(wp) :: steps(2, n_share)               !! Steps of forces and of rates: (2, n_share)
+      real(wp), intent(in) :: dx(:, :)  !! The direction of x before: (n_side, n_joint)
+      real(wp) :: steps(2, n_share)     !! Steps of forces and of rates: (2, n_share)
       real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2), per(n_side, 2)
       integer :: i, j
 
@@ -284,9 +298,9 @@ contains
       do j = 1, size(dx, 2)
          per = one_over(rays, point, j)
          from(:, 1) = -dx(:, j)*per(:, 1)
-         from(:, 2) = -ds(:, j)*per(:, 2)
+         from(:, 2) = -turn%ds(:, j)*per(:, 2)
          more(:, 1) = -turn%dx(:, j)*per(:, 1) - from(:, 1)
-         more(:, 2) = -turn%ds(:, j)*per(:, 2) - from(:, 2)
+         more(:, 2) = -turn%rate(:, j)*per(:, 2) - from(:, 2)
          do i = 1, n_share
             hurry(:, :, i) = max(hurry(:, :, i), from + real(i, wp)/real(n_share, wp)*more)
          end do
