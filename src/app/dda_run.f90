@@ -72,7 +72,8 @@ module dda_run
          type(command_t), intent(in) :: command
          !> Name of the deck
          character(len=*), intent(in) :: name
-         type(deck_t), intent(in) :: deck
+         !> The deck; where it has one case, that takes the corners of its blocks
+         type(deck_t), intent(inout) :: deck
          !> Cases to be computed
          logical, intent(in) :: chosen(:)
          !> The last case that was begun by any thread
@@ -156,7 +157,7 @@ contains
    subroutine run_deck(command, name, deck, status)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(inout) :: deck
       integer, intent(out) :: status  !! Exit status of this deck
       type(result_tables_t) :: tables
       type(finished_t) :: finished

@@ -5,7 +5,7 @@ submodule (dda_run) dda_run_cases
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, may_print
    use dda_compute_case, only : compute_case
-   use dda_deck_sweep, only : turn_to_case
+   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t
    use dda_key_names, only : output_restart
@@ -130,18 +130,21 @@ contains
 
    !> Make one case ready to be computed
    subroutine prepare(deck, number, tables, this)
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(inout) :: deck
       integer, intent(in) :: number
       type(result_tables_t), intent(in) :: tables
       !> An earlier case of the deck in, if there was one: of its deck only what is swept changes
       type(case_t), intent(inout) :: this
       type(deck_t), allocatable :: turned
       type(error_t), allocatable :: problem
+      real(wp), allocatable :: vertex(:, :)
 
       ! a vehicle that was put elsewhere is not the deck's
       if (.not. this%has_worst) call move_alloc(this%family%deck, turned)
       if (.not. allocated(turned)) allocate (turned)
+      if (n_cases(deck) == 1) call move_alloc(deck%plan%vertex, vertex)
       call turn_to_case(deck, number, turned, problem)
+      if (allocated(vertex)) call move_alloc(vertex, turned%plan%vertex)
       call prepare_case(turned, this)
       this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
       this%proves = tables%at(table%proof_forces)%wanted
