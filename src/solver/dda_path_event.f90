@@ -41,6 +41,8 @@ module dda_path_event
    !> Names of the ends of a path
    type(path_end_enum), parameter :: path_end = path_end_enum()
 
+   !> A force that changes by less on the whole way, over a block's weight, does not change
+   real(wp), parameter :: no_change = 1.0e-12_wp
    !> Share of the way to an event at which it has not happened
    real(wp), parameter :: before_event = 1.0_wp - 4.0_wp*epsilon(1.0_wp)
 
@@ -65,19 +67,21 @@ contains
       type(coulomb_state_t), intent(in) :: state  !! Where the assembly is
       type(rates_t), intent(in) :: rates
       real(wp), intent(in) :: longest             !! Distance within which an event counts
-      real(wp) :: bond(3), bound(2)
+      real(wp) :: bond(3), bound(2), slow
       integer :: i, j
 
       event%distance = longest
+      slow = no_change/max(longest, tiny(1.0_wp))
       do j = 1, size(rates%face, 2)
          bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
             if (rates%face(i, j) == face%closed) then
-               call meet(state%force(i, j) + bond(i), rates%force(i, j), event_kind%opens, j, i, &
-                  & event)
+               call meet(state%force(i, j) + bond(i), rates%force(i, j), slow, event_kind%opens, &
+                  & j, i, event)
             else
-               call meet(state%gap(i, j), rates%opening(i, j), event_kind%closes, j, i, event)
+               call meet(state%gap(i, j), rates%opening(i, j), 0.0_wp, event_kind%closes, j, i, &
+                  & event)
             end if
          end do
          if (rates%face(3, j) /= face%stuck) cycle
@@ -85,23 +89,24 @@ contains
          bound = joints%graph%friction(j) &
             & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
          bound(1) = bound(1) + bond(3)
-         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), event_kind%slides, &
-            & j, 0, event)
-         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), &
+         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), slow, &
+            & event_kind%slides, j, 0, event)
+         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), slow, &
             & event_kind%slides_back, j, 0, event)
       end do
    end function next_event
 
    !> Take an event that comes before the others: something positive falls to zero
-   pure subroutine meet(rest, rate, kind, joint, corner, event)
+   pure subroutine meet(rest, rate, slow, kind, joint, corner, event)
       real(wp), intent(in) :: rest   !! What falls
       real(wp), intent(in) :: rate   !! Its rate
+      real(wp), intent(in) :: slow   !! How slow it does not fall
       integer, intent(in) :: kind    !! What happens at zero
       integer, intent(in) :: joint   !! Number of the joint
       integer, intent(in) :: corner  !! Corner of the joint, or 0
       type(event_t), intent(inout) :: event
 
-      if (.not. (rate < 0.0_wp .and. rest > 0.0_wp)) return
+      if (.not. (rate < -slow .and. rest > 0.0_wp)) return
       if (-rest/rate < event%distance) event = event_t(-rest/rate, kind, joint, corner)
    end subroutine meet
 

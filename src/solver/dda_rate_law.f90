@@ -11,9 +11,9 @@ submodule (dda_event_rates) dda_rate_law
 
    !> A force below this part of a block's weight is none, a gap that it would close is none
    real(wp), parameter :: weak_force = 1.0e-9_wp
-   !> A joint at its limit sticks unless its shear force would grow beyond it by this share
-   real(wp), parameter :: slide_margin = 1.0e-12_wp
-   !> A whole joint is not opened by less than this share of the largest rate
+   !> What opens by less than this share of the largest rate stays closed, and a joint sticks unless
+   !> it would slide by more: less is rounding, as in long rows where most joints are beyond the
+   !> reach of what acts at the ends
    real(wp), parameter :: rounding = 1.0e-11_wp
 
 contains
@@ -56,14 +56,13 @@ contains
       still = rounding*maxval(abs(opening))
       do j = 1, size(faces, 2)
          do i = 1, 2
-            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) &
-               & > merge(still, 0.0_wp, law%holds(j)))
+            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) > still)
          end do
          if (any(law%weak(:, j)) .and. .not. law%holds(j)) &
             & faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
          beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
-         margin = slide_margin*abs(opening(3, j))/joints%graph%compliance(3, j)
+         margin = still/joints%graph%compliance(3, j)
          if (law%limit(1, j) .and. beyond(1) > margin) then
             faces(3, j) = face%slides
          else if (law%limit(2, j) .and. beyond(2) > margin) then

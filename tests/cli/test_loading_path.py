@@ -168,6 +168,15 @@ def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_
     assert int(row["factorisations"]) <= 40
 
 
+@pytest.mark.parametrize("units", [50, 200])
+def test_the_middle_of_a_long_row_takes_no_part_in_what_its_ends_do(tmp_path: Path, units: int) -> None:
+    """Bricks far from both ends move alike under a push: their joints do nothing, however many."""
+    (row,) = run_wall(tmp_path, units, 2, 0.65, "&load horizontal_coefficient = 0.4 /\n")
+    assert row["verdict"] == "stable"
+    assert int(row["factorisations"]) <= 50
+    assert int(row["steps"]) <= 5
+
+
 def two_rings(voussoirs: int, stuck: set[tuple[int, int]]) -> str:
     """Two rings of voussoirs over 175.5 degrees on fixed springings; some joints cannot slide."""
     half = math.radians(87.744)
