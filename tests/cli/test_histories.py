@@ -82,8 +82,10 @@ def led_way(folder: Path, way: str) -> float:
     return math.hypot(float(last["u"]), float(last["v"])) / math.hypot(*WAYS[way][1])
 
 
-@pytest.mark.parametrize("young", [5e9, 5e10, 5e11, 5e12, 5e13])
-@pytest.mark.parametrize("ramp", ["", "1.0 21.0", "0.0 1e4"])
+@pytest.mark.parametrize(
+    ("young", "ramp"),
+    [(5e9, "0.0 1e4"), (5e10, ""), (5e11, "1.0 21.0"), (5e12, "0.0 1e4"), (5e13, ""), (5e9, "1.0 21.0")],
+)
 def test_an_arch_led_apart_falls_at_one_spread_whatever_its_stiffness(tmp_path: Path, young: float, ramp: str) -> None:
     """Kinematics of three hinges: 0.0588 of the span."""
     groups = f"&material young = {young!r} /\n&joint friction_deg = 80 /\n&analysis geometry = 'current' /"

@@ -63,7 +63,7 @@ def test_what_hangs_over_an_end_is_not_carried(tmp_path: Path) -> None:
 def test_no_swept_position_is_worse_than_the_worst(tmp_path: Path, vehicle: str) -> None:
     associated = "&analysis flow = 'associated' /\n"
     (worst,) = rows(tmp_path, axles(vehicle + ", worst = .true.") + associated, bridge(2))
-    places = [-0.7 + 0.055 * i for i in range(61)] + [float(worst["worst_position"]) + 0.004 * i for i in range(-5, 6)]
+    places = [-0.7 + 0.11 * i for i in range(31)] + [float(worst["worst_position"]) + 0.004 * i for i in range(-5, 6)]
     sweep = associated + f"&sweep parameter = 'position', values = {', '.join(map(repr, places))} /\n"
     swept = rows(tmp_path, axles(vehicle + ", position = 0") + sweep, bridge(2))
     factors = {float(row["position"]): float(row["critical"]) for row in swept if row["critical"]}

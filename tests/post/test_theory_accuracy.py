@@ -88,8 +88,8 @@ def fifty_digits():
 
 def half_angles() -> np.ndarray:
     """Half angles from 0.001 to 147.5 degrees: random and round ones [rad]."""
-    shallow = 10.0 ** GENERATOR.uniform(-3.0, math.log10(147.5), 40)
-    return np.radians(np.concatenate([shallow, GENERATOR.uniform(1.0, 147.5, 60), [0.001, 45, 90, 126, 140, 147.5]]))
+    shallow = 10.0 ** GENERATOR.uniform(-3.0, math.log10(147.5), 20)
+    return np.radians(np.concatenate([shallow, GENERATOR.uniform(1.0, 147.5, 30), [0.001, 45, 90, 126, 140, 147.5]]))
 
 
 @pytest.mark.parametrize("name", THEORIES)
@@ -120,7 +120,7 @@ def test_digits_last_up_to_the_limit(name):
 def test_curve_has_all_its_digits(name):
     unit = theory.limits(name)["alpha_unit_A"]
     shares = np.concatenate([10.0 ** GENERATOR.uniform(-6, 0, 15), 1 - 10.0 ** GENERATOR.uniform(-9, 0, 15)])
-    angles = np.concatenate([half_angles()[::8], unit + np.array([-1e-2, -1e-6, 0.0, 1e-9, 1e-5, 1e-3])])
+    angles = np.concatenate([half_angles()[::4], unit + np.array([-1e-2, -1e-6, 0.0, 1e-9, 1e-5, 1e-3])])
     for angle in angles:
         for beta in shares * angle:
             found = theory.equilibrium_thickness(beta, angle, name)
