@@ -8,6 +8,7 @@ module dda_block_scene
    use dda_contact_transfer, only : search_contacts
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_outline, only : outline_t
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
    use dda_sort, only : sorted_order
@@ -253,6 +254,8 @@ contains
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law)
          call search_contacts(system, scene%contacts)
+         ! a run that moves blocks makes it again
+         scene%contacts%search%outline = outline_t()
       end associate
       allocate (scene%joint_angle_deg(0))
    end subroutine block_scene

@@ -163,16 +163,16 @@ contains
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
-      real(wp) :: start(3, 0:graph%n_block), finish(3, 0:graph%n_block)
+      real(wp) :: scaled(3, 0:graph%n_block)
 
       call set_rays(graph, rays)
       call plan_matrix(rays, springs)
-      call scale_load(rays, dead, unit_of_force(load), start)
-      call begin_inside(rays, start, point)
-      call go_on_to_load(rays, start, resolution, springs, point)
+      call scale_load(rays, dead, unit_of_force(load), scaled)
+      call begin_inside(rays, scaled, point)
+      call go_on_to_load(rays, scaled, resolution, springs, point)
       if (state_at_end(point) == load_state%stands) then
-         call scale_load(rays, load, unit_of_force(load), finish)
-         call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=enough)
+         call scale_load(rays, load, unit_of_force(load), scaled)
+         call go_on_to_load(rays, scaled, tolerance, springs, point, to_limit=enough)
          call prove_nothing(graph, decision)
          call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
          call keep_velocities(rays, point%v, decision%velocity)
@@ -271,12 +271,14 @@ contains
       integer, intent(in), optional :: to_limit
       type(interior_goal_t) :: goal
       type(load_path_t) :: path
-      real(wp) :: start(3, 0:rays%n_block), before(size(point%x, 1), size(point%x, 2))
+      real(wp), allocatable :: start(:, :)
+      real(wp) :: before(size(point%x, 1), size(point%x, 2))
 
       before = point%x
-      start = 0.0_wp
+      allocate (start(3, 0:rays%n_block), source=0.0_wp)
       call add_ray_forces(rays, before, start)
       call set_path(-start, start + finish, path)
+      deallocate (start)
       ! what lacks of balance is judged by the load in question
       path%largest_dead = maxval(abs(finish))
       path%largest_live = 0.0_wp

@@ -7,6 +7,7 @@ module dda_forward
    use dda_error, only : error_t
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
+   use dda_outline, only : outline_of
    use dda_reactions, only : keep_reactions
    use dda_settings, only : settings_t
    use dda_step, only : advance, begin_step
@@ -72,6 +73,8 @@ contains
 
       call begin_motion(system)
       call begin_forces(contacts)
+      if (contacts%searched .and. .not. allocated(contacts%search%outline%next)) &
+         & contacts%search%outline = outline_of(system)
       if (maxval(system%equation) == 0) then
          ! nothing can move
          outcome%verdict = merge(verdict%completed, verdict%stable, settings%dynamic)
