@@ -7,8 +7,9 @@
 !>    v = v0 - U y,   y = D (opening of v at these joints)      (Sherman, Morrison and Woodbury)
 !>
 !> is a small full system for y. Answers are kept until the matrix is factored again, so that a
-!> joint may change to and fro for nothing. What a solution leaves of the load is always looked at:
-!> if it is not rounding, the solution is corrected, then the matrix factored.
+!> joint may change to and fro for nothing. Where rounding may have lost more of a solution's forces
+!> than it should, what it leaves of the load is looked at: if it is too much, the solution is
+!> corrected, then the matrix factored.
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
@@ -22,6 +23,9 @@ module dda_coulomb_equations
    private
 
    public :: coulomb_equations_t, new_coulomb_equations, use_faces, solve_equations
+
+   !> Answers that are kept: more cost as much as a new factor
+   integer, parameter :: max_answer = 32
 
    !> A factor, and what has changed since
    type :: coulomb_equations_t
@@ -53,6 +57,8 @@ module dda_coulomb_equations
       integer, allocatable :: origin(:, :)
       !> Motion of all blocks: (n_dof, n_block, max_answer)
       real(wp), allocatable :: response(:, :, :)
+      !> The largest of it: (max_answer)
+      real(wp) :: reach(max_answer) = 0.0_wp
       !> How the joints that have changed open with it: (3, max_answer, max_answer)
       real(wp), allocatable :: opening(:, :, :)
       !> Answers in use: (n_active)
@@ -64,10 +70,10 @@ module dda_coulomb_equations
       !> The load that was solved for last with this factor, and the motion by the factor alone:
       !> (n_dof, n_block); without entries if there is none
       real(wp), allocatable :: last_load(:, :), last_motion(:, :)
+      !> Largest force on a block by which a joint that sticks answers a unit motion
+      real(wp) :: stiffest = 0.0_wp
    end type coulomb_equations_t
 
-   !> Answers that are kept: more cost as much as a new factor
-   integer, parameter :: max_answer = 32
    !> Answers that are worth their cost at once
    integer, parameter :: max_new = 16
 
@@ -77,7 +83,7 @@ contains
    pure subroutine new_coulomb_equations(joints, equations)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(out) :: equations
-      integer :: n_joint
+      integer :: j, n_joint
 
       n_joint = size(joints%shear_role)
       call new_matrix(joints, equations%base)
@@ -85,6 +91,10 @@ contains
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
+      do j = 1, n_joint
+         equations%stiffest = max(equations%stiffest, &
+            & maxval(joints%graph%row(:, :, :, j)**2)/minval(joints%graph%compliance(:, j)))
+      end do
    end subroutine new_coulomb_equations
 
    !> Make the equations those of a set of faces: by few changes of the factor, or by a new one
@@ -197,6 +207,7 @@ contains
             if (b > 0) response(:, b) = response(:, b) + joints%graph%row(:, part, side, j)
          end do
          call substitute(equations%base%factor, response)
+         equations%reach(a) = maxval(abs(response))
          do c = 1, equations%n_change
             equations%opening(:, c, a) = opening_of(joints, equations%joint(c), response)
          end do
@@ -251,7 +262,7 @@ contains
    end subroutine factor_capacity
 
    !> Solve for one load
-   pure subroutine solve_equations(equations, joints, load, motion, opening)
+   pure subroutine solve_equations(equations, joints, load, motion, opening, once)
       !> Usable equations; their matrix is factored again where changes have made them inexact
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
@@ -261,26 +272,28 @@ contains
       real(wp), intent(out), contiguous :: motion(:, :)
       !> How the joints open with it: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
+      !> Whether another load will be asked for more often
+      logical, intent(in), optional :: once
       !> What may be left of the load, and rounding of the openings of blocks that move far
       real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
-      real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound
+      real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound, lost
       integer :: turn
 
-      call substitute_again(equations, load)
-      motion = equations%last_motion
-      call add_changes(equations, joints, motion)
+      call substitute_again(equations, load, motion, once)
+      call add_changes(equations, joints, motion, lost)
       do turn = 1, 3
          call joint_motion(joints%graph, motion, opening)
          if (size(equations%active) == 0) exit
+         bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
+         if (turn == 1 .and. lost <= bound) exit
          call spring_forces(joints, equations%face, opening, force)
          if (equations%viscosity > 0.0_wp) force = force &
             & - equations%viscosity*opening/joints%graph%compliance
          call imbalance(joints, load - equations%damping*joints%graph%mass*motion, force, rest)
-         bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (maxval(abs(rest)) <= bound) exit
          if (turn == 1) then
             call substitute(equations%base%factor, rest)
-            call add_changes(equations, joints, rest)
+            call add_changes(equations, joints, rest, lost)
             motion = motion + rest
          else
             call factor_faces(equations, joints)
@@ -292,27 +305,38 @@ contains
    end subroutine solve_equations
 
    !> Substitute with the factor; while the factor stays one load after the other is often the same
-   pure subroutine substitute_again(equations, load)
-      !> Equations; their last motion becomes that of the load
+   pure subroutine substitute_again(equations, load, motion, once)
+      !> Equations; they keep a motion for the next time
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in), contiguous :: load(:, :)
+      real(wp), intent(out), contiguous :: motion(:, :)
+      logical, intent(in), optional :: once
 
       if (allocated(equations%last_load)) then
-         if (.not. any(abs(load - equations%last_load) > 0.0_wp)) return
+         if (.not. any(abs(load - equations%last_load) > 0.0_wp)) then
+            motion = equations%last_motion
+            return
+         end if
+      end if
+      motion = load
+      call substitute(equations%base%factor, motion)
+      if (present(once)) then
+         if (once) return
       end if
       equations%last_load = load
-      equations%last_motion = load
-      call substitute(equations%base%factor, equations%last_motion)
+      equations%last_motion = motion
    end subroutine substitute_again
 
    !> Add the changes of the factor to a motion that was found with it alone
-   pure subroutine add_changes(equations, joints, x)
+   pure subroutine add_changes(equations, joints, x, lost)
       type(coulomb_equations_t), intent(in) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       real(wp), intent(inout), contiguous :: x(:, :)  !! The motion: (n_dof, n_block)
+      real(wp), intent(out) :: lost                   !! Force that the sum may lose by rounding
       real(wp) :: y(size(equations%active))
       integer :: i
 
+      lost = 0.0_wp
       if (size(y) == 0) return
       do i = 1, size(y)
          associate (place => equations%origin(1, equations%active(i)), &
@@ -322,10 +346,12 @@ contains
          end associate
       end do
       call substitute_full(equations%capacity, equations%exchange, y)
+      lost = epsilon(lost)*(1.0_wp + equations%viscosity)*equations%stiffest &
+         & *(maxval(abs(x)) + sum(abs(y)*equations%reach(equations%active)))
       call subtract_answers(size(x), equations%response, equations%active, y, x)
    end subroutine add_changes
 
-   !> Take answers from a motion; flat, so that the compiler makes one loop of it
+   !> Take answers from a motion; flat and four at once, so that the motion is read and written less
    pure subroutine subtract_answers(n, response, active, y, x)
       integer, intent(in) :: n                         !! Unknowns of all blocks
       real(wp), intent(in) :: response(n, max_answer)  !! Answers
@@ -334,7 +360,11 @@ contains
       real(wp), intent(inout) :: x(n)                  !! The motion
       integer :: i
 
-      do i = 1, size(y)
+      do i = 1, size(y) - 3, 4
+         x = x - response(:, active(i))*y(i) - response(:, active(i + 1))*y(i + 1) &
+            & - response(:, active(i + 2))*y(i + 2) - response(:, active(i + 3))*y(i + 3)
+      end do
+      do i = size(y) - modulo(size(y), 4) + 1, size(y)
          x = x - response(:, active(i))*y(i)
       end do
    end subroutine subtract_answers

@@ -183,7 +183,7 @@ contains
          if (rates%unbalanced <= exact) exit
          before = rates%unbalanced
          call imbalance(joints, load_rate, rates%force, rest)
-         call solve_equations(equations, joints, rest, more, opening)
+         call solve_equations(equations, joints, rest, more, opening, once=.true.)
          rates%motion = rates%motion + more
          rates%opening = rates%opening + opening
          call spring_forces(joints, rates%face, rates%opening, rates%force)
