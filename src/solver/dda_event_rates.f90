@@ -23,6 +23,8 @@ module dda_event_rates
       logical, allocatable :: limit(:, :)
       !> Faces where they are given: (3, n_joint)
       integer, allocatable :: given(:, :)
+      !> Joints of which a corner is weak or that are at a limit
+      integer, allocatable :: loose(:)
       !> Joints whose cohesion keeps them from sliding until a corner has opened: (n_joint)
       logical, allocatable :: holds(:)
    end type rate_law_t

@@ -209,7 +209,9 @@ contains
             call see_ray(joints, state, rest, rates, event, jump, end)
             if (event%kind == event_kind%none) return
          else
-            event = next_event(joints, state, rates, stride(joints, rest, rates))
+            event = next_event(joints, state, rates, 1.0_wp)
+            if (event%kind == event_kind%none) &
+               & event = next_event(joints, state, rates, stride(joints, rest, rates))
          end if
          ! forces that drop faster than this have no rates with less damping
          calm = event%kind == event_kind%none .and. rates%unbalanced < 1.0_wp/(1.0_wp - calmer)
@@ -222,7 +224,7 @@ contains
    end subroutine jump_to_balance
 
    !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
-   !> that they leave of the load are the same but for a factor
+   !> that they leave of the load are the same but for a factor; at least one
    pure real(wp) function stride(joints, rest, rates)
       type(coulomb_joints_t), intent(in) :: joints
       real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (n_dof, n_block)

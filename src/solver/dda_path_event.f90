@@ -72,8 +72,9 @@ contains
 
       event%distance = longest
       slow = no_change/max(longest, tiny(1.0_wp))
+      bond = 0.0_wp
       do j = 1, size(rates%face, 2)
-         bond = strength(joints, state, j)
+         if (allocated(state%whole)) bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
             if (rates%face(i, j) == face%closed) then
@@ -121,8 +122,9 @@ contains
 
       state%motion = state%motion + event%distance*rates%motion
       state%face = rates%face
+      bond = 0.0_wp
       do j = 1, size(rates%face, 2)
-         bond = strength(joints, state, j)
+         if (allocated(state%whole)) bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%tied) then
                state%force(i, j) = state%force(i, j) + event%distance*rates%force(i, j)

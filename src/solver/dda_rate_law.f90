@@ -21,13 +21,15 @@ contains
    !> The law of a state
    module procedure set_rate_law
       real(wp) :: bond(3), bound
-      integer :: i, j
+      integer :: i, j, loose(size(state%slip)), n
       logical :: pushes(2)
 
       allocate (law%weak(2, size(state%slip)), law%limit(2, size(state%slip)))
       allocate (law%given(3, size(state%slip)), law%holds(size(state%slip)))
+      n = 0
+      bond = 0.0_wp
       do j = 1, size(state%slip)
-         bond = strength(joints, state, j)
+         if (allocated(state%whole)) bond = strength(joints, state, j)
          do i = 1, 2
             pushes(i) = joints%end_role(i, j) == end_role%tied &
                & .or. state%force(i, j) + bond(i) > weak_force
@@ -39,22 +41,30 @@ contains
          law%given(3, j) = face%stuck
          if (.not. law%holds(j)) &
             & law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)
-         bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j)) + bond(3)
          law%limit(:, j) = .not. any(pushes)
-         if (any(pushes) .or. law%holds(j)) law%limit(:, j) = &
-            & [bound - state%force(3, j), bound + state%force(3, j)] <= weak_force
+         if (any(pushes) .or. law%holds(j)) then
+            bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j)) + bond(3)
+            law%limit(1, j) = bound - state%force(3, j) <= weak_force
+            law%limit(2, j) = bound + state%force(3, j) <= weak_force
+         end if
          if (joints%shear_role(j) /= shear_role%frictional) law%limit(:, j) = .false.
+         if (.not. (any(law%weak(:, j)) .or. any(law%limit(:, j)))) cycle
+         n = n + 1
+         loose(n) = j
       end do
+      law%loose = loose(:n)
    end procedure set_rate_law
 
    !> What joints do with rates of opening
    module procedure follow_law
       real(wp) :: beyond(2), margin, still
-      integer :: i, j
+      integer :: i, j, k
 
       faces = law%given
-      still = rounding*maxval(abs(opening))
-      do j = 1, size(faces, 2)
+      still = 0.0_wp
+      if (any(law%holds)) still = rounding*maxval(abs(opening))
+      do k = 1, size(law%loose)
+         j = law%loose(k)
          do i = 1, 2
             if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) > still)
          end do
@@ -91,11 +101,12 @@ contains
    !> The first bend of the law on a line of rates of opening
    module procedure next_break
       real(wp) :: beyond(2), rate(2)
-      integer :: i, j
+      integer :: i, j, k
       logical :: slides
 
       next_break%distance = huge(1.0_wp)
-      do j = 1, size(faces, 2)
+      do k = 1, size(law%loose)
+         j = law%loose(k)
          do i = 1, 2
             if (law%weak(i, j)) call meet(faces(i, j) == face%closed, -opening(i, j), &
                & -change(i, j), j, i, next_break)
