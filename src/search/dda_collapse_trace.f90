@@ -77,6 +77,8 @@ contains
          if (pass == 1) coarse_slope = slope
          next = x(2) - power(2)/slope
          bend = 0.0_wp
+         ! back where it began: the collapse stood at its own stop
+         if (pass > 1 .and. .not. abs(x(2) - x_before) > 0.0_wp) return
          if (pass > 1) bend = (slope - last_slope)/slope*(next - x(2))*(next - x(1)) &
             & /(x(2) - x_before)
          next = next - bend
