@@ -95,13 +95,14 @@ submodule (dda_settle_in_time) dda_contact_sweeps
       end subroutine keep_to_faces
 
       !> Forces of some joints, wherever the search for them begins
-      pure module subroutine solve_interior(equations, springs, view, joint, before, force, &
-         & motion, passes, &
-         & agreed)
+      pure module subroutine solve_interior(equations, springs, view, joint, left, before, &
+         & force, motion, passes, agreed)
          type(equations_t), intent(in) :: equations
          type(joint_springs_t), intent(in) :: springs
          type(contact_view_t), intent(in) :: view
          integer, intent(in) :: joint(:)
+         !> Gap that springs may leave: none of few joints [m]
+         real(wp), intent(in) :: left
          real(wp), intent(in) :: before(:, :)
          !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
          real(wp), intent(inout) :: force(:, :)
@@ -216,7 +217,8 @@ contains
       if (size(joint) > many) &
          & call sweep_group(springs, joint, sweeps_for%patience, enough, sweeps, settled)
       if (settled) return
-      call solve_interior(equations, springs, sweeps%view, joint, state%force, sweeps%force, &
+      call solve_interior(equations, springs, sweeps%view, joint, &
+         & merge(state%unseen, 0.0_wp, size(joint) > many), state%force, sweeps%force, &
          & sweeps%motion(:, 1:), state%passes, settled)
       call move_group(equations, springs, joint, sweeps)
       if (settled) return

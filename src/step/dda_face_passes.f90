@@ -64,7 +64,8 @@ contains
          held = changes == 0
          if (held) then
             rest = maxval(p%soft/p%unit*abs(x%force - p%force_before), .not. p%follows)/p%size
-            agreed = rest <= p%fineness*merge(tolerance, remains, rest > falling*last_rest)
+            agreed = rest <= p%fineness*merge(tolerance, remains, rest > falling*last_rest) &
+               & .or. maxval(p%soft*abs(x%force - p%force_before), .not. p%follows) <= p%left
             if (agreed) return
             last_rest = rest
             where (.not. p%follows) p%force_before = x%force

@@ -23,6 +23,7 @@ contains
       allocate (p%joint, source=joint)
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%force_before(3, n))
       allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%held(7, n))
+      allocate (p%stiff(4, n))
       call number_blocks(springs, size(equations%load, 2), p)
       p%entry = 0
       k = 0
@@ -112,8 +113,10 @@ contains
             b = p%block(side, i)
             if (b == 0) cycle
             associate (row => springs%row(:, :, side, p%joint(i)))
-               do d = 1, size(motion, 1)
-                  sum_of = sum_of + row(d, :)*motion(d, b)
+               ! three unknowns at a time, so that the compiler knows the length
+               do d = 1, size(motion, 1), 3
+                  sum_of = sum_of + row(d, :)*motion(d, b) + row(d + 1, :)*motion(d + 1, b) &
+                     & + row(d + 2, :)*motion(d + 2, b)
                end do
             end associate
          end do
@@ -134,9 +137,9 @@ contains
             b = p%block(side, i)
             if (b == 0) cycle
             associate (row => springs%row(:, :, side, p%joint(i)))
-               do d = 1, size(load, 1)
-                  load(d, b) = load(d, b) + row(d, 1)*force(1, i) + row(d, 2)*force(2, i) &
-                     & + row(d, 3)*force(3, i)
+               do d = 1, size(load, 1), 3
+                  load(d:d + 2, b) = load(d:d + 2, b) + row(d:d + 2, 1)*force(1, i) &
+                     & + row(d:d + 2, 2)*force(2, i) + row(d:d + 2, 3)*force(3, i)
                end do
             end associate
          end do
@@ -165,14 +168,14 @@ contains
       integer :: i
 
       do i = 1, size(p%joint)
-         force(:, i) = answer(springs, p, i, drive(:, i))
+         force(:, i) = answer(p%stiff(:, i), drive(:, i))
       end do
       motion = p%balance
       call push_blocks(springs, p, force, motion)
       call substitute(p%factor, motion)
       call move_joints(springs, p, motion, moved)
       do i = 1, size(p%joint)
-         force(:, i) = answer(springs, p, i, drive(:, i) - moved(:, i))
+         force(:, i) = answer(p%stiff(:, i), drive(:, i) - moved(:, i))
       end do
    end procedure respond
 
@@ -203,6 +206,7 @@ contains
          wanted = [p%soft(:, i), p%yield(:, i)]
          if (p%factor%usable .and. all(abs(wanted - p%held(:, i)) <= 0.0_wp)) cycle
          p%held(:, i) = wanted
+         p%stiff(:, i) = stiffness(springs%cone(p%joint(i))%friction, p%given(:, i), wanted)
          changed(p%block(:, i)) = .true.
       end do
       if (.not. any(changed(1:))) return
@@ -221,18 +225,15 @@ contains
       integer, intent(in) :: i             !! Place of the joint in the problem
       type(problem_t), intent(inout) :: p  !! The problem; the matrix receives the stiffness
       real(wp), dimension(6, 3, 2) :: row, steep
-      real(wp) :: unit(3)
       integer :: b, first, k, n, one
 
       n = size(p%balance, 1)
       row(:n, :, :) = springs%row(:n, :, :, p%joint(i))
       ! R S, of columns opening 1, opening 2, slip
-      do k = 1, 3
-         unit = 0.0_wp
-         unit(k) = 1.0_wp
-         unit = answer(springs, p, i, unit)
-         steep(:n, k, :) = row(:n, 1, :)*unit(1) + row(:n, 2, :)*unit(2) + row(:n, 3, :)*unit(3)
+      do k = 1, 2
+         steep(:n, k, :) = p%stiff(k, i)*(row(:n, k, :) - p%stiff(4, i)*row(:n, 3, :))
       end do
+      steep(:n, 3, :) = p%stiff(3, i)*row(:n, 3, :)
       associate (m => p%matrix, e => p%entry(i))
          do one = 1, 2
             b = p%block(one, i)
@@ -262,21 +263,27 @@ contains
       end do
    end subroutine add_rows
 
+   !> What the springs of a joint answer
+   pure function stiffness(friction, given, compliances)
+      real(wp), intent(in) :: friction        !! Coefficient of friction
+      logical, intent(in) :: given(3)         !! Which forces there are
+      real(wp), intent(in) :: compliances(7)  !! Of the springs, and of the four bounds [m/(N/m)]
+      real(wp) :: stiffness(4)                !! The answers
+
+      associate (soft => compliances(:3), yield => compliances(4:))
+         stiffness(:3) = merge(1.0_wp/(soft + [yield(1:2), yield(3) + yield(4)]), 0.0_wp, given)
+         stiffness(4) = friction*(yield(3) - yield(4))*stiffness(3)
+      end associate
+   end function stiffness
+
    !> Forces of a joint's springs that are pressed together
-   pure function answer(springs, p, i, drive) result(force)
-      type(joint_springs_t), intent(in) :: springs
-      type(problem_t), intent(in) :: p
-      integer, intent(in) :: i          !! Place of the joint in the problem
+   pure function answer(stiff, drive) result(force)
+      real(wp), intent(in) :: stiff(4)  !! What they answer
       real(wp), intent(in) :: drive(3)  !! By how much: (3) [m]
       real(wp) :: force(3)              !! The forces: (3) [N/m]
 
-      associate (yield => p%yield(:, i))
-         force(1:2) = merge(drive(1:2)/(p%soft(1:2, i) + yield(1:2)), 0.0_wp, p%given(1:2, i))
-         force(3) = 0.0_wp
-         if (.not. p%given(3, i)) return
-         force(3) = (drive(3) - springs%cone(p%joint(i))%friction*(yield(3) - yield(4)) &
-            & *(force(1) + force(2)))/(p%soft(3, i) + yield(3) + yield(4))
-      end associate
+      force(1:2) = stiff(1:2)*drive(1:2)
+      force(3) = stiff(3)*drive(3) - stiff(4)*(force(1) + force(2))
    end function answer
 
 end submodule dda_interior_problem

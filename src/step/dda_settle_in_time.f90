@@ -61,11 +61,16 @@ module dda_settle_in_time
       real(wp) :: size = 0.0_wp
       !> How much smaller than usual forces must be that faces leave
       real(wp) :: fineness = 1.0_wp
+      !> Gap that springs may leave [m]
+      real(wp) :: left = 0.0_wp
       !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
       real(wp), allocatable :: yield(:, :)
       !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)
       !> [m/(N/m)]
       real(wp), allocatable :: held(:, :)
+      !> What the springs answer as their bounds yield: to each opening, to slip [N/m per m], and
+      !> what slip takes of the forces of the openings: (4, n_joint)
+      real(wp), allocatable :: stiff(:, :)
       !> Matrix with the springs
       type(block_matrix_t) :: matrix
       !> Its factor
