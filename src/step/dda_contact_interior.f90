@@ -13,9 +13,7 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    implicit none
 
    !> What slack and flow begin with at the least, over the size of a force
-   real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 1.0_wp
-   !> The same from afar of many joints, which sweeps have brought nearer
-   real(wp), parameter :: lift_of_many = 2.0e-1_wp
+   real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 2.0e-1_wp
    !> Forces across gaps, and by openings, that are left, over the size of a force
    real(wp), parameter :: tolerance = 3.0e-7_wp
    !> Compliance of the springs of many joints over that of few: gaps that it leaves are no matter
@@ -24,12 +22,12 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    real(wp), parameter :: finest = 1.0e-4_wp
    !> A step shorter than this share of the whole is stuck at a bound
    real(wp), parameter :: stuck = 0.2_wp
-   !> Forces of many joints that are wrong by less are looked for from afar at the beginning alone
+   !> Forces that are wrong by less are looked for from afar after the first step alone
    real(wp), parameter :: near_enough = 5.0e-2_wp
    !> Most iterations
    integer, parameter :: max_iterations = 40
-   !> Iterations without progress that end the search: of few joints, and of many
-   integer, parameter :: patience = 12, patience_of_many = 5
+   !> Iterations without progress that end the search
+   integer, parameter :: patience = 5
 
    interface
 
@@ -115,9 +113,8 @@ contains
       type(interior_t) :: best
       real(wp) :: least, length, mean, merit
       integer :: i, waited
-      logical :: is_many, near
+      logical :: near
 
-      is_many = size(p%joint) > many
       best = x
       least = huge(least)
       length = 1.0_wp
@@ -128,15 +125,13 @@ contains
          waited = merge(0, waited + 1, merit < 0.9_wp*least)
          if (merit < least) best = x
          least = min(least, merit)
-         if (min(merit, sqrt(mean)/p%size) < tolerance &
-            & .or. waited == merge(patience_of_many, patience, is_many) &
+         if (min(merit, sqrt(mean)/p%size) < tolerance .or. waited == patience &
             & .or. .not. merit <= huge(merit)) exit
-         if (near .and. length < stuck &
-            & .and. (i == 2 .or. .not. is_many .or. merit > near_enough)) then
+         if (near .and. length < stuck .and. (i == 2 .or. merit > near_enough)) then
             near = .false.
             waited = 0
             least = huge(least)
-            call begin(springs, view, force, motion, merge(lift_of_many, afar, is_many), p, x)
+            call begin(springs, view, force, motion, afar, p, x)
             call find_rest(equations, springs, view, p, x, mean, merit)
          end if
          p%yield = x%flow/x%slack
