@@ -5,16 +5,19 @@
 !> springs with strong damping find which joints stick and slide, an open-close loop with ever less
 !> damping has the last word.
 submodule (dda_loading_path) dda_coulomb_start
-   use dda_coulomb_equations, only : solve_equations, use_faces
+   use dda_coulomb_equations, only : path_damping, solve_equations, use_faces
    use dda_coulomb_interior, only : coulomb_interior_t, enough, interior_motion, sharp
    use dda_coulomb_law, only : apply_law, force_faces, unloaded_state
-   use dda_event_rates, only : path_damping
    use dda_joint_graph, only : joint_motion
    use dda_load_jump, only : jump_to_balance
    implicit none
 
    !> What may be left of a load, by the weight of a block
    real(wp), parameter :: balance = 1.0e-10_wp
+   !> Damping of blocks at rest may take such a share of their load, not more
+   real(wp), parameter :: unseen = 1.0e-3_wp
+   !> Less damping is lost in rounding
+   real(wp), parameter :: least_damping = 1.1e-14_wp
 
 contains
 
@@ -34,21 +37,39 @@ contains
       end do
       state = unloaded_state(joints)
       jump%tolerance = balance
-      call find_elastic_motion(joints, equations, load, state, largest)
+      call find_elastic_motion(joints, equations, load, state, path_damping, largest)
       jump%far = far_factor*max(1.0_wp, largest)
       call jump_to_balance(joints, equations, load, state, jump, end)
    end procedure load_at_once
 
+   !> See how soft an assembly is
+   module procedure see_softness
+      real(wp) :: damping, largest
+
+      damping = path_damping
+      do
+         call find_elastic_motion(joints, equations, load, state, damping, largest)
+         if (damping*largest <= unseen .or. damping <= least_damping) exit
+         damping = 0.1_wp*damping
+      end do
+      ! what moves freely is not soft
+      equations%rest_damping = path_damping
+      if (damping*largest > moves_unbalanced) return
+      equations%rest_damping = damping
+      softness = max(softness, largest)
+   end procedure see_softness
+
    !> Largest displacement where no joint opens or slides
-   pure subroutine find_elastic_motion(joints, equations, load, state, largest)
+   pure subroutine find_elastic_motion(joints, equations, load, state, damping, largest)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :)
       type(coulomb_state_t), intent(in) :: state
+      real(wp), intent(in) :: damping   !! Multiple of the mass
       real(wp), intent(out) :: largest  !! The displacement
       real(wp) :: motion(size(load, 1), size(load, 2)), opening(3, size(state%slip))
 
-      call use_faces(equations, joints, state%face, path_damping)
+      call use_faces(equations, joints, state%face, damping)
       call solve_equations(equations, joints, load, motion, opening)
       largest = maxval(abs(motion))
    end subroutine find_elastic_motion

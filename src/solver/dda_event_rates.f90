@@ -12,7 +12,7 @@ module dda_event_rates
    implicit none
    private
 
-   public :: find_rates, new_rates, path_damping, pivot_to_load, rates_t, undamp_rates
+   public :: find_rates, new_rates, pivot_to_load, rates_t, undamp_rates
    public :: rate_law_t, set_rate_law
 
    !> What a state leaves open
@@ -60,9 +60,6 @@ module dda_event_rates
       real(wp) :: unbalanced = 0.0_wp
    end type rates_t
 
-   !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, in
-   !> motion nearly all; results are the same from 1e-12 to 1e-9
-   real(wp), parameter :: path_damping = 1.0e-10_wp
    !> Passes that change all wrong faces at once; what they do not find, pivots look for
    integer, parameter :: max_pass = 6
 
@@ -160,7 +157,7 @@ contains
       if (.not. found) call pivot_to_load(joints, equations, law, load_rate, opening_rate, &
          & rates%motion, rates%opening, rates%face, found)
       call spring_forces(joints, rates%face, rates%opening, rates%force)
-      damped = path_damping*joints%graph%mass*rates%motion
+      damped = equations%damping*joints%graph%mass*rates%motion
       if (viscosity > 0.0_wp) call add_joint_forces(joints%graph, &
          & viscosity*rates%opening/joints%graph%compliance, damped)
       rates%unbalanced = maxval(abs(damped))/max(rates%drive, tiny(1.0_wp))
@@ -203,7 +200,7 @@ contains
       type(rates_t), intent(inout) :: rates
       real(wp) :: load(size(load_rate, 1), size(load_rate, 2))
 
-      call use_faces(equations, joints, rates%face, path_damping, viscosity)
+      call use_faces(equations, joints, rates%face, equations%rest_damping, viscosity)
       if (.not. equations%usable) return
       call add_drive(joints, rates%face, opening_rate, load_rate, load)
       rates%drive = max(maxval(abs(load)), maxval(abs(load_rate)))

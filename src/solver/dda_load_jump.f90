@@ -14,7 +14,8 @@ module dda_load_jump
    private
 
    public :: motion_end, motion_end_enum, jump_t, moves_unbalanced
-   public :: far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance, share_anew
+   public :: balance_rest, far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance
+   public :: share_anew
 
    !> How a motion ends
    type :: motion_end_enum
@@ -72,6 +73,8 @@ module dda_load_jump
    real(wp), parameter :: nudge_left = 1.0e-6_wp
    !> Rounding of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
+   !> What need not be taken away of an imbalance
+   real(wp), parameter :: exact = 1.0e-14_wp
 
 contains
 
@@ -125,6 +128,30 @@ contains
       if (end == motion_end%balanced) state = moved
       equations%most_pivots = most_pivots
    end subroutine nudge_to_balance
+
+   !> Take away what the forces leave of the load, but for rounding
+   pure subroutine balance_rest(joints, equations, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      type(coulomb_state_t), intent(inout) :: state
+      integer, parameter :: max_turn = 3
+      type(event_t) :: event
+      type(rates_t) :: rates
+      real(wp) :: rest(size(state%load, 1), size(state%load, 2)), closed(3, size(state%slip))
+      integer :: turn
+      logical :: found
+
+      closed = 0.0_wp
+      rates = new_rates(state)
+      do turn = 1, max_turn
+         call imbalance(joints, state%load, state%force, rest)
+         if (.not. maxval(abs(rest)) > exact) return
+         call find_rates(joints, equations, state, rest, closed, 0.0_wp, rates, found)
+         if (.not. found .or. rates%unbalanced > moves_unbalanced) return
+         event = next_event(joints, state, rates, 1.0_wp)
+         call move_on(joints, rates, event, state)
+      end do
+   end subroutine balance_rest
 
    !> Let the blocks share out anew what a joint has ceased to carry, at the same load
    pure subroutine share_anew(joints, equations, load, far, state, jump, end)

@@ -21,8 +21,8 @@ module dda_loading_path
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
-      & nudge_to_balance, share_anew
+   use dda_load_jump, only : balance_rest, far_factor, jump_t, motion_end, moves_unbalanced, &
+      & nudge, nudge_to_balance, share_anew
    use dda_path_event, only : event_kind, event_t, go_back, move_on, next_event, path_end
    implicit none
    private
@@ -92,8 +92,6 @@ module dda_loading_path
    real(wp), parameter :: largest_nudge = 1.0e-3_wp
    !> Blocks rest where at most so much of a growing load is not balanced once damping is given back
    real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
-   !> What need not be taken away of an imbalance
-   real(wp), parameter :: exact = 1.0e-14_wp
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
@@ -104,6 +102,16 @@ module dda_loading_path
    integer, parameter :: max_jump = 1000
 
    interface
+
+      !> See how soft an assembly is: how far its blocks go by a load while no joint changes. Tall
+      !> columns bend so far that damping which others do not feel would hold them
+      pure module subroutine see_softness(joints, equations, load, state, softness)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(coulomb_equations_t), intent(inout) :: equations  !! Receive their damping at rest
+         real(wp), intent(in) :: load(:, :)                     !! What grows: (n_dof, n_block)
+         type(coulomb_state_t), intent(in) :: state
+         real(wp), intent(inout) :: softness  !! Displacement over force; larger if this one is
+      end subroutine see_softness
 
       !> State under a load that is applied at once
       pure module subroutine load_at_once(joints, equations, load, state, jump, end)
@@ -171,7 +179,7 @@ contains
       result%reason = path_reason%none
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
-      if (result%end == path_end%reached) call balance_rest(path, state)
+      if (result%end == path_end%reached) call balance_rest(path%joints, path%equations, state)
       call finish(path, state, result)
    end subroutine begin_path
 
@@ -199,17 +207,20 @@ contains
       way%load = in_units(path%joints, rate%load)
       way%opening = rate%opening/path%joints%motion_unit
       strength = max(maxval(abs(way%load)), maxval(abs(way%opening/path%joints%graph%compliance)))
-      if (.not. path%softness > 0.0_wp) then
-         path%softness = max(1.0_wp, &
-            & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
-         path%given = maxval(state%gap)
-      end if
-      path%given = path%given + h_end*maxval(abs(way%opening))
-      result%end = path_end%reached
       if (strength > 0.0_wp) then
          target = state%load + h_end*way%load
          way%load = plain(way%load/strength)
          way%opening = plain(way%opening/strength)
+      end if
+      if (.not. path%softness > 0.0_wp) then
+         path%softness = max(1.0_wp, &
+            & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
+         path%given = maxval(state%gap)
+         call see_softness(path%joints, path%equations, way%load, state, path%softness)
+      end if
+      path%given = path%given + strength*h_end*maxval(abs(way%opening))
+      result%end = path_end%reached
+      if (strength > 0.0_wp) then
          call follow(path, state, way, strength*h_end, result)
          result%reached = result%reached/strength
       end if
@@ -217,7 +228,7 @@ contains
          result%reached = h_end
          if (strength > 0.0_wp) state%load = target
       end if
-      call balance_rest(path, state)
+      call balance_rest(path%joints, path%equations, state)
       call finish(path, state, result)
    end subroutine follow_path
 
@@ -345,29 +356,6 @@ contains
       end if
       if (allocated(jump%mechanism)) result%mechanism = jump%mechanism
    end subroutine note_fall
-
-   !> Take away what the forces leave of the load, but for rounding
-   pure subroutine balance_rest(path, state)
-      type(loading_path_t), intent(inout) :: path
-      type(coulomb_state_t), intent(inout) :: state
-      integer, parameter :: max_turn = 3
-      type(event_t) :: event
-      type(rates_t) :: rates
-      real(wp) :: rest(size(state%load, 1), size(state%load, 2)), closed(3, size(state%slip))
-      integer :: turn
-      logical :: found
-
-      closed = 0.0_wp
-      rates = new_rates(state)
-      do turn = 1, max_turn
-         call imbalance(path%joints, state%load, state%force, rest)
-         if (.not. maxval(abs(rest)) > exact) return
-         call find_rates(path%joints, path%equations, state, rest, closed, 0.0_wp, rates, found)
-         if (.not. found .or. rates%unbalanced > moves_unbalanced) return
-         event = next_event(path%joints, state, rates, 1.0_wp)
-         call move_on(path%joints, rates, event, state)
-      end do
-   end subroutine balance_rest
 
    !> Counts, the last imbalance, and SI units
    pure subroutine finish(path, state, result)

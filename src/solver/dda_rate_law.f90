@@ -61,8 +61,7 @@ contains
       integer :: i, j, k
 
       faces = law%given
-      still = 0.0_wp
-      if (any(law%holds)) still = rounding*maxval(abs(opening))
+      still = rounding*maxval(abs(opening))
       do k = 1, size(law%loose)
          j = law%loose(k)
          do i = 1, 2

@@ -177,6 +177,25 @@ def test_the_middle_of_a_long_row_takes_no_part_in_what_its_ends_do(tmp_path: Pa
     assert int(row["steps"]) <= 5
 
 
+@pytest.mark.parametrize("blocks", [20, 200, 1000])
+def test_tall_columns_tip_by_their_width_over_their_height(tmp_path: Path, blocks: int) -> None:
+    """However far they bend before: 1000 cubes on one another bend ten million times as far as 20."""
+    text = BLOCK.replace("block", "block fixed").format(-1, -1, 2, 0)
+    (tmp_path / "column.blocks").write_text(text + "".join(BLOCK.format(0, k, 1, k + 1) for k in range(blocks)))
+    deck = "&scene kind = 'blocks', geometry = 'column.blocks' /\n"
+    (tmp_path / "search.nml").write_text(deck + "&search parameter = 'horizontal_coefficient' /\n")
+    (tmp_path / "below.nml").write_text(deck + f"&load horizontal_coefficient = {0.9 / blocks} /\n")
+    (tmp_path / "beyond.nml").write_text(deck + f"&load horizontal_coefficient = {1.1 / blocks} /\n")
+    rows = []
+    for name in ("search", "below", "beyond"):
+        done = run_dda("run", f"{name}.nml", "--quiet", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        with (tmp_path / name / "results.csv").open() as table:
+            rows += csv.DictReader(table)
+    assert [row["verdict"] for row in rows] == ["found", "stable", "collapsed"]
+    assert float(rows[0]["critical"]) == pytest.approx(1.0 / blocks, rel=1e-9)
+
+
 def two_rings(voussoirs: int, stuck: set[tuple[int, int]]) -> str:
     """Two rings of voussoirs over 175.5 degrees on fixed springings; some joints cannot slide."""
     half = math.radians(87.744)
