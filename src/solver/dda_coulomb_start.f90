@@ -15,7 +15,7 @@ submodule (dda_loading_path) dda_coulomb_start
    !> What may be left of a load, by the weight of a block
    real(wp), parameter :: balance = 1.0e-10_wp
    !> Damping of blocks at rest may take such a share of their load, not more
-   real(wp), parameter :: unseen = 1.0e-3_wp
+   real(wp), parameter :: unseen = 1.0e-5_wp
    !> Less damping is lost in rounding
    real(wp), parameter :: least_damping = 1.1e-14_wp
 
@@ -53,10 +53,7 @@ contains
          damping = 0.1_wp*damping
       end do
       ! what moves freely is not soft
-      equations%rest_damping = path_damping
-      if (damping*largest > moves_unbalanced) return
-      equations%rest_damping = damping
-      softness = max(softness, largest)
+      equations%rest_damping = merge(damping, path_damping, damping*largest <= moves_unbalanced)
    end procedure see_softness
 
    !> Largest displacement where no joint opens or slides

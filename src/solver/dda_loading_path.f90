@@ -105,12 +105,11 @@ module dda_loading_path
 
       !> See how soft an assembly is: how far its blocks go by a load while no joint changes. Tall
       !> columns bend so far that damping which others do not feel would hold them
-      pure module subroutine see_softness(joints, equations, load, state, softness)
+      pure module subroutine see_softness(joints, equations, load, state)
          type(coulomb_joints_t), intent(in) :: joints
          type(coulomb_equations_t), intent(inout) :: equations  !! Receive their damping at rest
          real(wp), intent(in) :: load(:, :)                     !! What grows: (n_dof, n_block)
          type(coulomb_state_t), intent(in) :: state
-         real(wp), intent(inout) :: softness  !! Displacement over force; larger if this one is
       end subroutine see_softness
 
       !> State under a load that is applied at once
@@ -216,7 +215,7 @@ contains
          path%softness = max(1.0_wp, &
             & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
          path%given = maxval(state%gap)
-         call see_softness(path%joints, path%equations, way%load, state, path%softness)
+         call see_softness(path%joints, path%equations, way%load, state)
       end if
       path%given = path%given + strength*h_end*maxval(abs(way%opening))
       result%end = path_end%reached

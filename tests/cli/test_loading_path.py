@@ -196,6 +196,20 @@ def test_tall_columns_tip_by_their_width_over_their_height(tmp_path: Path, block
     assert float(rows[0]["critical"]) == pytest.approx(1.0 / blocks, rel=1e-9)
 
 
+def test_a_portal_of_tall_columns_tips_as_each_of_them(tmp_path: Path) -> None:
+    """Two columns of 300 cubes under a lintel, which bend more as its ends lift: pushed alike, they tip together."""
+    cubes = [BLOCK.format(x, k, x + 1, k + 1) for k in range(300) for x in (0, 10)]
+    ground = BLOCK.replace("block", "block fixed").format(-1, -1, 12, 0)
+    (tmp_path / "wall.blocks").write_text(ground + "".join(cubes) + BLOCK.format(0, 300, 11, 301))
+    (tmp_path / "deck.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&search parameter = 'horizontal_coefficient' /\n")
+    done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "deck" / "results.csv").open() as table:
+        (row,) = csv.DictReader(table)
+    assert float(row["critical"]) == pytest.approx(1.0 / 300.0, rel=1e-9)
+
+
 def two_rings(voussoirs: int, stuck: set[tuple[int, int]]) -> str:
     """Two rings of voussoirs over 175.5 degrees on fixed springings; some joints cannot slide."""
     half = math.radians(87.744)
