@@ -11,9 +11,9 @@ submodule (dda_event_rates) dda_rate_law
 
    !> A force below this part of a block's weight is none, a gap that it would close is none
    real(wp), parameter :: weak_force = 1.0e-9_wp
-   !> What opens by less than this share of the largest rate stays closed, and a joint sticks unless
-   !> it would slide by more: less is rounding, as in long rows where most joints are beyond the
-   !> reach of what acts at the ends
+   !> What opens by less than this share of the largest rate, or of one, stays closed, and a joint
+   !> sticks unless it would slide by more: less is rounding, as in long rows where most joints are
+   !> beyond the reach of what acts at the ends
    real(wp), parameter :: rounding = 1.0e-11_wp
 
 contains
@@ -61,7 +61,8 @@ contains
       integer :: i, j, k
 
       faces = law%given
-      still = rounding*maxval(abs(opening))
+      ! what moves freely does so by any multiple of what forces open
+      still = rounding*min(1.0_wp, maxval(abs(opening)))
       do k = 1, size(law%loose)
          j = law%loose(k)
          do i = 1, 2
