@@ -27,8 +27,8 @@ module dda_coulomb_equations
    !> Answers that are kept: more cost as much as a new factor
    integer, parameter :: max_answer = 32
 
-   !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, in
-   !> motion nearly all; results are the same from 1e-12 to 1e-9
+   !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, of soft
+   !> assemblies more, in motion nearly all; results are the same from 1e-12 to 1e-9
    real(wp), parameter :: path_damping = 1.0e-10_wp
 
    !> A factor, and what has changed since
@@ -98,8 +98,9 @@ contains
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
       do j = 1, n_joint
-         equations%stiffest = max(equations%stiffest, &
-            & maxval(joints%graph%row(:, :, :, j)**2)/minval(joints%graph%compliance(:, j)))
+         ! what slides answers along itself, too, by its friction
+         equations%stiffest = max(equations%stiffest, (1.0_wp + joints%graph%friction(j)) &
+            & *maxval(joints%graph%row(:, :, :, j)**2)/minval(joints%graph%compliance(:, j)))
       end do
    end subroutine new_coulomb_equations
 

@@ -42,7 +42,7 @@ contains
       call jump_to_balance(joints, equations, load, state, jump, end)
    end procedure load_at_once
 
-   !> See how soft an assembly is
+   !> See how soft an assembly is; what moves freely is not soft
    module procedure see_softness
       real(wp) :: damping, largest
 
@@ -52,7 +52,6 @@ contains
          if (damping*largest <= unseen .or. damping <= least_damping) exit
          damping = 0.1_wp*damping
       end do
-      ! what moves freely is not soft
       equations%rest_damping = merge(damping, path_damping, damping*largest <= moves_unbalanced)
    end procedure see_softness
 
@@ -63,12 +62,13 @@ contains
       real(wp), intent(in) :: load(:, :)
       type(coulomb_state_t), intent(in) :: state
       real(wp), intent(in) :: damping   !! Multiple of the mass
-      real(wp), intent(out) :: largest  !! The displacement
+      real(wp), intent(out) :: largest  !! The displacement, vast where nothing holds
       real(wp) :: motion(size(load, 1), size(load, 2)), opening(3, size(state%slip))
 
+      largest = sqrt(huge(largest))
       call use_faces(equations, joints, state%face, damping)
-      call solve_equations(equations, joints, load, motion, opening)
-      largest = maxval(abs(motion))
+      if (equations%usable) call solve_equations(equations, joints, load, motion, opening)
+      if (equations%usable) largest = maxval(abs(motion))
    end subroutine find_elastic_motion
 
    !> Interior springs at a damping, then the open-close loop at ever less of it

@@ -215,11 +215,11 @@ contains
          path%softness = max(1.0_wp, &
             & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
          path%given = maxval(state%gap)
-         call see_softness(path%joints, path%equations, way%load, state)
       end if
       path%given = path%given + strength*h_end*maxval(abs(way%opening))
       result%end = path_end%reached
       if (strength > 0.0_wp) then
+         call see_softness(path%joints, path%equations, way%load, state)
          call follow(path, state, way, strength*h_end, result)
          result%reached = result%reached/strength
       end if

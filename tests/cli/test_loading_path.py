@@ -196,6 +196,37 @@ def test_tall_columns_tip_by_their_width_over_their_height(tmp_path: Path, block
     assert float(rows[0]["critical"]) == pytest.approx(1.0 / blocks, rel=1e-9)
 
 
+def test_a_tall_column_that_was_pressed_first_tips_by_the_same_push(tmp_path: Path) -> None:
+    """1000 cubes, pressed from above, then pushed at their top: with weight W and press P they tip by (W + P)/2000."""
+    weight, press = 2400.0 * 9.81 * 1000.0, 1.0e3
+    ground = BLOCK.replace("block", "block fixed").format(-1, -1, 2, 0)
+    text = ground + "".join(BLOCK.format(0, k, 1, k + 1) for k in range(1000))
+    for share, verdict in ((0.9, "stable"), (1.1, "collapsed")):
+        push = share * (weight + press) / 2000.0
+        (tmp_path / "wall.blocks").write_text(
+            text + f"load block 1001 0.5 1000\n0 0 0\n1 0 {-press!r}\n2 {push!r} {-press!r}\n")
+        (tmp_path / "deck.nml").write_text(
+            "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&material density = 2400 /\n&load gravity = 9.81 /\n")
+        done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        with (tmp_path / "deck" / "results.csv").open() as table:
+            assert [row["verdict"] for row in csv.DictReader(table)] == [verdict]
+
+
+def test_a_tall_column_that_sticks_tips_before_it_parts(tmp_path: Path) -> None:
+    """1000 cubes with a cohesion that no joint of them uses up tip by their width over their height."""
+    text = BLOCK.replace("block", "block fixed").format(-1, -1, 2, 0)
+    (tmp_path / "wall.blocks").write_text(text + "".join(BLOCK.format(0, k, 1, k + 1) for k in range(1000)))
+    (tmp_path / "deck.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&joint cohesion = 1e4 /\n"
+        "&search parameter = 'horizontal_coefficient' /\n")
+    done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "deck" / "results.csv").open() as table:
+        (row,) = csv.DictReader(table)
+    assert float(row["critical"]) == pytest.approx(1.0e-3, rel=1e-6)
+
+
 def test_a_portal_of_tall_columns_tips_as_each_of_them(tmp_path: Path) -> None:
     """Two columns of 300 cubes under a lintel, which bend more as its ends lift: pushed alike, they tip together."""
     cubes = [BLOCK.format(x, k, x + 1, k + 1) for k in range(300) for x in (0, 10)]
