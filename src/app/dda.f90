@@ -1,17 +1,13 @@
 !> The command dda
 program dda
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_check, only : check_file
    use dda_command_line, only : command_t, name_of, read_command
-   use dda_cut, only : cut_file
    use dda_error, only : error_line, error_t
-   use dda_export, only : export_deck
-   use dda_lines, only : draw_map
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave, survive_file_limit, worst_status
-   use dda_run, only : run_decks
    use dda_screen, only : close_screen, open_screen, print_line
+   use dda_verbs, only : check_file, cut_file, draw_map, export_deck, run_decks
    implicit none
    type(command_t) :: command
    type(error_t), allocatable :: error

@@ -1,9 +1,6 @@
 !> dda check: read and check decks, say what would be computed
-module dda_check
-   use dda_command_line, only : command_t
-   use dda_cut, only : print_warnings
+submodule (dda_verbs) dda_check
    use dda_deck, only : deck_t
-   use dda_error, only : error_t
    use dda_process, only : deck_stem, error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
@@ -11,11 +8,8 @@ module dda_check
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_scene
-   use dda_screen, only : print_line, screen_t
+   use dda_screen, only : print_line, print_warnings, screen_t
    implicit none
-   private
-
-   public :: check_file
 
    interface
 
@@ -34,11 +28,7 @@ module dda_check
 contains
 
    !> Check a deck
-   subroutine check_file(command, name, status, error)
-      type(command_t), intent(in) :: command
-      character(len=*), intent(in) :: name  !! Name of the deck
-      integer, intent(out) :: status        !! Exit status of this deck
-      type(error_t), allocatable, intent(out) :: error
+   module procedure check_file
       type(deck_t) :: deck
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
@@ -56,7 +46,7 @@ contains
          call print_plan(command%screen, name, deck, scene)
       end if
       if (command%record) call print_line(command%screen, record)
-   end subroutine check_file
+   end procedure check_file
 
    !> The tables that a run would write, each with its first line, and its deck.record
    function record_text(deck, stem) result(text)
@@ -74,4 +64,4 @@ contains
       end do
       text = text//"deck.record:"//new_line("a")//run_record(deck, stem)
    end function record_text
-end module dda_check
+end submodule dda_check

@@ -1,24 +1,18 @@
 !> dda cut: lines to blocks
-module dda_cut
-   use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_command_line, only : command_t
+submodule (dda_verbs) dda_cut
    use dda_cut_model, only : block_vertices, cut_model_t, point_kind
    use dda_cut_report, only : cut_reason, cut_remark_t
    use dda_cutting, only : cut_blocks
-   use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
    use dda_process, only : exit_status
    use dda_read_limerick, only : read_geometry
-   use dda_screen, only : print_line, screen_t
+   use dda_screen, only : print_line, print_warnings, screen_t
    use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
-   use dda_warnings, only : warning_line, warnings_t
+   use dda_warnings, only : warnings_t
    use dda_write_vtu, only : write_cut_table, write_cut_vtu
    implicit none
-   private
-
-   public :: cut_file, print_warnings
 
    !> Most rows of a list on the screen
    integer, parameter :: most_rows = 50
@@ -26,11 +20,7 @@ module dda_cut
 contains
 
    !> Cut one file
-   subroutine cut_file(command, name, status, error)
-      type(command_t), intent(in) :: command
-      character(len=*), intent(in) :: name  !! Name of the file
-      integer, intent(out) :: status        !! Exit status of this file
-      type(error_t), allocatable, intent(out) :: error
+   module procedure cut_file
       type(line_model_t) :: model
       type(cut_model_t) :: cut
       type(warnings_t) :: warnings
@@ -52,20 +42,7 @@ contains
          end if
          if (allocated(error)) status = exit_status%not_written
       end if
-   end subroutine cut_file
-
-   !> Print what a reader warns of
-   subroutine print_warnings(warnings)
-      type(warnings_t), intent(in) :: warnings
-      integer :: i
-
-      if (.not. allocated(warnings%item)) return
-      do i = 1, size(warnings%item)
-         write (error_unit, "(a)") warning_line(warnings%item(i))
-      end do
-      if (warnings%left_out > 0) &
-         & write (error_unit, "(a)") "and "//to_text(warnings%left_out)//" more warnings"
-   end subroutine print_warnings
+   end procedure cut_file
 
    !> Print counts, areas, and what was dropped
    subroutine print_cut(screen, model, cut)
@@ -199,4 +176,4 @@ contains
       label = what
       call print_line(screen, "   "//label//how)
    end subroutine tell
-end module dda_cut
+end submodule dda_cut

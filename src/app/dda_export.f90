@@ -1,11 +1,9 @@
 !> dda export: arch decks as files of the Limerick line or of blocks, blocks cut from lines as files
 !> of blocks
-module dda_export
+submodule (dda_verbs) dda_export
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
-   use dda_command_line, only : command_t
    use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_error, only : error_t
    use dda_key_names, only : scene_kind, search_group
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
@@ -17,9 +15,6 @@ module dda_export
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
       & write_text
    implicit none
-   private
-
-   public :: export_deck
 
    interface
 
@@ -37,11 +32,7 @@ module dda_export
 contains
 
    !> Export a deck
-   subroutine export_deck(command, name, status, error)
-      type(command_t), intent(in) :: command
-      character(len=*), intent(in) :: name  !! Name of the deck
-      integer, intent(out) :: status        !! Exit status of this deck
-      type(error_t), allocatable, intent(out) :: error
+   module procedure export_deck
       type(deck_t) :: deck
 
       status = exit_status%bad_input
@@ -51,7 +42,7 @@ contains
          & call key_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
          & //"'blocks'; copy the file that it names", deck, scene_kind)
       if (.not. allocated(error)) call export_cases(command, deck, status, error)
-   end subroutine export_deck
+   end procedure export_deck
 
    !> Export all cases of a deck
    subroutine export_cases(command, deck, status, error)
@@ -117,4 +108,4 @@ contains
       if (has_group(deck, search_group)) call print_line(screen, &
          & "   the search is not written: the files hold the deck's own value of its parameter")
    end subroutine tell
-end module dda_export
+end submodule dda_export

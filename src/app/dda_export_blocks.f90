@@ -1,5 +1,5 @@
 !> Arches of any shape and blocks cut from lines as files of blocks
-submodule (dda_export) dda_export_blocks
+submodule (dda_verbs:dda_export) dda_export_blocks
    use dda_key_names, only : scene_geometry
    use dda_line_text, only : has_one_law, line_losses, line_text
    use dda_shape_check, only : check_form

@@ -1,7 +1,5 @@
 !> dda lines: from a map of joints to a file of lines (Shi: DL)
-module dda_lines
-   use dda_command_line, only : command_t
-   use dda_error, only : error_t
+submodule (dda_verbs) dda_lines
    use dda_joint_map, only : joint_map_t
    use dda_kinds, only : wp
    use dda_line_model, only : entities_t, line_model_t
@@ -13,18 +11,11 @@ module dda_lines
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_geometry, plain_geometry, write_text
    implicit none
-   private
-
-   public :: draw_map
 
 contains
 
    !> Draw the lines of one map
-   subroutine draw_map(command, name, status, error)
-      type(command_t), intent(in) :: command
-      character(len=*), intent(in) :: name  !! Name of the map
-      integer, intent(out) :: status        !! Exit status of this map
-      type(error_t), allocatable, intent(out) :: error
+   module procedure draw_map
       type(joint_map_t) :: map
       type(line_model_t) :: model
       character(len=:), allocatable :: file
@@ -51,7 +42,7 @@ contains
          & //to_text(size(map%opening))//" openings, "//to_text(model%bolt%n)//" bolts")
       call print_line(command%screen, "   "//file//" is for 'dda cut', "//table_name(file) &
          & //" for pictures")
-   end subroutine draw_map
+   end procedure draw_map
 
    !> Length of all lines behind the first ones
    pure real(wp) function total_length(line, first)
@@ -117,4 +108,4 @@ contains
             & //to_text(entities%row(i)), error)
       end do
    end subroutine write_rows
-end module dda_lines
+end submodule dda_lines

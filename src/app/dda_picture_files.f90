@@ -1,5 +1,5 @@
 !> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
-submodule (dda_run:dda_run_cases) dda_picture_files
+submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_block_rows, only : contact_states, frame_joint_rows
    use dda_frames, only : frame_t
    use dda_process, only : make_folder

@@ -3,7 +3,7 @@
 !> A case is finished where its row in results.csv is whole, for that row is written last, and where
 !> its rows have the bytes and the check sum that sizes.record tells. Everything else of that run,
 !> rows cut off by a kill among them, is left out of the tables.
-submodule (dda_run) dda_resume
+submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_disk_record, only : trusted_length
    use dda_kinds, only : wp

@@ -1,25 +1,21 @@
 !> dda run: decks to results
-module dda_run
+submodule (dda_verbs) dda_run
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case_choice, only : choose_cases
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
-   use dda_command_line, only : command_t, name_of
-   use dda_cut, only : print_warnings
+   use dda_command_line, only : name_of
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_line
    use dda_process, only : deck_stem, error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, progress_t
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene_check, only : check_lines
-   use dda_screen, only : print_line
+   use dda_screen, only : print_line, print_warnings
    use dda_text, only : to_text
    implicit none
-   private
-
-   public :: run_decks
 
    !> Most cases at the same time
    integer, parameter :: max_jobs = 256
@@ -122,9 +118,7 @@ module dda_run
 contains
 
    !> Run all decks of the command line; a bad deck does not keep the others from running
-   subroutine run_decks(command, status)
-      type(command_t), intent(in) :: command
-      integer, intent(out) :: status  !! Exit status of the program
+   module procedure run_decks
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
@@ -151,7 +145,7 @@ contains
          call run_deck(command, name_of(command, i), deck(i), deck_status)
          status = worst_status(status, deck_status)
       end do
-   end subroutine run_decks
+   end procedure run_decks
 
    !> Run all cases of one deck
    subroutine run_deck(command, name, deck, status)
@@ -232,4 +226,4 @@ contains
       end if
    end subroutine begin_tables
 
-end module dda_run
+end submodule dda_run

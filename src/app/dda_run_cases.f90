@@ -1,5 +1,5 @@
 !> The cases of a deck, one after another: prepared, computed, written down
-submodule (dda_run) dda_run_cases
+submodule (dda_verbs:dda_run) dda_run_cases
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, prepare_case
    use dda_case_rows, only : tell_case

@@ -1,5 +1,5 @@
 !> What is read, checked and locked before a deck is run
-submodule (dda_run) dda_run_start
+submodule (dda_verbs:dda_run) dda_run_start
    use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
    use dda_error, only : fatal_error
    use dda_progress, only : end_watch, terminal_watch_t

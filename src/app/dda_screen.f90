@@ -1,14 +1,18 @@
-!> Standard output, written like every other file: Fortran's own unit does not say when it is full
+!> What the user reads: standard output, written like every other file, for Fortran's own unit does
+!> not say when it is full; warnings on standard error
 module dda_screen
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_binary_file, only : append_text, binary_file_t, close_binary, descriptor_of, &
       & flush_binary, open_binary, open_descriptor
    use dda_error, only : error_t
    use dda_process, only : terminal_width
-   use dda_text, only : read_integer
+   use dda_text, only : read_integer, to_text
+   use dda_warnings, only : warning_line, warnings_t
    implicit none
    private
 
-   public :: screen_t, open_screen, print_line, print_text, close_screen, screen_width
+   public :: screen_t, open_screen, print_line, print_text, print_warnings, &
+      & close_screen, screen_width
 
    !> Where lines for the user go
    type :: screen_t
@@ -64,6 +68,19 @@ contains
       call append_text(screen%file, text)
       call flush_binary(screen%file, late)
    end subroutine print_text
+
+   !> Print what a reader warns of
+   subroutine print_warnings(warnings)
+      type(warnings_t), intent(in) :: warnings
+      integer :: i
+
+      if (.not. allocated(warnings%item)) return
+      do i = 1, size(warnings%item)
+         write (error_unit, "(a)") warning_line(warnings%item(i))
+      end do
+      if (warnings%left_out > 0) &
+         & write (error_unit, "(a)") "and "//to_text(warnings%left_out)//" more warnings"
+   end subroutine print_warnings
 
    !> Columns that a line of a table may have: those of the terminal, or where it does not know,
    !> what the environment says
