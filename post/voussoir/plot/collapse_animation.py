@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
 from voussoir.plot.collapse_picture import draw_frame, limits, pictures_of, set_limits
@@ -91,12 +91,22 @@ def captions(run: Results, numbers: list[int], title: Callable[[dict[str, Any]],
 def write(figure: Figure, draw: Callable[[int], None], length: int, file: Path) -> Path:
     """Write the pictures of a figure that is drawn anew for each of them; gives the first file."""
     if file.suffix.lower() != ".png":
-        writer = FFMpegWriter if file.suffix.lower() == ".mp4" else PillowWriter
-        motion = FuncAnimation(figure, draw, frames=length + _REST)
-        motion.save(file, writer=writer(fps=_RATE), dpi=100)
+        writer = (FFMpegWriter if file.suffix.lower() == ".mp4" else PillowWriter)(fps=_RATE)
+        with writer.saving(figure, str(file), 100):
+            for _ in _drawn(figure, draw, length):
+                writer.grab_frame()
+            for _ in range(_REST):
+                writer.grab_frame()
         return file
     names = [file.with_name(f"{file.stem}_{moment + 1:03d}.png") for moment in range(length)]
-    for moment, name in enumerate(names):
-        draw(moment)
-        figure.savefig(name, dpi=100, metadata={"Software": None})
+    for moment in _drawn(figure, draw, length):
+        figure.savefig(names[moment], dpi=100, metadata={"Software": None})
     return names[0]
+
+
+def _drawn(figure: Figure, draw: Callable[[int], None], length: int) -> Iterator[int]:
+    """Draw one picture after the other; all have the layout of the first."""
+    for moment in range(length):
+        draw(moment)
+        yield moment
+        figure.set_layout_engine("none")
