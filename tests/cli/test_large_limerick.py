@@ -10,26 +10,27 @@ import pytest
 from dda_command import run_dda
 from limerick_files import HAS_XML, INPUT
 
-#: What takes a second or two takes minutes where its time grows with the square of the size [s]
+#: What takes a second takes minutes where its time grows with the square of the size [s]
 PATIENCE = 30.0
 GEOMETRY = (INPUT / "terrace_ddaml.geo").read_text()
 ANALYSIS = (INPUT / "terrace_ddaml.ana").read_text()
-MANY = 1000000
+#: Elements, and letters: more than a reader keeps of one text unless it is told to
+MANY, LONG = 300000, 10000000
 #: Put before the list of joints: nothing of it changes the model
 FILLING = {
     "blank lines": "\n" * MANY,
     "comments": "<!-- -->\n" * MANY,
-    "a long comment": "<!--" + "-\n" * 10 * MANY + "-->",
+    "a long comment": "<!--" + "-\n" * LONG + "-->",
     "instructions": "<?a b?>\n" * MANY,
-    "a long instruction": "<?a " + "b\n" * 10 * MANY + "?>",
+    "a long instruction": "<?a " + "b\n" * LONG + "?>",
     "unknown elements": "<Foo/>\n" * MANY,
     "unknown elements with ends": "<Foo></Foo>\n" * MANY,
     "unknown elements one in another": "<Foo>" * 90 + "<Foo/>" * MANY + "</Foo>" * 90,
     "many names": "".join(f"<Foo{i}/>" for i in range(90000)),
     "attributes": "<Foo " + " ".join(f'a{i}="1"' for i in range(20000)) + "/>",
-    "a long attribute": '<Foo a="' + "\n" * 10 * MANY + '"/>',
-    "a long tag": "<Foo" + "\n" * 10 * MANY + "/>",
-    "text": "<Foo>" + "1 2\n" * 5 * MANY + "</Foo>",
+    "a long attribute": '<Foo a="' + "\n" * LONG + '"/>',
+    "a long tag": "<Foo" + "\n" * LONG + "/>",
+    "text": "<Foo>" + "1 2\n" * (LONG // 2) + "</Foo>",
     "pieces of text": "<Foo>" + "<![CDATA[1]]>\n" * MANY + "</Foo>",
 }
 pytestmark = pytest.mark.skipif(not HAS_XML, reason="the program was built without libxml2")

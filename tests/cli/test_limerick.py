@@ -106,15 +106,17 @@ def test_less_penetration_brings_the_limit_to_the_exact_value(tmp_path: Path) ->
 
 
 def test_limit_is_linear_in_the_penetration_and_exact_without_any(tmp_path: Path) -> None:
-    done = run_dda("run", DECKS / "penetration.nml", "--out", tmp_path, "--quiet", "--set", "search%tolerance=1e-3")
+    # of 36 voussoirs, whose searches take long, four of six penetrations
+    done = run_dda("run", DECKS / "penetration.nml", "--out", tmp_path, "--quiet", "--set", "search%tolerance=1e-3",
+                   "--cases", "1-8,10,12")
     assert done.returncode == 0, done.stderr
     slopes = []
-    for voussoirs in ("12", "36"):
+    for voussoirs, count in (("12", 6), ("36", 4)):
         rows = [row for row in read_rows(tmp_path / "results.csv") if row["voussoirs"] == voussoirs]
         ratio = [float(row["penetration_ratio"]) for row in rows]
         limit = [float(row["critical"]) / float(row["exact"]) for row in rows]
         line = statistics.linear_regression(ratio, limit)
-        assert len(rows) == 6
+        assert len(rows) == count
         assert line.intercept == pytest.approx(1.0, abs=0.005)
         assert limit == pytest.approx([line.slope * x + line.intercept for x in ratio], abs=0.004)
         slopes.append(line.slope)
