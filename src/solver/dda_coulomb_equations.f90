@@ -161,10 +161,10 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       logical, intent(out) :: few  !! Whether there was room for them
-      integer :: before, c, j, k
+      integer :: c, j, k
+      logical :: is_new(3, max_answer)
 
       few = .false.
-      before = equations%n_answer
       do j = 1, size(equations%place)
          if (all(equations%face(:, j) == equations%base_face(:, j))) cycle
          if (equations%place(j) > 0) cycle
@@ -182,11 +182,15 @@ contains
          j = equations%joint(c)
          equations%difference(:, :, c) = joint_stiffness(joints, j, equations%face(:, j)) &
             & - joint_stiffness(joints, j, equations%base_face(:, j))
+         is_new(:, c) = any(abs(equations%difference(:, :, c)) > 0.0_wp, 2) &
+            & .and. equations%answer(:, c) == 0
+      end do
+      ! an answer costs as much as a solution: none is looked for where a new factor will be
+      if (count(is_new(:, :equations%n_change)) > min(max_answer - equations%n_answer, max_new)) &
+         & return
+      do c = 1, equations%n_change
          do k = 1, 3
-            if (.not. any(abs(equations%difference(k, :, c)) > 0.0_wp)) cycle
-            if (equations%answer(k, c) > 0) cycle
-            if (equations%n_answer == min(max_answer, before + max_new)) return
-            call find_answer(equations, joints, c, k)
+            if (is_new(k, c)) call find_answer(equations, joints, c, k)
          end do
       end do
       few = .true.
