@@ -76,31 +76,31 @@ def _contact_speeds(arch: Arch, place: np.ndarray, free: np.ndarray, closed: np.
 def _constraints(arch: Arch, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Rows and gaps of two corners a joint across it, and of the touching one along it."""
     n = len(place)
-    rows, gaps = np.zeros((2 * n + 2, n, 3)), np.zeros(2 * n + 2)
-    shear, lag = np.zeros((n + 1, n, 3)), np.zeros(n + 1)
-    for j in range(n + 1):
-        sides = [(b, *_corners(arch, place, b, j)) for b in (j - 1, j)]
-        along = sum(corner[1] - corner[0] for _, _, corner in sides)
-        along /= np.hypot(*along)
-        across = np.array([along[1], -along[0]])
-        apart = sides[1][2] - sides[0][2]
-        gaps[2 * j : 2 * j + 2] = apart @ across
-        touching = int(np.argmin(apart @ across))
-        lag[j] = apart[touching] @ along
-        for sign, (b, arm, _) in zip((-1, 1), sides):
-            if not 0 <= b < n:
-                continue
-            for k in range(2):
-                rows[2 * j + k, b] = sign * np.array([*across, arm[k, 0] * across[1] - arm[k, 1] * across[0]])
-            arm_there = arm[touching]
-            shear[j, b] = sign * np.array([*along, arm_there[0] * along[1] - arm_there[1] * along[0]])
-    return rows.reshape(-1, 3 * n), gaps, shear.reshape(-1, 3 * n), lag
+    block, joint = np.arange(n), np.arange(n + 1)
+    cosine, sine = np.cos(place[:, 2]), np.sin(place[:, 2])
+    turn = np.array([[cosine, sine], [-sine, cosine]]).transpose(2, 0, 1)
+    # arms from a block's centre to its corners at the joint before it and behind it; springings stay
+    arms = [(arch.joint[b:n + b] - arch.centre[:, None]) @ turn for b in (0, 1)]
+    sides = [arch.joint.copy(), arch.joint.copy()]
+    for b, arm, side in zip((0, 1), arms, sides):
+        side[b:n + b] = arm + (arch.centre + place[:, :2])[:, None]
+    along = sum(side[:, 1] - side[:, 0] for side in sides)
+    along /= np.hypot(*along.T)[:, None]
+    across = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    apart = sides[0] - sides[1]
+    gaps = np.einsum("jkx,jx->jk", apart, across)
+    touching = gaps.argmin(axis=1)
+    lag = np.einsum("jx,jx->j", apart[joint, touching], along)
+    rows, shear = np.zeros((n + 1, 2, n, 3)), np.zeros((n + 1, n, 3))
+    for b, sign, arm in zip((0, 1), (1, -1), arms):
+        there, way = across[b:n + b], along[b:n + b]
+        rows[block + b, :, block, :2] = sign * there[:, None]
+        rows[block + b, :, block, 2] = sign * _moment(arm, there[:, None])
+        shear[block + b, block, :2] = sign * way
+        shear[block + b, block, 2] = sign * _moment(arm[block, touching[b:n + b]], way)
+    return rows.reshape(-1, 3 * n), gaps.ravel(), shear.reshape(-1, 3 * n), lag
 
 
-def _corners(arch: Arch, place: np.ndarray, block: int, joint: int) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of a block at a joint, from its centre and where they are; of a springing, where they stay."""
-    if not 0 <= block < len(place):
-        return arch.joint[joint], arch.joint[joint]
-    cosine, sine = np.cos(place[block, 2]), np.sin(place[block, 2])
-    arm = (arch.joint[joint] - arch.centre[block]) @ np.array([[cosine, sine], [-sine, cosine]])
-    return arm, arm + arch.centre[block] + place[block, :2]
+def _moment(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Moments of forces."""
+    return arm[..., 0] * force[..., 1] - arm[..., 1] * force[..., 0]
