@@ -168,9 +168,9 @@ def test_rings_that_creep_on_by_sticking_and_slipping_fall(tmp_path: Path, seed:
     (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 1e4 /")
     assert found["verdict"] == "found"
     assert float(found["critical"]) == pytest.approx(value, rel=1e-6)
-    loads = ", ".join(repr(value * share) for share in (0.9, 0.999, 1.001, 1.1))
+    loads = ", ".join(repr(value * share) for share in (0.999, 1.001))
     decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
-    assert [row["verdict"] for row in decided] == [*2 * ["stable"], *2 * ["collapsed"]]
+    assert [row["verdict"] for row in decided] == ["stable", "collapsed"]
 
 
 def test_a_jump_that_settles_by_no_small_push_is_a_fall(tmp_path: Path) -> None:
