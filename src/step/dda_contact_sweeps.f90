@@ -42,7 +42,7 @@ submodule (dda_settle_in_time) dda_contact_sweeps
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
    !> Change of an opening or slip that counts as none, over the size of the smallest block
-   real(wp), parameter :: no_matter = 1.0e-10_wp
+   real(wp), parameter :: no_matter = 1.0e-11_wp
    !> Groups of more joints than this may go on by interior springs
    integer, parameter :: few = 2
    !> Gap by which a look at so many sees forces change, over what no step notices; of speeds, which

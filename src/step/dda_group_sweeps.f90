@@ -7,8 +7,9 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_group_sweeps
 
    !> Few blocks settle to rounding in so many sweeps
    integer, parameter :: strictly = 64
-   !> Change of a force that counts as none, over the largest of its group
-   real(wp), parameter :: no_force = 1.0e-7_wp
+   !> Change of a force that counts as none, over the largest of its group: of few joints, lest what
+   !> rests creeps and gains energy, and of many
+   real(wp), parameter :: no_force = 1.0e-9_wp, no_force_of_many = 1.0e-7_wp
    !> Multiple of a change that counts as none that will do where more sweeps bring no less
    real(wp), parameter :: coarse = 1.0e2_wp
 
@@ -111,7 +112,7 @@ contains
       logical, intent(out) :: ended
       real(wp) :: wanted(2)
 
-      wanted = [max(enough(1), no_force*largest), enough(2)]
+      wanted = [max(enough(1), merge(no_force, no_force_of_many, n <= many)*largest), enough(2)]
       if (purpose >= sweeps_for%patience .and. sweep > 0) &
          & wanted = merge(in_the_end, coarsest, purpose == sweeps_for%the_end)*wanted
       settled = change(1) <= enough(1) .or. all(change <= wanted) &
