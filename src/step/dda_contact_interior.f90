@@ -8,7 +8,8 @@
 !> the force of the step before: of all forces that stop the blocks those nearest to them count, so
 !> that shear is remembered. With d = z/s the spring of a joint is the inverse of the triangle
 !> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
-!> 1992). It begins with the forces of the step before.
+!> 1992), of few joints with more correctors where products that stray shorten the step (Gondzio
+!> 1996). It begins with the forces of the step before.
 submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    implicit none
 
@@ -24,6 +25,14 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    real(wp), parameter :: stuck = 0.2_wp
    !> Forces that are wrong by less are looked for from afar after the first step alone
    real(wp), parameter :: near_enough = 5.0e-2_wp
+   !> Correctors of products that stray, at the most, of few joints; of many they bring little
+   integer, parameter :: more_correctors = 3
+   !> A product strays by more than this, times or over what all are to be
+   real(wp), parameter :: astray = 1.0e1_wp
+   !> A step of this length is long enough
+   real(wp), parameter :: long = 0.95_wp
+   !> How much farther another corrector aims, and the share of that which the step must gain
+   real(wp), parameter :: farther = 0.3_wp, gain = 0.1_wp
    !> Most iterations
    integer, parameter :: max_iterations = 40
    !> Iterations without progress that end the search
@@ -143,7 +152,8 @@ contains
       x = best
    end subroutine iterate
 
-   !> One step from an iterate: a predictor, and a corrector towards equal products
+   !> One step from an iterate: a predictor, a corrector towards equal products, and of few joints
+   !> more for those that stray
    pure subroutine improve(springs, mean, merit, p, x, length)
       type(joint_springs_t), intent(in) :: springs
       real(wp), intent(in) :: mean     !! Mean product of slack and flow, in squares of a force
@@ -152,20 +162,52 @@ contains
       type(interior_t), intent(inout) :: x
       real(wp), intent(out) :: length  !! How much of the step was gone
       type(interior_t) :: step
+      real(wp) :: goal(4, size(p%joint)), share
 
       step = x
       p%product = -x%slack*x%flow
       call find_step(springs, p, x, step)
       length = longest(p, x, step, 1.0_wp)
-      p%product = p%product - length*step%slack*step%flow + weighted(p, mean*min(1.0_wp, &
+      goal = weighted(p, mean*min(1.0_wp, &
          & mean_product(p, x%slack + length*step%slack, x%flow + length*step%flow)/mean)**3)
+      p%product = p%product - length*step%slack*step%flow + goal
       call find_step(springs, p, x, step)
-      length = longest(p, x, step, max(0.995_wp, 1.0_wp - merit**2))
+      share = max(0.995_wp, 1.0_wp - merit**2)
+      length = longest(p, x, step, share)
+      if (size(p%joint) <= many) call lengthen(springs, goal, share, p, x, step, length)
       x%motion = x%motion + length*step%motion
       x%force = x%force + length*step%force
       x%slack = x%slack + length*step%slack
       x%flow = x%flow + length*step%flow
    end subroutine improve
+
+   !> Lengthen a step by correctors that bring products back which a longer one would let stray
+   pure subroutine lengthen(springs, goal, share, p, x, step, length)
+      type(joint_springs_t), intent(in) :: springs
+      real(wp), intent(in) :: goal(:, :)       !! What the products are to be: (4, n_joint)
+      real(wp), intent(in) :: share            !! How much of the way to a bound may be gone
+      type(problem_t), intent(inout) :: p
+      type(interior_t), intent(in) :: x
+      type(interior_t), intent(inout) :: step
+      real(wp), intent(inout) :: length
+      type(interior_t) :: other
+      real(wp) :: aim, longer, product_of(4, size(p%joint))
+      integer :: k
+
+      other = step
+      do k = 1, more_correctors
+         if (length > long) return
+         aim = min(1.0_wp, length + farther)
+         product_of = (x%slack + aim*step%slack)*(x%flow + aim*step%flow)
+         p%product = p%product + merge(max(-astray*goal, &
+            & min(max(product_of, goal/astray), goal*astray) - product_of), 0.0_wp, p%bounded)
+         call find_step(springs, p, x, other)
+         longer = longest(p, x, other, share)
+         if (longer < length + gain*(aim - length)) return
+         step = other
+         length = longer
+      end do
+   end subroutine lengthen
 
    !> The forces of the step before, and the motion that they make, lifted off the bounds
    pure subroutine begin(springs, view, force, motion, shallow, p, x)
