@@ -41,8 +41,9 @@ submodule (dda_settle_in_time) dda_contact_sweeps
 
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
-   !> Change of an opening or slip that counts as none, over the size of the smallest block
-   real(wp), parameter :: no_matter = 1.0e-11_wp
+   !> Change of an opening or slip that counts as none, over the size of the smallest block: of few
+   !> joints, lest what rests creeps and gains energy, and of many
+   real(wp), parameter :: no_matter = 1.0e-11_wp, no_matter_of_many = 1.0e-10_wp
    !> Groups of more joints than this may go on by interior springs
    integer, parameter :: few = 2
    !> Gap by which a look at so many sees forces change, over what no step notices; of speeds, which
@@ -134,6 +135,7 @@ contains
    module procedure sweep_contacts
       type(sweeps_t) :: sweeps
       integer :: begun, g, most, n, joint(size(springs%stiffness)), first(size(joint) + 1)
+      real(wp) :: size_of
       logical :: settled(size(joint))
 
       call see_joints(equations, springs, state, sweeps%view)
@@ -145,13 +147,15 @@ contains
       sweeps%motion(:, 0) = 0.0_wp
       sweeps%motion(:, 1:) = sweeps%moved
       sweeps%noise = min(1.0_wp, state%fineness)*equations%gap_noise
-      sweeps%enough = [tolerance*equations%force_scale, &
-         & no_matter*state%fineness*smallest(equations)]
+      sweeps%enough(1) = tolerance*equations%force_scale
+      size_of = state%fineness*smallest(equations)
       settled = .false.
       begun = state%passes
       most = 0
       state%effort%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%effort%patient
       do g = 1, n
+         sweeps%enough(2) = merge(no_matter, no_matter_of_many, first(g + 1) - first(g) <= many) &
+            & *size_of
          call settle_group(equations, springs, joint(first(g):first(g + 1) - 1), state, sweeps, &
             & settled(g))
          ! groups know nothing of one another: their passes go on side by side
