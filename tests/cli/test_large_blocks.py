@@ -157,7 +157,7 @@ def test_the_same_warning_is_given_once(tmp_path: Path) -> None:
 
 
 def test_a_long_reading_is_shown_on_a_terminal(tmp_path: Path) -> None:
-    deck = write(tmp_path, "\n" * 20000000 + row(2))
+    deck = write(tmp_path, "\n" * 40000000 + row(2))
 
     def on_terminal(*options: str) -> str:
         """What is written to standard error where that is a terminal."""
