@@ -13,7 +13,7 @@ module dda_limerick_step
 
    public :: choose_interval, judge_limerick_step, move_vertices, update, limerick_run_t
    public :: advance_limerick, corners_t, measure_corners, turn, overlap, entrance_lines
-   public :: find_limerick_contacts
+   public :: find_limerick_contacts, open_and_close
 
    !> Everything that a run carries from step to step
    type :: limerick_run_t
