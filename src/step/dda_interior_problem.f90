@@ -22,8 +22,9 @@ contains
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       allocate (p%joint, source=joint)
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%force_before(3, n))
-      allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%held(7, n))
-      allocate (p%stiff(4, n))
+      allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%stiff(4, n))
+      ! no compliance is negative: the first matrix is made for every joint
+      allocate (p%held(7, n), source=-1.0_wp)
       call number_blocks(springs, size(equations%load, 2), p)
       p%entry = 0
       k = 0
@@ -204,7 +205,7 @@ contains
       changed = .not. p%factor%usable
       do i = 1, size(p%joint)
          wanted = [p%soft(:, i), p%yield(:, i)]
-         if (p%factor%usable .and. all(abs(wanted - p%held(:, i)) <= 0.0_wp)) cycle
+         if (all(abs(wanted - p%held(:, i)) <= 0.0_wp)) cycle
          p%held(:, i) = wanted
          p%stiff(:, i) = stiffness(springs%cone(p%joint(i))%friction, p%given(:, i), wanted)
          changed(p%block(:, i)) = .true.
