@@ -162,7 +162,7 @@ contains
          end do
          call add_new(own(q%n_group(p) + 1:), p, q%weight, q%mark, member, n)
       end associate
-      q%group(p)%member = member(:n)
+      allocate (q%group(p)%member, source=member(:n))
       q%group_size(p) = sum(q%weight(member(:n)))
    end subroutine gather
 
