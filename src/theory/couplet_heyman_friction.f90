@@ -36,6 +36,8 @@ module couplet_heyman_friction
       real(wp) :: h_mixed
       !> Joint of the haunch that slides at mu_mixed, from the crown [rad]
       real(wp) :: beta_slip
+      !> Inner hinge there [rad], and thickness ratio
+      real(wp) :: beta_mixed, eta_mixed
       !> Whether at mu_rotational the springing slides first, rather than the haunch
       logical :: springing_slides
    end type friction_limits_t
@@ -46,23 +48,25 @@ contains
    pure type(friction_limits_t) function friction_limits(alpha, which) result(limits)
       real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
       integer, intent(in) :: which   !! One of `theory`
-      real(wp) :: x, springing, haunch
+      real(wp) :: x, eta, h
 
       limits%mu_mixed = ieee_value(x, ieee_quiet_nan)
       limits%mu_rotational = limits%mu_mixed
       limits%h_mixed = limits%mu_mixed
       limits%beta_slip = limits%mu_mixed
+      limits%beta_mixed = limits%mu_mixed
+      limits%eta_mixed = limits%mu_mixed
       limits%springing_slides = .false.
       if (.not. is_embraced(alpha, which)) return
-      x = asin(sqrt(rotational_deficit(alpha, which)))
-      springing = springing_lean(alpha, x)
-      haunch = 0.5_wp*arc_excess(2.0_wp*x)
-      limits%springing_slides = springing >= haunch
-      limits%mu_rotational = tan(max(springing, haunch))
+      call critical_solution(alpha, which, limits%beta_mixed, eta, h)
+      call limit_rotation(alpha, which, limits%beta_mixed, eta, h, x, limits%mu_rotational, &
+         & limits%springing_slides)
       x = double_slip(alpha, x)
-      limits%mu_mixed = tan(0.5_wp*arc_excess(2.0_wp*x))
+      limits%mu_mixed = mixed_friction(x)
       limits%h_mixed = cos(x)**2
       limits%beta_slip = 0.5_wp*sin(2.0_wp*x)
+      call mixed_hinge(alpha, sin(x)**2, limits%springing_slides, which, limits%beta_mixed, &
+         & limits%eta_mixed)
    end function friction_limits
 
    !> Least thickness, with its hinge and thrust, at a friction coefficient; NaN below mu_mixed
@@ -73,35 +77,59 @@ contains
       real(wp), intent(out) :: beta  !! Inner hinge [rad]
       real(wp), intent(out) :: eta   !! Thickness ratio [-]
       real(wp), intent(out) :: h     !! Thrust [w r]
-      type(friction_limits_t) :: limits
-      real(wp) :: deficit
+      real(wp) :: deficit, mu_rotational, x
+      logical :: springing_slides
 
-      limits = friction_limits(alpha, which)
       call critical_solution(alpha, which, beta, eta, h)
-      if (mu >= limits%mu_rotational) return
-      if (.not. mu >= limits%mu_mixed) then
+      if (.not. is_embraced(alpha, which)) return
+      call limit_rotation(alpha, which, beta, eta, h, x, mu_rotational, springing_slides)
+      if (mu >= mu_rotational) return
+      if (.not. mu >= mixed_friction(double_slip(alpha, x))) then
          beta = ieee_value(beta, ieee_quiet_nan)
          eta = beta
          h = beta
          return
       end if
-      if (limits%springing_slides) then
+      if (springing_slides) then
          deficit = arm_excess(alpha) - mu*(cos(alpha) + alpha*sin(alpha))
          deficit = deficit/(sin(alpha) - mu*cos(alpha))
       else
          deficit = haunch_deficit(mu)
       end if
       h = 1.0_wp - deficit
-      call mixed_hinge(alpha, deficit, limits%springing_slides, which, beta, eta)
+      call mixed_hinge(alpha, deficit, springing_slides, which, beta, eta)
    end subroutine friction_solution
 
-   !> 1 - h of the rotational mode, exact to the last digits also for shallow arches
-   elemental real(wp) function rotational_deficit(alpha, which)
+   !> From which friction coefficient on the arch collapses by rotation alone
+   elemental subroutine limit_rotation(alpha, which, beta, eta, h, x, mu, springing_slides)
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-      real(wp) :: beta, eta, h
+      real(wp), intent(in) :: beta, eta, h       !! Critical hinge, thickness and thrust
+      real(wp), intent(out) :: x                 !! That thrust, as asin(sqrt(1 - h)) [rad]
+      real(wp), intent(out) :: mu                !! The coefficient
+      logical, intent(out) :: springing_slides   !! Whether there the springing slides first
+      real(wp) :: springing, haunch
 
-      call critical_solution(alpha, which, beta, eta, h)
+      x = asin(sqrt(rotational_deficit(alpha, which, beta, eta, h)))
+      springing = springing_lean(alpha, x)
+      haunch = 0.5_wp*arc_excess(2.0_wp*x)
+      springing_slides = springing >= haunch
+      mu = tan(max(springing, haunch))
+   end subroutine limit_rotation
+
+   !> Least friction coefficient at which the haunch does not slide
+   elemental real(wp) function mixed_friction(x)
+      real(wp), intent(in) :: x  !! The thrust, as asin(sqrt(1 - h)) [rad]
+
+      mixed_friction = tan(0.5_wp*arc_excess(2.0_wp*x))
+   end function mixed_friction
+
+   !> 1 - h of the rotational mode, exact to the last digits also for shallow arches
+   elemental real(wp) function rotational_deficit(alpha, which, beta, eta, h)
+      real(wp), intent(in) :: alpha
+      integer, intent(in) :: which
+      real(wp), intent(in) :: beta, eta, h
+
       if (h < 0.5_wp) then
          rotational_deficit = 1.0_wp - h
       else if (tangency_flag(which) > 0.0_wp) then

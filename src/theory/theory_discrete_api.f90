@@ -14,7 +14,8 @@ module theory_discrete_api
 contains
 
    !> Friction coefficients at which the mode of collapse changes
-   subroutine friction_range(n, alpha, which, rotational, mixed, h, slip, springing, fault)
+   subroutine friction_range(n, alpha, which, rotational, mixed, h, slip, springing, beta, &
+                             eta, fault)
       !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
@@ -32,6 +33,10 @@ contains
       real(wp), intent(out) :: slip(n)
       !> 1 where the springing slides first, 0 where the haunch does: (n)
       integer, intent(out) :: springing(n)
+      !> Inner hinge at the least coefficient for any equilibrium: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio there: (n) [-]
+      real(wp), intent(out) :: eta(n)
       !> First fault: (2)
       integer, intent(out) :: fault(2)
       type(friction_limits_t) :: limits
@@ -47,10 +52,12 @@ contains
          h(i) = limits%h_mixed
          slip(i) = limits%beta_slip
          springing(i) = merge(1, 0, limits%springing_slides)
+         beta(i) = limits%beta_mixed
+         eta(i) = limits%eta_mixed
       end do
    end subroutine friction_range
 
-   !> Least thickness at a friction coefficient
+   !> Least thickness at a friction coefficient, with its hinge and thrust
    subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
@@ -58,9 +65,7 @@ contains
       real(wp), intent(in) :: mu(n)
       real(wp), intent(in) :: alpha(n)
       integer, intent(in) :: which
-      !> Inner hinge: (n) [rad]
       real(wp), intent(out) :: beta(n)
-      !> Thickness ratio: (n) [-]
       real(wp), intent(out) :: eta(n)
       real(wp), intent(out) :: h(n)
       integer, intent(out) :: fault(2)

@@ -12,7 +12,7 @@ Column = npt.NDArray[np.float64]
 Value = Union[np.float64, Column]
 
 #: What Fortran takes for one element as it is
-_FLOATS = (float, np.float64)
+_FLOATS = frozenset({float, np.float64})
 
 #: Numbers of the theories, as in couplet_heyman_theories.f90
 THEORIES = {"heyman": 1, "ccr": 2, "milankovitch": 3}
@@ -27,9 +27,10 @@ JOINT = "an angle in [0, alpha] rad"
 
 def theory_number(name: str) -> int:
     """Number of a theory in the Fortran module; ValueError if there is no such theory."""
-    if not isinstance(name, str) or name.lower() not in THEORIES:
-        raise ValueError(f"theory must be one of {', '.join(map(repr, THEORIES))}, got {name!r}")
-    return THEORIES[name.lower()]
+    try:
+        return THEORIES[name.lower()]
+    except (AttributeError, KeyError, TypeError):
+        raise ValueError(f"theory must be one of {', '.join(map(repr, THEORIES))}, got {name!r}") from None
 
 
 def real_array(name: str, value: npt.ArrayLike) -> Column:
@@ -63,10 +64,11 @@ def evaluate(
     (`ranges`). Results have the shape of the arguments. ValueError if they are not numeric, do not fit, or are out of
     range.
     """
-    if all(type(value) in _FLOATS for value in arguments.values()):
-        *found, fault = routine(*arguments.values(), *numbers)
+    given = arguments.values()
+    if _FLOATS.issuperset(map(type, given)):
+        *found, fault = routine(*given, *numbers)
         if fault[0] == 0:
-            return tuple(column[0] for column in found)
+            return tuple([column[0] for column in found])
     shape, flat = columns(**arguments)
     if flat[0].size == 0:
         return tuple(np.empty(shape) for _ in range(results))

@@ -31,11 +31,10 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
         ``beta_slip`` [rad] the joint of the haunch that slides there together with the springing; ``slides_first``
         "springing" or "haunch", the joint that limits mu_rotational.
     """
-    found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=5)
+    found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=7)
     if found[0].ndim > 0:
         raise ValueError(f"alpha must be one angle, got {alpha!r}")
-    rotational, mixed, h, slip, springing = found
-    beta, eta, _ = friction_critical(mixed, theory, alpha)
+    rotational, mixed, h, slip, springing, beta, eta = found
     return {
         "mu_rotational": float(rotational),
         "mu_mixed": float(mixed),
