@@ -153,7 +153,7 @@ contains
       equations%n_change = 0
       equations%n_answer = 0
       equations%active = [integer ::]
-      if (allocated(equations%last_load)) deallocate (equations%last_load)
+      if (allocated(equations%last_load)) deallocate (equations%last_load, equations%last_motion)
    end subroutine factor_faces
 
    !> List what differs from the factor, and find the answers that this takes
@@ -334,6 +334,8 @@ contains
       if (present(once)) then
          if (once) return
       end if
+      if (.not. allocated(equations%last_load)) &
+         & allocate (equations%last_load, equations%last_motion, mold=load)
       equations%last_load = load
       equations%last_motion = motion
    end subroutine substitute_again
