@@ -183,7 +183,7 @@ contains
       if (present(symmetric)) matrix%symmetric = symmetric
       matrix%n_dof = n_dof
       matrix%place = narrow_order(n_block, pair)
-      matrix%pair = pair
+      allocate (matrix%pair, source=pair)
       do i = 1, size(pair, 2)
          associate (p => matrix%pair(:, i))
             if (matrix%place(p(1)) < matrix%place(p(2))) p = p([2, 1])
