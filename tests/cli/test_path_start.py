@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from block_scene import block
 from dda_command import run_dda
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
@@ -120,6 +121,22 @@ def test_a_corbel_of_rough_blocks_is_decided_as_its_search_says(tmp_path: Path) 
     sweep = f"&sweep parameter = 'horizontal_coefficient', values = {', '.join(map(repr, values))} /"
     found = rows(tmp_path, blocks, rough + sweep)
     assert [row["verdict"] for row in found] == 3 * ["stable"] + 3 * ["collapsed"]
+
+
+def test_a_corbel_without_a_start_is_no_collapse_where_its_push_has_a_history(tmp_path: Path) -> None:
+    """The same corbel under 0.4 of its limit, where no rest under the dead loads alone may stand for a start."""
+    assembly, ground = make_pushed(41155)
+    blocks = "".join(block(polygon, "fixed") for polygon in ground) + "".join(map(block, assembly.blocks))
+    for number, polygon in enumerate(assembly.blocks, len(ground) + 1):
+        area, (x, y) = area_and_centre(polygon)
+        blocks += f"load block {number} {x!r} {y!r}\n0 0 0\n1 {0.1 * 2e4 * area!r} 0\n"
+    (tmp_path / "x.blocks").write_text(blocks)
+    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 2e4 /\n"
+                                       "&joint friction_deg = 88.7800220058748 /\n")
+    run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+    with (tmp_path / "deck" / "results.csv").open() as table:
+        (row,) = csv.DictReader(table)
+    assert row["verdict"] in ("undecided", "stable")
 
 
 def test_what_holds_only_as_sliding_opens_joints_falls(tmp_path: Path) -> None:
