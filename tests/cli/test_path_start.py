@@ -131,8 +131,8 @@ def test_a_corbel_without_a_start_is_no_collapse_where_its_push_has_a_history(tm
         area, (x, y) = area_and_centre(polygon)
         blocks += f"load block {number} {x!r} {y!r}\n0 0 0\n1 {0.1 * 2e4 * area!r} 0\n"
     (tmp_path / "x.blocks").write_text(blocks)
-    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 2e4 /\n"
-                                       "&joint friction_deg = 88.7800220058748 /\n")
+    rough = "&material unit_weight = 2e4 /\n&joint friction_deg = 88.7800220058748 /\n"
+    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + rough)
     run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
     with (tmp_path / "deck" / "results.csv").open() as table:
         (row,) = csv.DictReader(table)
