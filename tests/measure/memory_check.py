@@ -26,11 +26,16 @@ DECKS = {
     "search": "&arch voussoirs = 12 /\n&search /\n&sweep parameter = 'friction_deg', values = 20, 50 /\n",
     "moving": "&arch voussoirs = 6, thickness_ratio = 0.1 /\n&analysis geometry = 'current' /\n"
               "&output frames = 3 /\n",
+    "shaken": "&arch voussoirs = 4, thickness_ratio = 0.15 /\n&analysis mode = 'dynamic', geometry = 'current', "
+              "time_step = 0.01, duration = 0.3, steps = 999, unknowns = 3, collapse_displacement = 0.05 /\n"
+              "&ground pulse = 'rectangular', duration = 0.2 /\n"
+              "&search parameter = 'ground%amplitude', low = 0, high = 40, tolerance = 0.2 /\n",
     "bad": "&arch radius = -1 /\n",
 }
 #: What `dda` is asked for, in a folder that holds the decks of above
 CALLS = (
-    "run search.nml", "run search.nml --jobs 2 --out jobs", "run moving.nml", "run bad.nml",
+    "run search.nml", "run search.nml --jobs 2 --out jobs", "run moving.nml", "run shaken.nml",
+    "run bad.nml",
     "check search.nml moving.nml bad.nml missing.nml", "export search.nml --out files", "help keys",
     "run INPUT/benchmarks/dry_wall_2x4.nml", "run INPUT/benchmarks/stack.nml",
     "run INPUT/benchmarks/bounce.nml --set analysis%steps=50 --set output%energy=.true.",
