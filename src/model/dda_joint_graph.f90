@@ -14,7 +14,7 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs
+   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs, unit_of_length
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -80,6 +80,15 @@ contains
       rubs = (kind == joint_kind%contact .or. kind == joint_kind%corner) &
          & .and. friction > 0.0_wp .and. friction < rough
    end function rubs
+
+   !> Half the mean length of the joints; one without joints
+   pure real(wp) function unit_of_length(graph) result(unit)
+      type(joint_graph_t), intent(in) :: graph
+
+      unit = 1.0_wp
+      if (any(graph%length > 0.0_wp)) unit = 0.5_wp*sum(graph%length, graph%length > 0.0_wp) &
+         & /real(count(graph%length > 0.0_wp), wp)
+   end function unit_of_length
 
    !> Whether a joint has strength that it loses where it slides or opens
    pure logical function breaks(graph)

@@ -16,8 +16,8 @@ module dda_first_fall
    use dda_interior_point, only : solve_cones, worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, set_path
    use dda_interior_turn, only : lift
-   use dda_joint_graph, only : joint_graph_t
-   use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
+   use dda_joint_graph, only : joint_graph_t, unit_of_length
+   use dda_joint_rays, only : forces_of_rays, scale_load
    use dda_kinds, only : wp
    use dda_limit_decision, only : keep_velocities, unit_of_force
    use dda_load_jump, only : far_factor, few_pivots, jump_t, jump_to_balance, motion_end
@@ -107,31 +107,29 @@ contains
       real(wp), intent(out) :: force(:, :)     !! N1, N2, T of each joint: (3, n_joint) [N/m]
       logical, intent(out) :: found            !! Whether they were found
       integer, intent(out) :: n_factorisation  !! Factorisations
-      type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(load_path_t) :: path
       type(interior_point_t) :: point
       real(wp) :: driven(3, 0:graph%n_block)
 
-      call set_rays(graph, rays)
-      call plan_matrix(rays, springs)
-      call scale_load(rays, load, unit_of_force(load), driven)
-      call set_path(driven, 0.0_wp*driven, path)
+      call plan_matrix(graph, springs)
+      call scale_load(load, unit_of_force(load), unit_of_length(graph), driven)
+      call set_path(graph, driven, 0.0_wp*driven, path)
       path%mass(:, 1:) = graph%mass(1:3, :)/maxval(graph%mass(1, :))
-      path%mass(3, 1:) = path%mass(3, 1:)/rays%length**2
+      path%mass(3, 1:) = path%mass(3, 1:)/path%length**2
       path%moves = .true.
       path%compliance = compliance
-      call begin(rays, path, springs, point)
-      call solve_cones(rays, path, interior_goal_t(tolerance=aim), springs, point)
+      call begin(graph, path, springs, point)
+      call solve_cones(graph, path, interior_goal_t(tolerance=aim), springs, point)
       found = worst(point) < accepted
       n_factorisation = springs%n_factorisation
-      call keep_velocities(rays, point%v, motion)
+      call keep_velocities(graph, point%v, motion)
       call forces_of_rays(graph, point%x, unit_of_force(load), force)
    end subroutine find_first_motion
 
    !> Springs of equal stiffness beside the masses; forces and rates are then pushed inside
-   pure subroutine begin(rays, path, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine begin(graph, path, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(out) :: point
@@ -139,14 +137,14 @@ contains
 
       allocate (point%v, mold=path%dead)
       allocate (point%x, point%s, mold=springs%stiffness)
-      springs%stiffness = rays%bounded + rays%free
-      call set_springs(rays, path%mass, lift, springs)
-      call solve_springs(rays, springs, path%dead, point%v, point%s)
+      springs%stiffness = path%bounded + path%free
+      call set_springs(graph, path%mass, lift, springs)
+      call solve_springs(graph, springs, path%dead, point%v, point%s)
       point%x = -point%s
-      point%x = rays%bounded*(point%x + max(0.0_wp, -1.5_wp*minval(point%x)) &
+      point%x = path%bounded*(point%x + max(0.0_wp, -1.5_wp*minval(point%x)) &
          & + inside*path%largest_dead)
-      point%s = rays%bounded*(point%s + max(0.0_wp, -1.5_wp*minval(point%s)) &
-         & + inside*maxval(abs(point%v))) + (1.0_wp - rays%bounded)
+      point%s = path%bounded*(point%s + max(0.0_wp, -1.5_wp*minval(point%s)) &
+         & + inside*maxval(abs(point%v))) + (1.0_wp - path%bounded)
    end subroutine begin
 
 end module dda_first_fall

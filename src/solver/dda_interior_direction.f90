@@ -5,7 +5,8 @@
 !> stiffness that is large: what they open is led back to zero from turn to turn.
 module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
-   use dda_joint_rays, only : add_ray_forces, joint_rays_t, ray_rates
+   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_rays, only : add_ray_forces, ray_rates
    use dda_kinds, only : wp
    use dda_ray_matrix, only : add_digits, digits_of, ray_matrix_t, solve_springs
    implicit none
@@ -42,13 +43,13 @@ module dda_interior_direction
 contains
 
    !> Response of the springs to the live load
-   pure subroutine respond_to_live_load(rays, path, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine respond_to_live_load(graph, path, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
-      call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
+      call solve_springs(graph, springs, path%live, turn%unit_response, turn%unit_rate)
       turn%flexibility = sum(path%live*turn%unit_response)
       ! nor has a load that does no work a factor
       if (path%moves .or. .not. abs(turn%flexibility) > 0.0_wp) &
@@ -56,21 +57,21 @@ contains
    end subroutine respond_to_live_load
 
    !> Direction to balance, compatibility and the aim
-   pure subroutine direct(rays, path, point, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine direct(graph, path, point, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn  !! Aim in, direction out
 
       turn%left = huge(turn%left)
-      if (springs%usable) call find_direction(rays, path, point, turn%accepted, springs, turn)
-      call direct_again(rays, path, point, springs, turn)
+      if (springs%usable) call find_direction(graph, path, point, turn%accepted, springs, turn)
+      call direct_again(graph, path, point, springs, turn)
    end subroutine direct
 
    !> The same by factors with more digits while it leaves too much
-   pure subroutine direct_again(rays, path, point, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine direct_again(graph, path, point, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
@@ -79,16 +80,16 @@ contains
 
       do digits = springs%digits + 1, digits_of%wide
          if (.not. turn%left > turn%accepted) exit
-         call add_digits(rays, path%mass, digits, springs)
+         call add_digits(graph, path%mass, digits, springs)
          if (springs%digits /= digits) cycle
-         call respond_to_live_load(rays, path, springs, turn)
-         call find_direction(rays, path, point, turn%accepted, springs, turn)
+         call respond_to_live_load(graph, path, springs, turn)
+         call find_direction(graph, path, point, turn%accepted, springs, turn)
       end do
    end subroutine direct_again
 
    !> Direction to balance, compatibility and the aim
-   pure subroutine find_direction(rays, path, point, enough, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine find_direction(graph, path, point, enough, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       real(wp), intent(in) :: enough  !! Imbalance that needs no correction
@@ -98,18 +99,18 @@ contains
       turn%dv = 0.0_wp
       turn%dfactor = 0.0_wp
       ! rates less what velocities make of them are to go
-      call ray_rates(rays, point%v, turn%rate)
+      call ray_rates(graph, path%length, point%v, turn%rate)
       turn%ds = path%compliance*turn%aim &
-         & - ((point%s - path%compliance*point%x)*rays%bounded - turn%rate)
+         & - ((point%s - path%compliance*point%x)*path%bounded - turn%rate)
       turn%dx = turn%aim - springs%stiffness*turn%ds
       turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
-      call balance_direction(rays, path, point, springs, turn)
-      call refine_direction(rays, path, point, enough, springs, turn)
+      call balance_direction(graph, path, point, springs, turn)
+      call refine_direction(graph, path, point, enough, springs, turn)
    end subroutine find_direction
 
    !> Balance a direction again until the imbalance that is left no longer halves
-   pure subroutine refine_direction(rays, path, point, enough, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine refine_direction(graph, path, point, enough, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       real(wp), intent(in) :: enough
@@ -121,34 +122,34 @@ contains
 
       before = huge(before)
       do correction = 0, max_correction
-         call see_rest(rays, path, turn)
+         call see_rest(graph, path, turn)
          turn%left = min(before, maxval(abs(turn%rest)))
          if (turn%left < enough .or. .not. turn%left < 0.5_wp*before) exit
          if (correction == max_correction) exit
          before = turn%left
-         call balance_direction(rays, path, point, springs, turn)
+         call balance_direction(graph, path, point, springs, turn)
       end do
    end subroutine refine_direction
 
    !> What a direction leaves of the balance
-   pure subroutine see_rest(rays, path, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine see_rest(graph, path, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(turn_t), intent(inout) :: turn  !! The direction; receives the rest
 
       turn%rest = -turn%lack + turn%dfactor*path%live - path%mass*turn%dv
-      call add_ray_forces(rays, turn%dx, turn%rest)
+      call add_ray_forces(graph, path%length, turn%dx, turn%rest)
    end subroutine see_rest
 
    !> Correct a direction by the motion that balances what it leaves
-   pure subroutine balance_direction(rays, path, point, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine balance_direction(graph, path, point, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
-      call find_balance(rays, path, point, springs, turn)
+      call find_balance(graph, path, point, springs, turn)
       turn%ds = turn%ds + (1.0_wp - path%compliance*springs%stiffness)*turn%rate
       turn%dx = turn%dx - springs%stiffness*turn%rate
    end subroutine balance_direction
@@ -157,19 +158,19 @@ contains
    !> changes of x and s by these. The power of the rest on the
    !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
    !> to cancel
-   pure subroutine find_balance(rays, path, point, springs, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine find_balance(graph, path, point, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
       real(wp) :: step, taken
 
-      call see_rest(rays, path, turn)
+      call see_rest(graph, path, turn)
       taken = 0.0_wp
       if (turn%lack_of_power < 0.5_wp) taken = sum(turn%rest*point%v)/(1.0_wp - turn%lack_of_power)
       turn%rest = turn%rest - taken*path%live
-      call solve_springs(rays, springs, turn%rest, turn%response, turn%rate)
+      call solve_springs(graph, springs, turn%rest, turn%response, turn%rate)
       step = (turn%lack_of_power - sum(path%live*turn%dv) - sum(path%live*turn%response)) &
          & /turn%flexibility
       turn%response = turn%response + step*turn%unit_response

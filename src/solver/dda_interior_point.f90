@@ -15,7 +15,7 @@ module dda_interior_point
       & load_path_t, no_limit
    use dda_interior_direction, only : turn_t
    use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals
-   use dda_joint_rays, only : joint_rays_t
+   use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
    implicit none
@@ -39,8 +39,8 @@ contains
 
    !> Springs of equal stiffness carry the dead load; all forces and rates are then pushed inside
    !> their bounds by the same amount (Mehrotra)
-   pure subroutine start_by_springs(rays, path, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine start_by_springs(graph, path, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(out) :: point  !! Where the iteration begins
@@ -48,43 +48,44 @@ contains
 
       allocate (point%x, point%s, mold=springs%stiffness)
       allocate (point%v, mold=path%dead)
-      springs%stiffness = rays%bounded + rays%free
-      call set_springs(rays, path%mass, lift, springs)
-      call solve_springs(rays, springs, -path%dead, point%v, point%x)
-      call solve_springs(rays, springs, path%live, point%v, point%s)
+      springs%stiffness = path%bounded + path%free
+      call set_springs(graph, path%mass, lift, springs)
+      call solve_springs(graph, springs, -path%dead, point%v, point%x)
+      call solve_springs(graph, springs, path%live, point%v, point%s)
       power = sum(path%live*point%v)
       if (power > 0.0_wp) then
          point%v = point%v/power
          point%s = point%s/power
       end if
-      if (any(rays%bounded > 0)) then
-         point%x = point%x + 1.5_wp*max(0.0_wp, -minval(point%x, rays%bounded > 0)) + inside
-         point%s = point%s + 1.5_wp*max(0.0_wp, -minval(point%s, rays%bounded > 0)) &
+      if (any(path%bounded > 0)) then
+         point%x = point%x + 1.5_wp*max(0.0_wp, -minval(point%x, path%bounded > 0)) + inside
+         point%s = point%s + 1.5_wp*max(0.0_wp, -minval(point%s, path%bounded > 0)) &
             & + inside*maxval(abs(point%v))
-         product = sum(point%x*point%s*rays%bounded)
-         power = sum(point%s*rays%bounded)
-         point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded)
+         product = sum(point%x*point%s*path%bounded)
+         power = sum(point%s*path%bounded)
+         point%s = point%s + 0.5_wp*product/sum(point%x*path%bounded)
          point%x = point%x + 0.5_wp*product/power
       end if
-      point%x = point%x*rays%bounded
-      point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
+      point%x = point%x*path%bounded
+      point%s = point%s*path%bounded + (1.0_wp - path%bounded)
    end subroutine start_by_springs
 
    !> Forces that carry the dead load inside their bounds, and rates that share a power equally
-   pure subroutine start_by_forces(rays, power, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine start_by_forces(path, power, point)
+      type(load_path_t), intent(in) :: path
       real(wp), intent(in) :: power                   !! Power of all forces: the gap to begin with
       type(interior_point_t), intent(inout) :: point  !! Has the forces; receives the rest
 
       point = interior_point_t(x=point%x)
-      point%s = power*rays%bounded/(real(max(1, rays%n_bounded), wp) &
-         & *(point%x*rays%bounded + (1.0_wp - rays%bounded))) + (1.0_wp - rays%bounded)
-      allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
+      point%s = power*path%bounded/(path%n_bounded &
+         & *(point%x*path%bounded + (1.0_wp - path%bounded))) + (1.0_wp - path%bounded)
+      allocate (point%v, mold=path%dead)
+      point%v = 0.0_wp
    end subroutine start_by_forces
 
    !> Largest factor, or motion of masses, from a point inside the bounds
-   pure subroutine solve_cones(rays, path, goal, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine solve_cones(graph, path, goal, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
@@ -94,14 +95,14 @@ contains
       integer :: idle
       real(wp) :: merit, farthest
 
-      call begin_turns(rays, path, goal, turn)
+      call begin_turns(path, goal, turn)
       merit = huge(merit)
       farthest = point%factor
       idle = 0
       ! where the load is no number no point is better than the first
       call keep(point, best)
       do
-         call see_residuals(rays, path, point, turn)
+         call see_residuals(graph, path, point, turn)
          idle = idle + 1
          if (worst(point) < merit) then
             merit = worst(point)
@@ -116,13 +117,13 @@ contains
          call judge(path, goal, turn, idle, springs%n_factorisation, point)
          if (point%state /= interior_state%running) exit
          point%n_turn = point%n_turn + 1
-         call predict(rays, path, springs, point, turn)
+         call predict(graph, path, springs, point, turn)
          if (.not. springs%usable) then
             point%state = interior_state%stalled
             exit
          end if
-         call correct(rays, path, goal, springs, point, turn)
-         call move(rays, path, turn, point)
+         call correct(graph, path, goal, springs, point, turn)
+         call move(path, turn, point)
       end do
       if (point%state /= interior_state%stalled) return
       best%n_turn = point%n_turn
@@ -138,6 +139,8 @@ contains
       real(wp), allocatable :: s(:, :)
 
       call move_alloc(point%s, s)
+      ! an assignment would hold both at once
+      if (allocated(kept%x)) deallocate (kept%x, kept%v)
       kept = point
       call move_alloc(s, point%s)
    end subroutine keep

@@ -1,6 +1,9 @@
 !> Input of an interior-point method, and its state from iteration to iteration
 module dda_interior_state
+   use dda_joint_graph, only : joint_graph_t, unit_of_length
+   use dda_joint_rays, only : bound_rays
    use dda_kinds, only : wp
+   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -27,8 +30,17 @@ module dda_interior_state
    type(interior_state_enum), parameter :: interior_state = interior_state_enum()
 
    !> Loads dead + factor*live in the units of the rays, the sizes of live sum up to one; or a
-   !> dead load alone, and masses that it moves
+   !> dead load alone, and masses that it moves; and the signs that forces along the rays may have
    type :: load_path_t
+      !> One for rays whose force may not be negative, zero for free and for empty ones:
+      !> (n_side, n_joint)
+      integer(int8), allocatable :: bounded(:, :)
+      !> One for rays of any sign: (n_side, n_joint)
+      integer(int8), allocatable :: free(:, :)
+      !> Number of bounded rays, or one
+      real(wp) :: n_bounded = 1.0_wp
+      !> Unit of length: [m]
+      real(wp) :: length = 1.0_wp
       !> Loads at factor zero: (3, 0:n_block)
       real(wp), allocatable :: dead(:, :)
       !> What a unit of the factor adds: (3, 0:n_block)
@@ -88,13 +100,17 @@ module dda_interior_state
 contains
 
    !> Loads along a path
-   pure subroutine set_path(dead, live, path)
+   pure subroutine set_path(graph, dead, live, path)
+      type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero, in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: dead(:, 0:)
       !> What a factor of one adds: (3, 0:n_block)
       real(wp), intent(in) :: live(:, 0:)
       type(load_path_t), intent(out) :: path
 
+      call bound_rays(graph, path%bounded, path%free)
+      path%n_bounded = real(max(1, count(path%bounded > 0)), wp)
+      path%length = unit_of_length(graph)
       allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))
       allocate (path%mass(3, 0:ubound(dead, 2)), source=0.0_wp)
       path%size = size_of_load(live)

@@ -5,7 +5,8 @@ module dda_interior_turn
    use dda_interior_direction, only : direct, direct_again, find_balance, refine_direction, &
       & respond_to_live_load, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
-   use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
+   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_rays, only : add_ray_forces, n_side, ray_rates
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs
    implicit none
@@ -56,8 +57,7 @@ module dda_interior_turn
 contains
 
    !> Work space of the turns
-   pure subroutine begin_turns(rays, path, goal, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine begin_turns(path, goal, turn)
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(turn_t), intent(out) :: turn
@@ -68,49 +68,50 @@ contains
       turn%unit_response = 0.0_wp
       turn%response = 0.0_wp
       turn%dv = 0.0_wp
-      allocate (turn%aim(n_side, size(rays%block, 2)))
+      allocate (turn%aim(n_side, size(path%bounded, 2)))
       allocate (turn%unit_rate, turn%rate, turn%dx, turn%ds, mold=turn%aim)
       turn%least_factor = path%negligible/goal%tolerance
    end subroutine begin_turns
 
    !> Balance, compatibility and the gap at a point
-   pure subroutine see_residuals(rays, path, point, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine see_residuals(graph, path, point, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(inout) :: point  !! The point; receives the figures
       type(turn_t), intent(inout) :: turn
       real(wp) :: against, power
 
       turn%rest = path%dead + point%factor*path%live - path%mass*point%v
-      call add_ray_forces(rays, point%x, turn%rest)
+      call add_ray_forces(graph, path%length, point%x, turn%rest)
       turn%lack = -turn%rest
       ! forces that hold one another may be so large that their rounding counts beside the loads
       point%imbalance = maxval(abs(turn%lack))/max(path%largest_dead, &
          & abs(point%factor)*path%largest_live, 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
-      call ray_rates(rays, point%v, turn%rate)
+      call ray_rates(graph, path%length, point%v, turn%rate)
       power = maxval(abs(point%v))
-      against = max(maxval(-turn%rate*rays%bounded), maxval(abs(turn%rate*rays%free)))
+      against = max(maxval(-turn%rate*path%bounded), maxval(abs(turn%rate*path%free)))
       point%violation = against/max(power, tiny(power))
-      turn%barrier = sum(point%x*point%s*rays%bounded)/real(max(1, rays%n_bounded), wp)
+      turn%barrier = sum(point%x*point%s*path%bounded)/path%n_bounded
       power = sum(path%live*point%v)
       turn%lack_of_power = 1.0_wp - power
       point%upper = no_limit
       if (power > 0.0_wp) then
-         point%upper = (power_against(rays, point, turn%rate) - sum(path%dead*point%v))/power
+         point%upper = (power_against(graph, path, point, turn%rate) - sum(path%dead*point%v))/power
          ! forces that carry more may be larger where joints are violated
          point%margin = (max(against, 0.0_wp) + epsilon(power)*maxval(abs(point%v))) &
             & *sum(abs(point%x))/power
       end if
       point%gap = abs(point%upper - point%factor) &
          & /max(abs(point%factor), abs(point%upper), turn%least_factor, tiny(power))
-      if (path%moves) point%gap = sum(point%x*abs(turn%rate)*rays%bounded) &
+      if (path%moves) point%gap = sum(point%x*abs(turn%rate)*path%bounded) &
          & /max(abs(sum(path%dead*point%v)), tiny(power))
    end subroutine see_residuals
 
    !> Power that forces put into rates that they forbid, each with the rounding of its own blocks:
    !> forces that hold one another may be large where nothing moves
-   pure real(wp) function power_against(rays, point, rate) result(power)
-      type(joint_rays_t), intent(in) :: rays
+   pure real(wp) function power_against(graph, path, point, rate) result(power)
+      type(joint_graph_t), intent(in) :: graph
+      type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       real(wp), intent(in) :: rate(:, :)  !! Rates along the rays: (n_side, n_joint)
       real(wp) :: rounding
@@ -118,16 +119,16 @@ contains
 
       power = 0.0_wp
       do j = 1, size(rate, 2)
-         rounding = epsilon(rounding)*max(maxval(abs(point%v(:, rays%block(1, j)))), &
-            & maxval(abs(point%v(:, rays%block(2, j)))))
-         power = power + sum(abs(point%x(:, j))*(rounding + max(-rate(:, j)*rays%bounded(:, j), &
-            & abs(rate(:, j)*rays%free(:, j)))))
+         rounding = epsilon(rounding)*max(maxval(abs(point%v(:, graph%block(1, j)))), &
+            & maxval(abs(point%v(:, graph%block(2, j)))))
+         power = power + sum(abs(point%x(:, j))*(rounding + max(-rate(:, j)*path%bounded(:, j), &
+            & abs(rate(:, j)*path%free(:, j)))))
       end do
    end function power_against
 
    !> Factor the springs and find the direction to x*s = 0
-   pure subroutine predict(rays, path, springs, point, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine predict(graph, path, springs, point, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
@@ -135,31 +136,30 @@ contains
 
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
-      call set_stiffness(rays, path, point, springs)
-      call set_springs(rays, path%mass, lift, springs)
-      if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
-      turn%aim = -point%x*rays%bounded
-      call direct(rays, path, point, springs, turn)
+      call set_stiffness(path, point, springs)
+      call set_springs(graph, path%mass, lift, springs)
+      if (springs%usable) call respond_to_live_load(graph, path, springs, turn)
+      turn%aim = -point%x*path%bounded
+      call direct(graph, path, point, springs, turn)
    end subroutine predict
 
    !> Stiffness of the springs along all rays
-   pure subroutine set_stiffness(rays, path, point, springs)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine set_stiffness(path, point, springs)
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: mean
 
-      mean = sum(point%x*rays%bounded)/max(sum(point%s*rays%bounded), tiny(mean))
-      springs%stiffness = rays%bounded*point%x/(point%s + path%compliance*point%x) &
-         & + rays%free*stiffness_of_free*mean
+      mean = sum(point%x*path%bounded)/max(sum(point%s*path%bounded), tiny(mean))
+      springs%stiffness = path%bounded*point%x/(point%s + path%compliance*point%x) &
+         & + path%free*stiffness_of_free*mean
    end subroutine set_stiffness
 
    !> Direction to equal products x*s, with the second order of the predictor; then products that
    !> would be far smaller or far larger than the others at the end of somewhat longer steps are led
    !> back (Gondzio 1996)
-   pure subroutine correct(rays, path, goal, springs, point, turn)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine correct(graph, path, goal, springs, point, turn)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
@@ -169,27 +169,27 @@ contains
       real(wp) :: reach(2), before(2)
       integer :: i
 
-      reach = longest_steps(rays, point, turn)
-      wish%product = aimed_product(rays, goal, point, turn, reach)
-      call add_correction(rays, path, wish, springs, point, turn, reach)
+      reach = longest_steps(path, point, turn)
+      wish%product = aimed_product(path, goal, point, turn, reach)
+      call add_correction(graph, path, wish, springs, point, turn, reach)
       wish%kind = centring%within
       do i = 1, max_centring
          if (minval(reach) > long_enough) exit
          before = reach
          wish%further = min(1.0_wp, reach + longer)
-         call add_correction(rays, path, wish, springs, point, turn, reach)
+         call add_correction(graph, path, wish, springs, point, turn, reach)
          if (sum(reach) < sum(before) + worthwhile) exit
       end do
       wish%kind = centring%inwards
       wish%product = half*turn%barrier
-      if (minval(reach) < short) call add_correction(rays, path, wish, springs, point, turn, reach)
-      call refine_direction(rays, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
-      call direct_again(rays, path, point, springs, turn)
+      if (minval(reach) < short) call add_correction(graph, path, wish, springs, point, turn, reach)
+      call refine_direction(graph, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
+      call direct_again(graph, path, point, springs, turn)
    end subroutine correct
 
    !> The product x*s that a turn aims at
-   pure real(wp) function aimed_product(rays, goal, point, turn, reach) result(product)
-      type(joint_rays_t), intent(in) :: rays
+   pure real(wp) function aimed_product(path, goal, point, turn, reach) result(product)
+      type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
@@ -199,11 +199,11 @@ contains
       ! where every force may have any sign there is nothing to aim at
       product = 0.0_wp
       if (.not. turn%barrier > 0.0_wp) return
-      after = sum((point%x + reach(1)*turn%dx)*(point%s + reach(2)*turn%ds)*rays%bounded) &
-         & /real(max(1, rays%n_bounded), wp)
+      after = sum((point%x + reach(1)*turn%dx)*(point%s + reach(2)*turn%ds)*path%bounded) &
+         & /path%n_bounded
       share = min(1.0_wp, (after/turn%barrier)**3)
       share = max(share, min(1.0_wp, 0.02_wp*goal%tolerance*abs(point%factor) &
-         & /(real(max(1, rays%n_bounded), wp)*turn%barrier)))
+         & /(path%n_bounded*turn%barrier)))
       product = share*turn%barrier
    end function aimed_product
 
@@ -229,8 +229,8 @@ contains
 
    !> Change the aim of a direction, and take as much of that as makes the steps longest
    !> (Colombo and Gondzio 2008)
-   pure subroutine add_correction(rays, path, wish, springs, point, turn, reach)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine add_correction(graph, path, wish, springs, point, turn, reach)
+      type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(centring_t), intent(in) :: wish
       type(ray_matrix_t), intent(inout) :: springs
@@ -238,7 +238,7 @@ contains
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
       real(wp) :: dx(n_side, size(turn%dx, 2))
-      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
+      real(wp) :: dv(3, 0:graph%n_block), dfactor, share, steps(2, n_share)
       integer :: i, j, best
 
       dx = turn%dx
@@ -247,14 +247,14 @@ contains
       do j = 1, size(dx, 2)
          turn%dx(:, j) = dx(:, j) + change_of_x(j)
       end do
-      call find_balance(rays, path, point, springs, turn)
+      call find_balance(graph, path, point, springs, turn)
       ! the rates are not needed any more and make room for what s would change by
       do j = 1, size(dx, 2)
          turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*turn%rate(:, j)
          turn%rate(:, j) = turn%ds(:, j) + path%compliance*change_of_x(j) &
             & + (1.0_wp - path%compliance*springs%stiffness(:, j))*turn%rate(:, j)
       end do
-      steps = steps_of_shares(rays, point, turn, dx)
+      steps = steps_of_shares(path, point, turn, dx)
       best = n_share
       do i = n_share - 1, 1, -1
          if (product(steps(:, i)) > 1.02_wp*product(steps(:, best))) best = i
@@ -263,7 +263,7 @@ contains
       share = real(best, wp)/real(n_share, wp)
       do j = 1, size(dx, 2)
          turn%aim(:, j) = turn%aim(:, j) + share*change_of_aim(wish, point%x(:, j), &
-            & point%s(:, j), dx(:, j), turn%ds(:, j), turn%aim(:, j))*rays%bounded(:, j)
+            & point%s(:, j), dx(:, j), turn%ds(:, j), turn%aim(:, j))*path%bounded(:, j)
       end do
       turn%dx = dx + share*(turn%dx - dx)
       turn%ds = turn%ds + share*(turn%rate - turn%ds)
@@ -278,14 +278,14 @@ contains
          real(wp) :: change(n_side)  !! The change
 
          change = change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), turn%ds(:, j), &
-            & turn%aim(:, j))*rays%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
+            & turn%aim(:, j))*path%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
       end function change_of_x
    end subroutine add_correction
 
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the
    !> turn changed is taken
-   pure function steps_of_shares(rays, point, turn, dx) result(steps)
-      type(joint_rays_t), intent(in) :: rays
+   pure function steps_of_shares(path, point, turn, dx) result(steps)
+      type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       !> The direction of x, that of s before, and in the place of its rates the one of s
       type(turn_t), intent(in) :: turn
@@ -296,7 +296,7 @@ contains
 
       hurry = share_of_way
       do j = 1, size(dx, 2)
-         per = one_over(rays, point, j)
+         per = one_over(path, point, j)
          from(:, 1) = -dx(:, j)*per(:, 1)
          from(:, 2) = -turn%ds(:, j)*per(:, 2)
          more(:, 1) = -turn%dx(:, j)*per(:, 1) - from(:, 1)
@@ -310,8 +310,8 @@ contains
 
    !> Longest steps of forces and of rates along the direction, at most 1, that keep them inside
    !> their bounds
-   pure function longest_steps(rays, point, turn) result(reach)
-      type(joint_rays_t), intent(in) :: rays
+   pure function longest_steps(path, point, turn) result(reach)
+      type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
       real(wp) :: reach(2)  !! Steps
@@ -320,7 +320,7 @@ contains
 
       hurry = share_of_way
       do j = 1, size(turn%dx, 2)
-         per = one_over(rays, point, j)
+         per = one_over(path, point, j)
          hurry(:, 1) = max(hurry(:, 1), -turn%dx(:, j)*per(:, 1))
          hurry(:, 2) = max(hurry(:, 2), -turn%ds(:, j)*per(:, 2))
       end do
@@ -328,32 +328,31 @@ contains
    end function longest_steps
 
    !> One over forces and over rates of the bounded rays of a joint, none of others
-   pure function one_over(rays, point, j) result(per)
-      type(joint_rays_t), intent(in) :: rays
+   pure function one_over(path, point, j) result(per)
+      type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       integer, intent(in) :: j      !! Number of the joint
       real(wp) :: per(n_side, 2)    !! Of forces, of rates: (n_side, 2)
       logical :: is_bounded(n_side)
 
-      is_bounded = rays%bounded(:, j) > 0
-      per(:, 1) = rays%bounded(:, j)/merge(point%x(:, j), 1.0_wp, is_bounded)
-      per(:, 2) = rays%bounded(:, j)/merge(point%s(:, j), 1.0_wp, is_bounded)
+      is_bounded = path%bounded(:, j) > 0
+      per(:, 1) = path%bounded(:, j)/merge(point%x(:, j), 1.0_wp, is_bounded)
+      per(:, 2) = path%bounded(:, j)/merge(point%s(:, j), 1.0_wp, is_bounded)
    end function one_over
 
    !> Move along the direction, almost to the border
-   pure subroutine move(rays, path, turn, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine move(path, turn, point)
       type(load_path_t), intent(in) :: path
       type(turn_t), intent(in) :: turn
       type(interior_point_t), intent(inout) :: point
       real(wp) :: reach(2)
 
-      reach = share_of_way*longest_steps(rays, point, turn)
+      reach = share_of_way*longest_steps(path, point, turn)
       ! with masses, forces and accelerations balance together
       if (path%moves) reach = minval(reach)
       point%x = point%x + reach(1)*turn%dx
       point%factor = point%factor + reach(1)*turn%dfactor
-      point%s = point%s + reach(2)*(turn%ds*rays%bounded)
+      point%s = point%s + reach(2)*(turn%ds*path%bounded)
       point%v = point%v + reach(2)*turn%dv
    end subroutine move
 end module dda_interior_turn

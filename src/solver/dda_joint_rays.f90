@@ -2,178 +2,206 @@
 !>
 !> The forces of a joint are sums of up to four rays with factors that are not negative; kinds that
 !> carry a force of either sign have free rays. Rays of one joint stand side by side, empty ones
-!> are zero, so that all loops are alike. Lengths are divided by half the mean length of a joint
-!> and loads by the mean load of a block: all numbers are near one.
+!> are zero, so that all loops are alike. Lengths are divided by a unit, half the mean length of a
+!> joint, and loads by the mean load of a block: all numbers are near one.
 module dda_joint_rays
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
-   use dda_limit_certificate, only : unit_of_length
    use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
-   public :: joint_rays_t, n_side, set_rays, scale_load, ray_rates, add_ray_forces, forces_of_rays
+   public :: n_side, bound_rays, joint_rays, joint_spring, scaled_rows, scale_load
+   public :: ray_rates, add_ray_forces, forces_of_rays
 
    !> Rays of a joint
    integer, parameter :: n_side = 4
-
-   !> The rays of all joints
-   type :: joint_rays_t
-      !> Number of blocks that can move
-      integer :: n_block = 0
-      !> The two blocks of each joint, 0 for none: (2, n_joint)
-      integer, allocatable :: block(:, :)
-      !> Force and moment of each ray on the first block, then on the second:
-      !> (n_side, 6, n_joint)
-      real(wp), allocatable :: arm(:, :, :)
-      !> One for rays whose factor may not be negative, zero for free and for empty ones:
-      !> (n_side, n_joint)
-      integer(int8), allocatable :: bounded(:, :)
-      !> One for rays of any sign: (n_side, n_joint)
-      integer(int8), allocatable :: free(:, :)
-      !> Number of rays whose factor may not be negative
-      integer :: n_bounded = 0
-      !> Unit of length: [m]
-      real(wp) :: length = 1.0_wp
-   end type joint_rays_t
+   !> Shapes of rays: those of joint_kind, and of frictionless joints of two corners and of one
+   integer, parameter :: n_shape = 8, smooth_contact = 7, smooth_corner = 8
+   !> Share of the normal force of the first corner in the first two rays, of the second corner in
+   !> the others; share of the shear force: (n_side, n_shape)
+   real(wp), parameter :: press(n_side, n_shape) = reshape(real([1, 1, 1, 1, 1, 0, 1, 0, &
+      & 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 0, 0], wp), &
+      & [n_side, n_shape])
+   real(wp), parameter :: shear(n_side, n_shape) = reshape(real([1, -1, 1, -1, 0, 1, 0, 0, &
+      & 1, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], wp), &
+      & [n_side, n_shape])
+   !> Shear forces and those of joints that pull have any sign: (n_shape)
+   logical, parameter :: pulls(n_shape) = [.false., .false., .false., .false., .true., .true., &
+      & .false., .false.]
 
 contains
 
-   !> The rays of all joints of a graph; of blocks that strain, the motion as rigid bodies
-   pure subroutine set_rays(graph, rays)
+   !> Which rays are bounded, and which are free
+   pure subroutine bound_rays(graph, bounded, free)
       type(joint_graph_t), intent(in) :: graph
-      type(joint_rays_t), intent(out) :: rays
-      real(wp) :: force(3, n_side)
-      integer :: i, j, k, n, side
+      !> One for rays whose factor may not be negative, zero for free and for empty ones:
+      !> (n_side, n_joint)
+      integer(int8), allocatable, intent(out) :: bounded(:, :)
+      !> One for rays of any sign: (n_side, n_joint)
+      integer(int8), allocatable, intent(out) :: free(:, :)
+      real(wp) :: part(2)
+      integer :: j, shape
 
-      n = size(graph%kind)
-      rays%n_block = graph%n_block
-      allocate (rays%block, source=graph%block)
-      rays%length = unit_of_length(graph)
-      allocate (rays%arm(n_side, 6, n), source=0.0_wp)
-      allocate (rays%bounded(n_side, n), rays%free(n_side, n))
-      do j = 1, n
-         call span_joint(graph%kind(j), graph%friction(j), force, rays%bounded(:, j), &
-            & rays%free(:, j))
-         ! a block that touches itself has one arm, the sum of both
-         if (rays%block(1, j) == rays%block(2, j)) rays%block(2, j) = 0
-         do side = 1, 2
-            if (graph%block(side, j) == 0) cycle
-            k = merge(3, 0, side == 2 .and. rays%block(2, j) /= 0)
-            do i = 1, n_side
-               rays%arm(i, k + 1:k + 3, j) = rays%arm(i, k + 1:k + 3, j) &
-                  & + matmul(graph%row(1:3, :, side, j), force(:, i)) &
-                  & /[1.0_wp, 1.0_wp, rays%length]
-            end do
-         end do
+      allocate (bounded(n_side, size(graph%kind)), free(n_side, size(graph%kind)), source=0_int8)
+      do j = 1, size(graph%kind)
+         call ray_shape(graph%kind(j), graph%friction(j), shape, part)
+         where (press(:, shape) > 0.0_wp .and. .not. pulls(shape))
+            bounded(:, j) = 1_int8
+         else where (abs(press(:, shape)) + abs(shear(:, shape)) > 0.0_wp)
+            free(:, j) = 1_int8
+         end where
       end do
-      rays%n_bounded = count(rays%bounded > 0)
-   end subroutine set_rays
+   end subroutine bound_rays
 
-   !> The rays of one joint
-   pure subroutine span_joint(kind, friction, force, bounded, free)
+   !> The shape of the rays of a joint; those of joints with much friction are as long as the others
+   pure subroutine ray_shape(kind, friction, shape, part)
+      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      real(wp), intent(in) :: friction  !! Coefficient of friction
+      integer, intent(out) :: shape     !! Its number
+      real(wp), intent(out) :: part(2)  !! Length of normal and of shear forces in them: (2)
+
+      shape = kind
+      part = 1.0_wp
+      if (kind /= joint_kind%contact .and. kind /= joint_kind%corner) return
+      if (friction > 0.0_wp) then
+         part = [1.0_wp, friction]/max(1.0_wp, friction)
+      else
+         shape = merge(smooth_contact, smooth_corner, kind == joint_kind%contact)
+      end if
+   end subroutine ray_shape
+
+   !> The rays of a joint: N1, N2, T of each
+   pure function joint_rays(kind, friction) result(ray)
+      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      real(wp), intent(in) :: friction  !! Coefficient of friction
+      real(wp) :: ray(3, n_side)        !! N1, N2, T: (3, n_side)
+      real(wp) :: part(2)
+      integer :: shape
+
+      call ray_shape(kind, friction, shape, part)
+      ray = 0.0_wp
+      ray(1, :2) = part(1)*press(:2, shape)
+      ray(2, 3:) = part(1)*press(3:, shape)
+      ray(3, :) = part(2)*shear(:, shape)
+   end function joint_rays
+
+   !> What openings and slip of a joint are resisted by: the springs of its rays in one
+   pure function joint_spring(kind, friction, stiffness) result(spring)
       integer, intent(in) :: kind           !! What it can carry, one of joint_kind
       real(wp), intent(in) :: friction      !! Coefficient of friction
-      real(wp), intent(out) :: force(:, :)  !! N1, N2, T of each ray: (3, n_side)
-      !> One where the factor may not be negative: (n_side)
-      integer(int8), intent(out) :: bounded(:)
-      !> One where it may have any sign: (n_side)
-      integer(int8), intent(out) :: free(:)
-      real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
-      real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
-      real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
-      real(wp) :: long
+      real(wp), intent(in) :: stiffness(:)  !! Stiffness of each ray: (n_side)
+      real(wp) :: spring(3, 3)              !! Opening 1, opening 2, slip: (3, 3)
+      real(wp) :: part(2)
+      integer :: shape
 
-      force = 0.0_wp
-      bounded = 0
-      free = 0
-      select case (kind)
-      case (joint_kind%contact, joint_kind%corner)
-         ! rays of joints with much friction are as long as the others
-         long = max(1.0_wp, friction)
-         force(:, 1) = (first + friction*shear)/long
-         bounded(1) = 1
-         if (friction > 0.0_wp) then
-            force(:, 2) = (first - friction*shear)/long
-            bounded(2) = 1
-         end if
-         if (kind == joint_kind%contact) then
-            force(:, 3) = (second + friction*shear)/long
-            force(:, 4) = (second - friction*shear)/long
-            bounded(3) = 1
-            bounded(4) = bounded(2)
-            if (.not. friction > 0.0_wp) force(:, 4) = 0.0_wp
-         end if
-      case (joint_kind%no_slip)
-         force(:, 1:3) = reshape([first, second, shear], [3, 3])
-         bounded(1:2) = 1
-         free(3) = 1
-      case (joint_kind%corner_no_slip)
-         force(:, 1:2) = reshape([first, shear], [3, 2])
-         bounded(1) = 1
-         free(2) = 1
-      case (joint_kind%pin)
-         force(:, 1:2) = reshape([first, shear], [3, 2])
-         free(1:2) = 1
-      case (joint_kind%mirror)
-         force(:, 1:2) = reshape([first, second], [3, 2])
-         free(1:2) = 1
-      end select
-   end subroutine span_joint
+      call ray_shape(kind, friction, shape, part)
+      associate (k => stiffness, p => press(:, shape), s => shear(:, shape))
+         spring(1, 1) = part(1)**2*(p(1)*k(1) + p(2)*k(2))
+         spring(2, 2) = part(1)**2*(p(3)*k(3) + p(4)*k(4))
+         spring(3, 3) = part(2)**2*(s(1)**2*k(1) + s(2)**2*k(2) + s(3)**2*k(3) + s(4)**2*k(4))
+         spring(3, 1) = part(1)*part(2)*(p(1)*s(1)*k(1) + p(2)*s(2)*k(2))
+         spring(3, 2) = part(1)*part(2)*(p(3)*s(3)*k(3) + p(4)*s(4)*k(4))
+      end associate
+      spring(2, 1) = 0.0_wp
+      spring(1, 2) = 0.0_wp
+      spring(1:2, 3) = spring(3, 1:2)
+   end function joint_spring
+
+   !> Forces of a joint from the factors of its rays
+   pure function joint_force(kind, friction, x) result(force)
+      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      real(wp), intent(in) :: friction  !! Coefficient of friction
+      real(wp), intent(in) :: x(:)      !! Their factors: (n_side)
+      real(wp) :: force(3)              !! N1, N2, T: (3)
+      real(wp) :: part(2)
+      integer :: shape
+
+      call ray_shape(kind, friction, shape, part)
+      associate (p => press(:, shape), s => shear(:, shape))
+         force(1) = part(1)*(p(1)*x(1) + p(2)*x(2))
+         force(2) = part(1)*(p(3)*x(3) + p(4)*x(4))
+         force(3) = part(2)*(s(1)*x(1) + s(2)*x(2) + s(3)*x(3) + s(4)*x(4))
+      end associate
+   end function joint_force
+
+   !> Rows of a joint as rigid bodies feel them; a block that touches itself has those of both sides
+   !> as its first
+   pure function scaled_rows(graph, j, length) result(row)
+      type(joint_graph_t), intent(in) :: graph
+      integer, intent(in) :: j            !! Number of the joint
+      real(wp), intent(in) :: length      !! Unit of length [m]
+      real(wp) :: row(3, 3, 2)            !! Opening 1, opening 2, slip by unit motion: (3, 3, 2)
+
+      row = graph%row(:3, :, :, j)
+      row(3, :, :) = row(3, :, :)/length
+      if (graph%block(1, j) /= graph%block(2, j)) return
+      row(:, :, 1) = row(:, :, 1) + row(:, :, 2)
+      row(:, :, 2) = 0.0_wp
+   end function scaled_rows
 
    !> Loads of the blocks in the units of the rays
-   pure subroutine scale_load(rays, load, unit, scaled)
-      type(joint_rays_t), intent(in) :: rays
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> Unit of force: [N/m]
-      real(wp), intent(in) :: unit
+   pure subroutine scale_load(load, unit, length, scaled)
+      real(wp), intent(in) :: load(:, :)         !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: unit               !! Unit of force: [N/m]
+      real(wp), intent(in) :: length             !! Unit of length [m]
       !> In the units of the rays, none on what cannot move: (3, 0:n_block)
       real(wp), intent(out) :: scaled(:, 0:)
 
       scaled(:, 0) = 0.0_wp
       scaled(1:2, 1:) = load(1:2, :)/unit
-      scaled(3, 1:) = load(3, :)/(unit*rays%length)
+      scaled(3, 1:) = load(3, :)/(unit*length)
    end subroutine scale_load
 
    !> Rate at which motion opens the joints along each ray
-   pure subroutine ray_rates(rays, v, rate)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine ray_rates(graph, length, v, rate)
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: length                   !! Unit of length [m]
       real(wp), intent(in) :: v(:, 0:)                 !! Motion: (3, 0:n_block)
       real(wp), intent(out), contiguous :: rate(:, :)  !! Rates: (n_side, n_joint)
-      real(wp) :: p(3), q(3)
-      integer :: i, j
+      real(wp) :: arm, opening(3), part(2), p(3), q(3)
+      integer :: i, j, shape
 
-      do j = 1, size(rays%block, 2)
-         p = v(:, rays%block(1, j))
-         q = v(:, rays%block(2, j))
-         do i = 1, n_side
-            rate(i, j) = rays%arm(i, 1, j)*p(1) + rays%arm(i, 2, j)*p(2) &
-               & + rays%arm(i, 3, j)*p(3) + rays%arm(i, 4, j)*q(1) &
-               & + rays%arm(i, 5, j)*q(2) + rays%arm(i, 6, j)*q(3)
+      arm = 1.0_wp/length
+      do j = 1, size(rate, 2)
+         p = v(:, graph%block(1, j))
+         q = v(:, graph%block(2, j))
+         p(3) = arm*p(3)
+         q(3) = arm*q(3)
+         do i = 1, 3
+            opening(i) = graph%row(1, i, 1, j)*p(1) + graph%row(2, i, 1, j)*p(2) &
+               & + graph%row(3, i, 1, j)*p(3) + graph%row(1, i, 2, j)*q(1) &
+               & + graph%row(2, i, 2, j)*q(2) + graph%row(3, i, 2, j)*q(3)
          end do
+         call ray_shape(graph%kind(j), graph%friction(j), shape, part)
+         opening = opening*[part(1), part(1), part(2)]
+         rate(:, j) = press(:, shape)*opening([1, 1, 2, 2]) + shear(:, shape)*opening(3)
       end do
    end subroutine ray_rates
 
    !> Add what the forces along the rays do to the blocks
-   pure subroutine add_ray_forces(rays, x, load)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine add_ray_forces(graph, length, x, load)
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: length  !! Unit of length [m]
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in), contiguous :: x(:, :)
       !> Loads, to which theirs are added; what falls to 0 is lost: (3, 0:n_block)
       real(wp), intent(inout) :: load(:, 0:)
-      real(wp) :: p(6)
-      integer :: a, b, j, k
+      real(wp) :: arm, f(3), p(3)
+      integer :: b, j, k, side
 
-      do j = 1, size(rays%block, 2)
-         a = rays%block(1, j)
-         b = rays%block(2, j)
-         do k = 1, 6
-            p(k) = rays%arm(1, k, j)*x(1, j) + rays%arm(2, k, j)*x(2, j) &
-               & + rays%arm(3, k, j)*x(3, j) + rays%arm(4, k, j)*x(4, j)
+      arm = 1.0_wp/length
+      do j = 1, size(x, 2)
+         f = joint_force(graph%kind(j), graph%friction(j), x(:, j))
+         do side = 1, 2
+            b = graph%block(side, j)
+            do k = 1, 3
+               p(k) = graph%row(k, 1, side, j)*f(1) + graph%row(k, 2, side, j)*f(2) &
+                  & + graph%row(k, 3, side, j)*f(3)
+            end do
+            load(1:2, b) = load(1:2, b) + p(1:2)
+            load(3, b) = load(3, b) + arm*p(3)
          end do
-         load(:, a) = load(:, a) + p(1:3)
-         load(:, b) = load(:, b) + p(4:6)
       end do
       load(:, 0) = 0.0_wp
    end subroutine add_ray_forces
@@ -184,13 +212,10 @@ contains
       real(wp), intent(in) :: x(:, :)       !! Their factors: (n_side, n_joint)
       real(wp), intent(in) :: unit
       real(wp), intent(out) :: force(:, :)  !! N1, N2, T: (3, n_joint) [N/m]
-      real(wp) :: ray(3, n_side)
-      integer(int8) :: bounded(n_side), free(n_side)
       integer :: j
 
       do j = 1, size(x, 2)
-         call span_joint(graph%kind(j), graph%friction(j), ray, bounded, free)
-         force(:, j) = unit*matmul(ray, x(:, j))
+         force(:, j) = unit*joint_force(graph%kind(j), graph%friction(j), x(:, j))
       end do
    end subroutine forces_of_rays
 end module dda_joint_rays

@@ -5,13 +5,14 @@
 !> compared with forces, and spins with velocities, by half the mean length of a joint.
 module dda_limit_certificate
    use dda_interior_state, only : no_limit
-   use dda_joint_graph, only : add_joint_forces, crushes, joint_graph_t, joint_kind, joint_motion
+   use dda_joint_graph, only : add_joint_forces, crushes, joint_graph_t, joint_kind, &
+      & joint_motion, unit_of_length
    use dda_joint_layers, only : beyond_parabola
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: unit_of_length, check_forces, check_velocities, carried_factor, stopping_factor
+   public :: check_forces, check_velocities, carried_factor, stopping_factor
    public :: balance_margin, crushing_power, flow_margin
 
    !> Fibres that close at less than this share of the fastest rate do so by rounding, which great
@@ -19,15 +20,6 @@ module dda_limit_certificate
    real(wp), parameter :: still = 1.0e-12_wp
 
 contains
-
-   !> Half the mean length of the joints; one without joints
-   pure real(wp) function unit_of_length(graph) result(unit)
-      type(joint_graph_t), intent(in) :: graph
-
-      unit = 1.0_wp
-      if (any(graph%length > 0.0_wp)) unit = 0.5_wp*sum(graph%length, graph%length > 0.0_wp) &
-         & /real(count(graph%length > 0.0_wp), wp)
-   end function unit_of_length
 
    !> Factor of the live load that forces carry best beside the dead load
    pure real(wp) function carried_factor(graph, dead, live, force) result(factor)

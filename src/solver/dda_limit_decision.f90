@@ -8,13 +8,14 @@ module dda_limit_decision
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
-   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
    use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
-   use dda_joint_rays, only : add_ray_forces, forces_of_rays, joint_rays_t, n_side, ray_rates, &
-      & scale_load, set_rays
+   use dda_joint_rays, only : add_ray_forces, bound_rays, forces_of_rays, n_side, ray_rates, &
+      & scale_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
+   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -127,7 +128,6 @@ contains
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
       type(load_decision_t), intent(out) :: decision
-      type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
 
@@ -136,13 +136,12 @@ contains
          decision%state = load_state%stands
          return
       end if
-      call set_rays(graph, rays)
-      call plan_matrix(rays, springs)
-      call go_to_load(rays, load, springs, point)
+      call plan_matrix(graph, springs)
+      call go_to_load(graph, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
       call prove_nothing(graph, decision)
       call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
-      call keep_velocities(rays, point%v, decision%velocity)
+      call keep_velocities(graph, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
 
@@ -160,22 +159,20 @@ contains
       integer, intent(in) :: enough
       !> The decision; undecided where the dead load does not stand, too
       type(load_decision_t), intent(out) :: decision
-      type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
       real(wp) :: scaled(3, 0:graph%n_block)
 
-      call set_rays(graph, rays)
-      call plan_matrix(rays, springs)
-      call scale_load(rays, dead, unit_of_force(load), scaled)
-      call begin_inside(rays, scaled, point)
-      call go_on_to_load(rays, scaled, resolution, springs, point)
+      call plan_matrix(graph, springs)
+      call scale_load(dead, unit_of_force(load), unit_of_length(graph), scaled)
+      call begin_inside(graph, scaled, point)
+      call go_on_to_load(graph, scaled, resolution, springs, point)
       if (state_at_end(point) == load_state%stands) then
-         call scale_load(rays, load, unit_of_force(load), scaled)
-         call go_on_to_load(rays, scaled, tolerance, springs, point, to_limit=enough)
+         call scale_load(load, unit_of_force(load), unit_of_length(graph), scaled)
+         call go_on_to_load(graph, scaled, tolerance, springs, point, to_limit=enough)
          call prove_nothing(graph, decision)
          call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
-         call keep_velocities(rays, point%v, decision%velocity)
+         call keep_velocities(graph, point%v, decision%velocity)
          call conclude(graph, load, point, decision)
       end if
       decision%n_factorisation = springs%n_factorisation
@@ -191,25 +188,25 @@ contains
    end subroutine prove_nothing
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
-   pure subroutine go_to_load(rays, load, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine go_to_load(graph, load, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the path ends; the load is at factor one
       type(interior_point_t), intent(out) :: point
-      real(wp) :: finish(3, 0:rays%n_block)
+      real(wp) :: finish(3, 0:graph%n_block)
 
-      call scale_load(rays, load, unit_of_force(load), finish)
-      call begin_inside(rays, finish, point)
-      call go_on_to_load(rays, finish, resolution, springs, point)
-      if (state_at_end(point) == load_state%undecided) call see_free_motion(rays, finish, springs, &
-         & point)
+      call scale_load(load, unit_of_force(load), unit_of_length(graph), finish)
+      call begin_inside(graph, finish, point)
+      call go_on_to_load(graph, finish, resolution, springs, point)
+      if (state_at_end(point) == load_state%undecided) &
+         & call see_free_motion(graph, finish, springs, point)
    end subroutine go_to_load
 
    !> A load drives blocks along a motion that no joint resists, where there is one: no forces then
    !> balance any share of it
-   pure subroutine see_free_motion(rays, load, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine see_free_motion(graph, load, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: load(:, 0:)
       type(ray_matrix_t), intent(inout) :: springs
@@ -218,9 +215,9 @@ contains
       type(interior_point_t) :: soft
       type(load_path_t) :: path
 
-      call set_path(0.0_wp*load, load, path)
-      call start_by_springs(rays, path, springs, soft)
-      if (.not. (is_free(rays, soft%v) .and. drives(load, soft%v))) return
+      call set_path(graph, 0.0_wp*load, load, path)
+      call start_by_springs(graph, path, springs, soft)
+      if (.not. (is_free(graph, soft%v) .and. drives(load, soft%v))) return
       call move_alloc(soft%v, point%v)
       point%state = interior_state%blocked
    end subroutine see_free_motion
@@ -236,29 +233,31 @@ contains
 
    !> Whether a motion neither opens joints nor closes them nor slides against friction, but for
    !> rounding
-   pure logical function is_free(rays, velocity)
-      type(joint_rays_t), intent(in) :: rays
+   pure logical function is_free(graph, velocity)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: velocity(:, 0:)  !! Velocities of the blocks: (3, 0:n_block)
-      real(wp) :: rate(n_side, size(rays%block, 2))
+      real(wp) :: rate(n_side, size(graph%kind))
 
-      call ray_rates(rays, velocity, rate)
-      is_free = maxval(abs(rate)*(rays%bounded + rays%free)) <= free*maxval(abs(velocity))
+      call ray_rates(graph, unit_of_length(graph), velocity, rate)
+      is_free = maxval(abs(rate)) <= free*maxval(abs(velocity))
    end function is_free
 
    !> Forces that are equal along all rays, several times as large as a load: nearer to the borders
    !> of the cones the first steps are short
-   pure subroutine begin_inside(rays, load, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine begin_inside(graph, load, point)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, 0:)
       type(interior_point_t), intent(out) :: point  !! Has these forces
       real(wp), parameter :: several = 5.0_wp
+      integer(int8), allocatable :: bounded(:, :), free(:, :)
 
-      point%x = several*max(1.0_wp, sqrt(size_of_load(load)))*rays%bounded
+      call bound_rays(graph, bounded, free)
+      point%x = several*max(1.0_wp, sqrt(size_of_load(load)))*bounded
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one
-   pure subroutine go_on_to_load(rays, finish, tolerance, springs, point, to_limit)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine go_on_to_load(graph, finish, tolerance, springs, point, to_limit)
+      type(joint_graph_t), intent(in) :: graph
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: finish(:, 0:)
       !> Gap at which a decision that is not made ends
@@ -275,18 +274,18 @@ contains
       real(wp) :: before(size(point%x, 1), size(point%x, 2))
 
       before = point%x
-      allocate (start(3, 0:rays%n_block), source=0.0_wp)
-      call add_ray_forces(rays, before, start)
-      call set_path(-start, start + finish, path)
+      allocate (start(3, 0:graph%n_block), source=0.0_wp)
+      call add_ray_forces(graph, unit_of_length(graph), before, start)
+      call set_path(graph, -start, start + finish, path)
       deallocate (start)
       ! what lacks of balance is judged by the load in question
       path%largest_dead = maxval(abs(finish))
       path%largest_live = 0.0_wp
-      call start_by_forces(rays, path%size, point)
+      call start_by_forces(path, path%size, point)
       goal%tolerance = tolerance
       goal%target = path%size
       if (present(to_limit)) goal%to_limit = to_limit
-      call solve_cones(rays, path, goal, springs, point)
+      call solve_cones(graph, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
       if (point%factor > 1.0_wp) then
@@ -307,8 +306,8 @@ contains
    end function unit_of_force
 
    !> Velocities in the user's units, the largest one
-   pure subroutine keep_velocities(rays, v, velocity)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine keep_velocities(graph, v, velocity)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: v(:, 0:)         !! In the units of the rays: (3, 0:n_block)
       real(wp), intent(out) :: velocity(:, :)  !! Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp) :: largest
@@ -316,7 +315,7 @@ contains
       largest = max(maxval(abs(v)), tiny(largest))
       velocity = 0.0_wp
       velocity(1:2, :) = v(1:2, 1:)/largest
-      velocity(3, :) = v(3, 1:)/(largest*rays%length)
+      velocity(3, :) = v(3, 1:)/(largest*unit_of_length(graph))
    end subroutine keep_velocities
 
    !> What the end of a path to a load at factor one proves; forces that reach it but for rounding

@@ -8,15 +8,16 @@ module dda_limit_load
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, load_path_t, &
       & no_limit, set_path, size_of_load
-   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
    use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, no_layers, touch_parabola
-   use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
+   use dda_joint_rays, only : bound_rays, forces_of_rays, scale_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & check_velocities, crushing_power, flow_margin, stopping_factor
    use dda_limit_decision, only : crush_tolerance, decide_load, drives, go_to_load, &
       & keep_velocities, load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
+   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -28,8 +29,8 @@ module dda_limit_load
       private
       !> The joints
       type(joint_graph_t) :: graph
-      !> Their rays
-      type(joint_rays_t) :: rays
+      !> One for rays whose force may not be negative, and for rays of any sign: (n_side, n_joint)
+      integer(int8), allocatable :: bounded(:, :), free(:, :)
       !> Springs that tell how far the forces are from their bounds
       type(ray_matrix_t) :: springs
       !> Masses, none: (3, 0:n_block)
@@ -231,39 +232,37 @@ contains
       real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
       logical, intent(in) :: stands
       type(limit_load_t), intent(out) :: limit
-      type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
       real(wp) :: unit
 
-      call set_rays(graph, rays)
-      call plan_matrix(rays, springs)
+      call plan_matrix(graph, springs)
       unit = unit_of_force(dead)
-      if (.not. stands) call go_to_load(rays, dead, springs, point)
+      if (.not. stands) call go_to_load(graph, dead, springs, point)
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
-         call raise_live_load(rays, dead, live, tolerance, many, springs, point)
+         call raise_live_load(graph, dead, live, tolerance, many, springs, point)
          if (point%state /= interior_state%optimal) &
-            & call try_live_load_alone(rays, live, springs, unit, point, limit)
+            & call try_live_load_alone(graph, live, springs, unit, point, limit)
          if (limit%state == limit_state%not_converged) then
             if (point%state == interior_state%unbounded) &
-               & call raise_live_load(rays, dead, live, tolerance, beyond, springs, point)
+               & call raise_live_load(graph, dead, live, tolerance, beyond, springs, point)
             if (point%state == interior_state%optimal) limit%state = limit_state%found
          end if
       end if
       allocate (limit%force(3, size(graph%kind)))
       allocate (limit%velocity(graph%n_dof, graph%n_block))
       call forces_of_rays(graph, point%x, unit, limit%force)
-      call keep_velocities(rays, point%v, limit%velocity)
+      call keep_velocities(graph, point%v, limit%velocity)
       call certify(graph, dead, live, limit)
       limit%n_factorisation = springs%n_factorisation
    end subroutine limit_cones
 
    !> Raise the live load beside a dead load that stands: from forces that carry it, if there are
    !> any, or where these lead nowhere, from springs
-   pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine raise_live_load(graph, dead, live, tolerance, ceiling, springs, point)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
       !> Live loads so many times as large as the dead load are beyond bounds
       real(wp), intent(in) :: ceiling
@@ -273,21 +272,21 @@ contains
       type(load_path_t) :: path
       type(interior_goal_t) :: goal
       type(interior_point_t) :: before
-      real(wp) :: scaled_dead(3, 0:rays%n_block), scaled_live(3, 0:rays%n_block)
+      real(wp) :: scaled_dead(3, 0:graph%n_block), scaled_live(3, 0:graph%n_block)
 
-      call scale_load(rays, dead, unit_of_force(dead), scaled_dead)
-      call scale_load(rays, live, unit_of_force(dead), scaled_live)
-      call set_path(scaled_dead, scaled_live, path)
+      call scale_load(dead, unit_of_force(dead), unit_of_length(graph), scaled_dead)
+      call scale_load(live, unit_of_force(dead), unit_of_length(graph), scaled_live)
+      call set_path(graph, scaled_dead, scaled_live, path)
       goal%tolerance = tolerance
       goal%ceiling = ceiling
       if (state_at_end(point) == load_state%stands) then
-         call start_by_forces(rays, max(1.0_wp, size_of_load(scaled_dead)), point)
-         call solve_cones(rays, path, goal, springs, point)
+         call start_by_forces(path, max(1.0_wp, size_of_load(scaled_dead)), point)
+         call solve_cones(graph, path, goal, springs, point)
          before = point
       end if
       if (worst(before) > tolerance .and. before%state /= interior_state%unbounded) then
-         call start_by_springs(rays, path, springs, point)
-         call solve_cones(rays, path, goal, springs, point)
+         call start_by_springs(graph, path, springs, point)
+         call solve_cones(graph, path, goal, springs, point)
          if (point%state /= interior_state%unbounded .and. worst(before) < worst(point)) &
             & point = before
       end if
@@ -298,8 +297,8 @@ contains
    end subroutine raise_live_load
 
    !> A live load that is carried alone is carried at any factor
-   pure subroutine try_live_load_alone(rays, live, springs, unit, point, limit)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine try_live_load_alone(graph, live, springs, unit, point, limit)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: live(:, :)
       type(ray_matrix_t), intent(inout) :: springs
       !> Unit of force, that of the live load where it is carried: [N/m]
@@ -309,7 +308,7 @@ contains
       type(limit_load_t), intent(inout) :: limit
       type(interior_point_t) :: alone
 
-      call go_to_load(rays, live, springs, alone)
+      call go_to_load(graph, live, springs, alone)
       if (state_at_end(alone) /= load_state%stands) return
       limit%state = limit_state%unbounded
       point = alone

@@ -33,8 +33,8 @@ contains
    module procedure begin_walk
       walk%graph = graph
       walk%unit = unit_of_force(load)
-      call set_rays(graph, walk%rays)
-      call plan_matrix(walk%rays, walk%springs)
+      call bound_rays(graph, walk%bounded, walk%free)
+      call plan_matrix(graph, walk%springs)
       allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
    end procedure begin_walk
 
@@ -50,20 +50,20 @@ contains
          state = decision%state
          return
       end if
-      call scale_load(walk%rays, load, walk%unit, scaled)
+      call scale_load(load, walk%unit, walk%springs%length, scaled)
       state = load_state%stands
       carried = .false.
       if (allocated(walk%x)) then
          if (walk%springs%usable) call try_correction(scaled, walk, carried)
          if (carried) return
          point%x = walk%x
-         call go_on_to_load(walk%rays, scaled, resolution, walk%springs, point)
+         call go_on_to_load(walk%graph, scaled, resolution, walk%springs, point)
          state = state_at_end(point)
       end if
       if (.not. allocated(walk%x) .or. state == load_state%undecided) then
          ! forces that many loads have led near their bounds may lead no further
-         call begin_inside(walk%rays, scaled, point)
-         call go_on_to_load(walk%rays, scaled, resolution, walk%springs, point)
+         call begin_inside(walk%graph, scaled, point)
+         call go_on_to_load(walk%graph, scaled, resolution, walk%springs, point)
          state = state_at_end(point)
       end if
       if (state == load_state%stands) walk%x = point%x
@@ -83,13 +83,13 @@ contains
       carried = .false.
       x = walk%x
       rest = scaled
-      call add_ray_forces(walk%rays, x, rest)
+      call add_ray_forces(walk%graph, walk%springs%length, x, rest)
       do turn = 1, most_turns
-         call solve_springs(walk%rays, walk%springs, rest, motion, rate)
+         call solve_springs(walk%graph, walk%springs, rest, motion, rate)
          x = x - walk%springs%stiffness*rate
-         if (any(x*walk%rays%bounded < 0.0_wp)) return
+         if (any(x*walk%bounded < 0.0_wp)) return
          rest = scaled
-         call add_ray_forces(walk%rays, x, rest)
+         call add_ray_forces(walk%graph, walk%springs%length, x, rest)
          carried = maxval(abs(rest)) <= balanced*maxval(abs(scaled))
          if (carried) return
       end do
@@ -106,15 +106,15 @@ contains
       integer :: i
 
       do i = 0, n_step
-         associate (x => walk%x, bounded => walk%rays%bounded)
-            walk%springs%stiffness = bounded*x**2 + walk%rays%free*stiffness_of_free &
-               & *sum(bounded*x**2)/real(max(1, walk%rays%n_bounded), wp)
-            call set_springs(walk%rays, walk%mass, lift, walk%springs)
+         associate (x => walk%x, bounded => walk%bounded)
+            walk%springs%stiffness = bounded*x**2 + walk%free*stiffness_of_free &
+               & *sum(bounded*x**2)/real(max(1, count(bounded > 0)), wp)
+            call set_springs(walk%graph, walk%mass, lift, walk%springs)
             if (i == n_step .or. .not. walk%springs%usable) exit
             push = 0.0_wp
             change = x*bounded*(1.0_wp - x/largest)
-            call add_ray_forces(walk%rays, change, push)
-            call solve_springs(walk%rays, walk%springs, push, motion, rate)
+            call add_ray_forces(walk%graph, walk%springs%length, change, push)
+            call solve_springs(walk%graph, walk%springs, push, motion, rate)
             change = change - walk%springs%stiffness*rate
             x = x + min(1.0_wp, most_of_way/max(tiny(1.0_wp), maxval(-change*bounded &
                & /(x*bounded + (1.0_wp - bounded)))))*change

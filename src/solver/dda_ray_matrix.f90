@@ -11,7 +11,8 @@ module dda_ray_matrix
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_plan, only : list_places
    use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
-   use dda_joint_rays, only : joint_rays_t, n_side, ray_rates
+   use dda_joint_graph, only : joint_graph_t, unit_of_length
+   use dda_joint_rays, only : joint_spring, n_side, ray_rates, scaled_rows
    use dda_kinds, only : wp
    use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
    implicit none
@@ -41,6 +42,8 @@ module dda_ray_matrix
       integer :: digits = digits_of%working
       !> Whether one can be used
       logical :: usable = .false.
+      !> Unit of length: [m]
+      real(wp) :: length = 1.0_wp
       !> First number of the diagonal block of each block: (n_block)
       integer, allocatable :: diagonal(:)
       !> First number of what each joint couples, negative for what is transposed there, 0 for
@@ -59,21 +62,22 @@ module dda_ray_matrix
 contains
 
    !> Pattern of the matrix and of its factor
-   pure subroutine plan_matrix(rays, springs)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine plan_matrix(graph, springs)
+      type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
       type(block_matrix_t) :: matrix
       integer, allocatable :: place(:)
-      logical :: couples(size(rays%block, 2))
+      logical :: couples(size(graph%block, 2))
       integer :: e, j
 
-      couples = all(rays%block /= 0, 1)
-      call set_pattern(matrix, 3, rays%n_block, reshape(pack(rays%block, spread(couples, 1, 2)), &
+      springs%length = unit_of_length(graph)
+      couples = all(graph%block /= 0, 1) .and. graph%block(1, :) /= graph%block(2, :)
+      call set_pattern(matrix, 3, graph%n_block, reshape(pack(graph%block, spread(couples, 1, 2)), &
          & [2, count(couples)]))
       ! numbers are assembled in the factor
       deallocate (matrix%diagonal, matrix%coupling)
       call plan_factor(matrix, springs%factor)
-      allocate (springs%diagonal(rays%n_block), place(count(couples)))
+      allocate (springs%diagonal(graph%n_block), place(count(couples)))
       call list_places(springs%factor%plan, springs%diagonal, place)
       allocate (springs%coupling(size(couples)), source=0)
       allocate (springs%second_is_row(size(couples)), source=.false.)
@@ -82,14 +86,14 @@ contains
          if (.not. couples(j)) cycle
          e = e + 1
          springs%coupling(j) = place(e)
-         springs%second_is_row(j) = matrix%pair(1, e) == rays%block(2, j)
+         springs%second_is_row(j) = matrix%pair(1, e) == graph%block(2, j)
       end do
-      allocate (springs%stiffness(n_side, size(rays%block, 2)))
+      allocate (springs%stiffness(n_side, size(graph%block, 2)))
    end subroutine plan_matrix
 
    !> Assemble springs and masses, and factor their matrix
-   pure subroutine set_springs(rays, mass, lift, springs)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine set_springs(graph, mass, lift, springs)
+      type(joint_graph_t), intent(in) :: graph
       !> Masses: (3, 0:n_block)
       real(wp), intent(in) :: mass(:, 0:)
       !> Share of itself that each diagonal entry is raised by; what no spring holds gets as much of
@@ -100,9 +104,9 @@ contains
       real(wp) :: largest
       integer :: b, k
 
-      call assemble(rays, springs)
+      call assemble(graph, springs)
       associate (number => springs%factor%panels%lower)
-         do b = 1, rays%n_block
+         do b = 1, graph%n_block
             associate (own => number(springs%diagonal(b):springs%diagonal(b) + 8:4))
                largest = maxval(own + mass(:, b))
                if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
@@ -121,8 +125,8 @@ contains
 
    !> Assemble and factor the same springs and masses with more digits; the factor before stays in
    !> use where this one cannot be
-   pure subroutine add_digits(rays, mass, digits, springs)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine add_digits(graph, mass, digits, springs)
+      type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: mass(:, 0:)
       integer, intent(in) :: digits  !! One of digits_of
       type(ray_matrix_t), intent(inout) :: springs
@@ -130,12 +134,14 @@ contains
 
       associate (plan => springs%factor%plan)
          if (digits == digits_of%extended) then
-            call factorise_extended(rays, springs%stiffness, mass, springs%diagonal, &
-               & springs%coupling, springs%second_is_row, plan, springs%extended%panels)
+            call factorise_extended(graph, springs%length, springs%stiffness, mass, &
+               & springs%diagonal, springs%coupling, springs%second_is_row, plan, &
+               & springs%extended%panels)
             usable = springs%extended%panels%usable
          else
-            call factorise_wide(rays, springs%stiffness, mass, springs%diagonal, &
-               & springs%coupling, springs%second_is_row, plan, springs%wide%panels)
+            call factorise_wide(graph, springs%length, springs%stiffness, mass, &
+               & springs%diagonal, springs%coupling, springs%second_is_row, plan, &
+               & springs%wide%panels)
             usable = springs%wide%panels%usable
          end if
       end associate
@@ -145,63 +151,46 @@ contains
    end subroutine add_digits
 
    !> Sum of all springs
-   pure subroutine assemble(rays, springs)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine assemble(graph, springs)
+      type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
-      real(wp) :: pushed(n_side, 6), product(3, 3)
-      integer :: a, b, j, k
+      real(wp) :: pushed(3, 3), row(3, 3, 2), spring(3, 3)
+      integer :: j, side
 
-      springs%factor%panels%lower = 0.0_wp
-      do j = 1, size(rays%block, 2)
-         a = rays%block(1, j)
-         b = rays%block(2, j)
-         do k = 1, 6
-            pushed(:, k) = springs%stiffness(:, j)*rays%arm(:, k, j)
-         end do
-         associate (number => springs%factor%panels%lower)
-            if (a /= 0) call add_product(pushed(1, 1), rays%arm(1, 1, j), &
-               & number(springs%diagonal(a)))
-            if (b /= 0) call add_product(pushed(1, 4), rays%arm(1, 4, j), &
-               & number(springs%diagonal(b)))
+      associate (number => springs%factor%panels%lower)
+         number = 0.0_wp
+         do j = 1, size(graph%block, 2)
+            row = scaled_rows(graph, j, springs%length)
+            spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
+            do side = 1, 2
+               if (graph%block(side, j) == 0) cycle
+               pushed = matmul(row(:, :, side), spring)
+               call add_product(pushed, row(:, :, side), &
+                  & number(springs%diagonal(graph%block(side, j))))
+            end do
             if (springs%coupling(j) == 0) cycle
-            product = 0.0_wp
-            if (springs%second_is_row(j)) then
-               call add_product(pushed(1, 4), rays%arm(1, 1, j), product)
-            else
-               call add_product(pushed(1, 1), rays%arm(1, 4, j), product)
-            end if
-            if (springs%coupling(j) < 0) product = transpose(product)
-            call add_block(product, number(abs(springs%coupling(j))))
-         end associate
-      end do
+            side = merge(2, 1, springs%second_is_row(j) .neqv. springs%coupling(j) < 0)
+            pushed = matmul(row(:, :, side), spring)
+            call add_product(pushed, row(:, :, 3 - side), number(abs(springs%coupling(j))))
+         end do
+      end associate
    end subroutine assemble
 
-   !> sum = sum + block
-   pure subroutine add_block(block, sum)
-      real(wp), intent(in) :: block(3, 3)   !! What is added
-      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
-
-      sum = sum + block
-   end subroutine add_block
-
-   !> sum = sum + a' b
+   !> sum = sum + a b'
    pure subroutine add_product(a, b, sum)
-      real(wp), intent(in) :: a(n_side, 3)  !! First factor, transposed
-      real(wp), intent(in) :: b(n_side, 3)  !! Second factor
+      real(wp), intent(in) :: a(3, 3)       !! First factor
+      real(wp), intent(in) :: b(3, 3)       !! Second factor, transposed
       real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
-      integer :: c, r
+      integer :: c
 
       do c = 1, 3
-         do r = 1, 3
-            sum(r, c) = sum(r, c) + (a(1, r)*b(1, c) + a(2, r)*b(2, c) &
-               & + a(3, r)*b(3, c) + a(4, r)*b(4, c))
-         end do
+         sum(:, c) = sum(:, c) + (a(:, 1)*b(c, 1) + a(:, 2)*b(c, 2) + a(:, 3)*b(c, 3))
       end do
    end subroutine add_product
 
    !> Motion of the blocks by loads
-   pure subroutine solve_springs(rays, springs, load, motion, rate)
-      type(joint_rays_t), intent(in) :: rays
+   pure subroutine solve_springs(graph, springs, load, motion, rate)
+      type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
       !> Loads: (3, 0:n_block)
       real(wp), intent(in) :: load(:, 0:)
@@ -216,12 +205,13 @@ contains
       select case (springs%digits)
       case (digits_of%working)
          call substitute(springs%factor, motion(:, 1:))
-         call ray_rates(rays, motion, rate)
+         call ray_rates(graph, springs%length, motion, rate)
       case (digits_of%extended)
-         call substitute_extended(rays, springs%factor%plan, springs%extended%panels, &
-            & motion(:, 1:), rate)
+         call substitute_extended(graph, springs%length, springs%factor%plan, &
+            & springs%extended%panels, motion(:, 1:), rate)
       case default
-         call substitute_wide(rays, springs%factor%plan, springs%wide%panels, motion(:, 1:), rate)
+         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide%panels, &
+            & motion(:, 1:), rate)
       end select
    end subroutine solve_springs
 end module dda_ray_matrix
