@@ -4,30 +4,20 @@ submodule (dda_verbs) dda_export
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_key_names, only : scene_kind, search_group
+   use dda_key_names, only : scene_geometry, scene_kind, search_group
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
+   use dda_line_text, only : has_one_law, line_losses, line_text
    use dda_process, only : deck_stem, exit_status, make_folder
    use dda_read_deck, only : read_deck
    use dda_screen, only : print_line, screen_t
+   use dda_shape_check, only : check_form
+   use dda_shape_text, only : shape_losses, shape_text
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
       & write_text
    implicit none
-
-   interface
-
-      !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
-      module subroutine export_blocks(command, stem, deck, status, error)
-         type(command_t), intent(in) :: command
-         character(len=*), intent(in) :: stem  !! Name of the file without its ending
-         type(deck_t), intent(in) :: deck
-         integer, intent(out) :: status        !! Exit status of the deck
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine export_blocks
-
-   end interface
 
 contains
 
@@ -79,9 +69,44 @@ contains
       end do
    end subroutine export_cases
 
+   !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
+   subroutine export_blocks(command, stem, deck, status, error)
+      type(command_t), intent(in) :: command
+      character(len=*), intent(in) :: stem  !! Name of the file without its ending
+      type(deck_t), intent(in) :: deck
+      integer, intent(out) :: status        !! Exit status of the deck
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text, losses
+
+      status = exit_status%bad_input
+      if (source_of(deck) == "shape") then
+         call check_form(deck, error)
+         if (.not. allocated(error)) text = shape_text(deck)
+         losses = shape_losses(deck)
+      else
+         if (.not. has_one_law(deck)) call key_error(error, "expected joints of one law, got " &
+            & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
+            & //"the keys of &joint", deck, scene_geometry)
+         if (.not. allocated(error)) text = line_text(deck)
+         losses = line_losses(deck)
+      end if
+      if (allocated(error)) return
+      status = exit_status%not_written
+      call write_text(stem//".blocks", text, error)
+      if (allocated(error)) return
+      status = exit_status%success
+      if (.not. command%quiet) then
+         call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
+         if (losses /= "") call print_line(command%screen, &
+            & "   a file of blocks has no place for "//losses)
+         if (has_group(deck, search_group)) call print_line(command%screen, &
+            & "   the search is not written: the file holds the deck's own value of its parameter")
+      end if
+   end subroutine export_blocks
+
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)
-      character(len=*), intent(in) :: stem  !! Name of the files without their endings
+      character(len=*), intent(in) :: stem
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
       type(error_t), allocatable, intent(out) :: error

@@ -1,8 +1,11 @@
 !> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
 submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_block_rows, only : contact_states, frame_joint_rows
-   use dda_frames, only : frame_t
+   use dda_block_system, only : block_system_t
+   use dda_force_rows, only : bar_lines, reaction_text
+   use dda_frames, only : album_t, frame_t
    use dda_process, only : make_folder
+   use dda_table_file, only : table_file_t
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
@@ -13,19 +16,42 @@ submodule (dda_verbs:dda_run_cases) dda_picture_files
 
 contains
 
+   !> Write what is seen of a case on its way
+   module procedure write_pictures
+      associate (at => tables%at, origin => this%scene%origin, album => this%album)
+         if (at(table%frames)%wanted) call write_album(tables, number, this%scene%system, origin, &
+            & album, error)
+         if (at(table%bars)%wanted .and. .not. allocated(error)) &
+            & call append_line(at(table%bars)%open, bar_lines(number, this), error)
+         if (at(table%points)%wanted .and. .not. allocated(error)) &
+            & call write_track(number, origin, album, at(table%points)%open, error)
+         if (at(table%energy)%wanted .and. .not. allocated(error)) &
+            & call write_energies(number, album, at(table%energy)%open, error)
+         if (at(table%reactions)%wanted .and. .not. allocated(error)) &
+            & call append_line(at(table%reactions)%open, reaction_text(number, this), error)
+      end associate
+   end procedure write_pictures
+
    !> Write all pictures of a case
-   module procedure write_album
+   subroutine write_album(tables, number, system, origin, album, error)
+      type(result_tables_t), intent(inout) :: tables
+      integer, intent(in) :: number
+      type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: origin(2)  !! Where the origin of their coordinates is: (2) [m]
+      type(album_t), intent(in) :: album
+      type(error_t), allocatable, intent(inout) :: error
       type(pvd_index_t) :: index
       type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
-      character(len=:), allocatable :: stem
+      character(len=:), allocatable :: folder, stem
       real(wp) :: moment
       integer :: i, j
 
       stem = "case_"//to_text(number)
-      if (vtu) then
-         call make_folder(folder//"/frames")
-         call open_index(folder//"/frames/"//stem//".pvd", index, error)
+      folder = tables%folder//"/frames/"
+      if (tables%has_vtu) then
+         call make_folder(tables%folder//"/frames")
+         call open_index(folder//stem//".pvd", index, error)
       end if
       do i = 1, album%n
          if (allocated(error)) return
@@ -38,19 +64,25 @@ contains
                row(j)%point = row(j)%point + origin
                row(j)%contact = row(j)%contact + spread(origin, 2, 2)
             end do
-            call append_line(frames, frame_lines(stamp, system%first_vertex, &
-               & frame%moved + spread(origin, 2, size(frame%moved, 2)), frame%absent), error)
-            if (.not. allocated(error)) &
-               & call append_line(joints, frame_joint_lines(stamp, row), error)
-            if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
+            call append_line(tables%at(table%frames)%open, frame_lines(stamp, &
+               & system%first_vertex, frame%moved + spread(origin, 2, size(frame%moved, 2)), &
+               & frame%absent), error)
+            if (.not. allocated(error)) call append_line(tables%at(table%frame_joints)%open, &
+               & frame_joint_lines(stamp, row), error)
+            if (.not. allocated(error) .and. tables%has_vtu) call write_picture(folder, &
                & stem//"_"//to_text(i - 1), system, origin, frame, row, index, moment, error)
          end associate
       end do
-      if (.not. allocated(error) .and. vtu) call close_index(index, error)
-   end procedure write_album
+      if (.not. allocated(error) .and. tables%has_vtu) call close_index(index, error)
+   end subroutine write_album
 
    !> Write the ways of the measured points of a case
-   module procedure write_track
+   subroutine write_track(number, origin, album, points, error)
+      integer, intent(in) :: number
+      real(wp), intent(in) :: origin(2)
+      type(album_t), intent(in) :: album
+      type(table_file_t), intent(inout) :: points  !! points.csv
+      type(error_t), allocatable, intent(inout) :: error
       real(wp) :: place(2, size(album%point))
       integer :: i
 
@@ -60,10 +92,14 @@ contains
       end do
       call append_line(points, point_lines(number, album%when(:, :album%n_track), place, &
          & album%track(:, :, :album%n_track), origin, album%speed), error)
-   end procedure write_track
+   end subroutine write_track
 
    !> Write the energies of a case
-   module procedure write_energies
+   subroutine write_energies(number, album, table, error)
+      integer, intent(in) :: number
+      type(album_t), intent(in) :: album
+      type(table_file_t), intent(inout) :: table  !! energy.csv
+      type(error_t), allocatable, intent(inout) :: error
       real(wp) :: value(10, album%audit%n)
       integer :: i
 
@@ -76,7 +112,7 @@ contains
          end associate
       end do
       call append_line(table, energy_lines(number, value), error)
-   end procedure write_energies
+   end subroutine write_energies
 
    !> Write the blocks and the joint forces of one picture, and tell the index
    subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)

@@ -1,20 +1,17 @@
 !> The cases of a deck, one after another: prepared, computed, written down
 submodule (dda_verbs:dda_run) dda_run_cases
-   use dda_block_system, only : block_system_t
    use dda_case, only : case_t, prepare_case
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, may_print
    use dda_compute_case, only : compute_case
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_force_rows, only : bar_lines, reaction_text
-   use dda_frames, only : album_t
    use dda_key_names, only : output_restart
    use dda_kinds, only : wp
    use dda_progress, only : report_progress
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : swept_fields, table, write_case, write_waiting
-   use dda_table_file, only : append_line, table_file_t
+   use dda_table_file, only : append_line
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    implicit none
 
@@ -27,43 +24,14 @@ submodule (dda_verbs:dda_run) dda_run_cases
 
    interface
 
-      !> Write all pictures of a case
-      module subroutine write_album(folder, number, vtu, system, origin, album, frames, joints, &
-         & error)
-         !> Folder of the deck's results
-         character(len=*), intent(in) :: folder
-         !> Number of the case
-         integer, intent(in) :: number
-         !> Whether VTU files are wanted beside the tables
-         logical, intent(in) :: vtu
-         type(block_system_t), intent(in) :: system
-         !> Where the origin of their coordinates is: (2) [m]
-         real(wp), intent(in) :: origin(2)
-         type(album_t), intent(in) :: album
-         !> frames.csv
-         type(table_file_t), intent(inout) :: frames
-         !> frame_joints.csv
-         type(table_file_t), intent(inout) :: joints
-         !> Allocated if something cannot be written
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine write_album
-
-      !> Write the ways of the measured points of a case
-      module subroutine write_track(number, origin, album, points, error)
-         integer, intent(in) :: number
-         real(wp), intent(in) :: origin(2)
-         type(album_t), intent(in) :: album
-         type(table_file_t), intent(inout) :: points  !! points.csv
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine write_track
-
-      !> Write the energies of a case
-      module subroutine write_energies(number, album, table, error)
-         integer, intent(in) :: number
-         type(album_t), intent(in) :: album
-         type(table_file_t), intent(inout) :: table  !! energy.csv
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine write_energies
+      !> Write what is seen of a case on its way: pictures, bars, measured points, energies and
+      !> reactions
+      module subroutine write_pictures(tables, number, this, error)
+         type(result_tables_t), intent(inout) :: tables
+         integer, intent(in) :: number  !! Number of the case
+         type(case_t), intent(in) :: this
+         type(error_t), allocatable, intent(inout) :: error
+      end subroutine write_pictures
 
    end interface
 
@@ -189,26 +157,6 @@ contains
       end if
       call report_progress(progress)
    end subroutine write_down
-
-   !> Write what is seen of a case on its way: pictures, measured points, energies
-   subroutine write_pictures(tables, number, this, error)
-      type(result_tables_t), intent(inout) :: tables
-      integer, intent(in) :: number
-      type(case_t), intent(in) :: this
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
-         & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
-         & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
-      if (tables%at(table%bars)%wanted .and. .not. allocated(error)) call append_line( &
-         & tables%at(table%bars)%open, bar_lines(number, this), error)
-      if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
-         & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
-      if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
-         & number, this%album, tables%at(table%energy)%open, error)
-      if (tables%at(table%reactions)%wanted .and. .not. allocated(error)) call append_line( &
-         & tables%at(table%reactions)%open, reaction_text(number, this), error)
-   end subroutine write_pictures
 
    !> Write what proves the verdict of a case
    subroutine write_proof(tables, number, this, error)

@@ -1,15 +1,15 @@
 !> The decision of a case: as a chain, stage by stage, or from where an earlier run has ended; and
 !> the scene that its tables and pictures need
 submodule (dda_compute_case) dda_case_decision
+   use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
    use dda_contacts, only : contacts_t, place_all_joints
    use dda_decision, only : decide_in_stages
-   use dda_deck, only : parameter_t
-   use dda_deck_set, only : put_number
-   use dda_key_names, only : analysis_restart, output_joints, vehicle_position
+   use dda_key_names, only : analysis_restart, output_joints, output_reactions
    use dda_mechanism, only : follow_collapse
+   use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
    use dda_scene, only : searched_load
    use dda_settings, only : settings_t
@@ -17,22 +17,6 @@ submodule (dda_compute_case) dda_case_decision
    implicit none
 
 contains
-
-   !> Put the vehicle where the least load factor is carried
-   module procedure place_vehicle
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-      type(parameter_t) :: position
-      real(wp) :: value
-
-      position%key = vehicle_position
-      call deck_scene(this%family%deck, this%plan, scene)
-      call find_worst_position(this%family%deck, scene, value, this%has_worst)
-      if (.not. this%has_worst) return
-      associate (deck => this%family%deck)
-         call put_number(deck, position, value, deck%value(position%key)%place, error)
-      end associate
-   end procedure place_vehicle
 
    !> Decide the scene
    module procedure compute_decision
@@ -66,6 +50,15 @@ contains
       end if
    end procedure compute_decision
 
+   !> Supports whose reactions a dynamic run tells
+   pure subroutine keep_supports(this, system)
+      type(case_t), intent(inout) :: this
+      type(block_system_t), intent(in) :: system
+
+      if (this%scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
+         & this%album%support = supports_of(system, this%scene%settings%boundary)
+   end subroutine keep_supports
+
    !> Make the scene of a decision where a chain has done without it and it is wanted now
    module procedure see_collapse
       logical :: collapsed, wanted
@@ -79,15 +72,6 @@ contains
       if (wanted) call build_once(this%family, value, this%scene)
       if (collapsed) call follow_collapse(this%scene, decision, this%album)
    end procedure see_collapse
-
-   !> Forget the joints of a decision that are those of its scene
-   module procedure leave_joints
-      if (this%searches .or. this%limerick .or. this%scene%settings%current) return
-      associate (mine => this%decision%contacts, others => this%scene%contacts)
-         if (.not. (allocated(mine%joint) .and. allocated(others%joint))) return
-         if (size(mine%joint) == size(others%joint)) deallocate (mine%joint)
-      end associate
-   end procedure leave_joints
 
    !> Give what was decided the joints of its scene where it has none
    module procedure place_joints

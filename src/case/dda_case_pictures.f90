@@ -1,23 +1,16 @@
 !> What the pictures of a case show, and the runs that are repeated for them
 submodule (dda_compute_case) dda_case_pictures
+   use dda_block_system, only : block_system_t
    use dda_contacts, only : contacts_t
    use dda_deck, only : source_of
    use dda_forward, only : run_to_verdict
-   use dda_key_names, only : analysis_duration, analysis_steps, arch_radius, output_energy, &
-      & output_reactions
+   use dda_key_names, only : analysis_duration, analysis_steps, arch_radius, output_energy
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
-   use dda_reactions, only : supports_of
    use dda_settings, only : settings_t
    use dda_verdict, only : outcome_t
    implicit none
 
 contains
-
-   !> Supports whose reactions a dynamic run tells
-   module procedure keep_supports
-      if (this%scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
-         & this%album%support = supports_of(system, this%scene%settings%boundary)
-   end procedure keep_supports
 
    !> What the album of the case is to hold
    module procedure plan_album

@@ -5,33 +5,66 @@
 !> proof of this kind, and none is told.
 submodule (dda_compute_case) dda_case_proof
    use dda_bar_joints, only : bar_joint
-   use dda_joint_graph, only : joint_graph_t, keep_joints
+   use dda_error, only : error_t
+   use dda_joint_graph, only : keep_joints
+   use dda_key_names, only : output_thrust_bar, output_thrust_joint
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, find_thrust_range, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
-   use dda_scene, only : searched_load
+   use dda_scene, only : family_t, searched_load
    use dda_scene_graph, only : has_limit_analysis, scene_graph
+   use dda_search, only : critical_t, proof_t
    use dda_settings, only : settings_t
    use dda_verdict, only : verdict
    implicit none
 
    !> Relative gap of the limit of a load factor beside a decision
    real(wp), parameter :: limit_gap = 1.0e-13_wp
+   !> The thrust of an arch of more joints than this is reported only where it is asked for
+   integer, parameter :: most_thrust_joints = 2001
 
 contains
 
+   !> Prove the verdict of a case by limit analysis
+   module procedure prove_case
+      if (this%searches) then
+         call prove_search(this%family, this%critical, this%standing, this%scene, this%proof)
+         return
+      end if
+      associate (mine => this%decision%contacts, others => this%scene%contacts)
+         if (.not. allocated(others%joint)) return
+         ! joints that are those of the scene are forgotten: the proof needs room
+         if (allocated(mine%joint) .and. .not. this%scene%settings%current) then
+            if (size(mine%joint) == size(others%joint)) deallocate (mine%joint)
+         end if
+      end associate
+      call prove_decision(this%family%deck, this%scene, this%decision, this%proof)
+   end procedure prove_case
+
    !> Prove a decision
-   module procedure prove_decision
+   pure subroutine prove_decision(deck, scene, decision, proof)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene  !! Its scene at the beginning
+      type(decision_t), intent(in) :: decision
+      type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph
       type(limit_load_t) :: limit
       real(wp), allocatable :: dead(:, :)
+      integer :: thrust_bar, thrust_joint
 
       if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       call prove_state(scene, graph, decision%outcome%verdict, proof)
       if (decision%outcome%verdict /= verdict%stable) return
+      thrust_bar = nint(deck%value(output_thrust_bar)%number)
+      thrust_joint = nint(deck%value(output_thrust_joint)%number)
+      associate (angle => scene%joint_angle_deg)
+         if (thrust_joint == 0 .and. size(angle) > 0 .and. size(angle) <= most_thrust_joints) &
+            & thrust_joint = minloc(abs(angle), dim=1)
+      end associate
+      if (thrust_joint <= 0) thrust_joint = scene%crown_joint
       if (thrust_bar > 0 .and. allocated(scene%settings%boundary%bar)) then
          if (thrust_bar <= size(scene%settings%boundary%bar)) &
             & call find_bar_range(scene, thrust_bar, proof)
@@ -48,10 +81,16 @@ contains
          & graph), limit_gap, limit)
       proof%has_limit = limit%state == limit_state%found
       proof%limit = [limit%lower, limit%upper]
-   end procedure prove_decision
+   end subroutine prove_decision
 
    !> Prove both sides of what a search has found
-   module procedure prove_search
+   pure subroutine prove_search(family, critical, stands, falls, proof)
+      class(family_t), intent(in) :: family
+      type(critical_t), intent(in) :: critical
+      !> The scenes of its two sides; made here if they are not there yet
+      type(scene_t), intent(inout) :: stands
+      type(scene_t), intent(inout) :: falls
+      type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph
       type(proof_t) :: other
 
@@ -80,7 +119,7 @@ contains
       call move_alloc(other%velocity, proof%velocity)
       if (.not. allocated(proof%force)) proof%scene = falls
       proof%same_shape = .not. any(abs(proof%scene%system%vertex - falls%system%vertex) > 0.0_wp)
-   end procedure prove_search
+   end subroutine prove_search
 
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
    pure subroutine find_bar_range(scene, bar, proof)

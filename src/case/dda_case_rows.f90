@@ -23,42 +23,15 @@ module dda_case_rows
 
    !> A bracket whose middle is off by more than this share of its half is lopsided
    real(wp), parameter :: lopsided = 0.05_wp
+   !> A block moves in a collapse if it goes this share of the way of the one that goes farthest
+   real(wp), parameter :: moves = 1.0e-3_wp
+   !> Most blocks that are named
+   integer, parameter :: most_named = 5
+   !> Words for the verdicts, by their number
+   character(len=10), parameter :: verdict_word(0:4) = [character(len=10) :: "undecided", &
+      & "stable", "collapsed", "completed", "found"]
 
    interface
-
-      !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
-      pure module function fall_remark(system, motion, before) result(remark)
-         !> The blocks at the beginning
-         type(block_system_t), intent(in) :: system
-         !> Their motion in the collapse: (n_dof, n_equation)
-         real(wp), intent(in) :: motion(:, :)
-         !> What else there is to know
-         character(len=*), intent(in) :: before
-         !> All of it
-         character(len=:), allocatable :: remark
-      end function fall_remark
-
-      !> What the user should know of the path of a static run
-      pure module function path_remark(outcome, before) result(remark)
-         type(outcome_t), intent(in) :: outcome
-         character(len=*), intent(in) :: before
-         character(len=:), allocatable :: remark
-      end function path_remark
-
-      !> What a search in time has found on both sides of its bracket
-      pure module function change_remark(critical, before) result(remark)
-         type(critical_t), intent(in) :: critical
-         character(len=*), intent(in) :: before
-         character(len=:), allocatable :: remark
-      end function change_remark
-
-      !> What the user should know of jumps on the loading path
-      pure module function jump_remark(jumps, largest, before) result(remark)
-         integer, intent(in) :: jumps     !! How many there were
-         real(wp), intent(in) :: largest  !! The largest displacement of one [m]
-         character(len=*), intent(in) :: before
-         character(len=:), allocatable :: remark
-      end function jump_remark
 
       !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
       pure module subroutine tell_nearest(this, joint_row, blocks)
@@ -96,7 +69,7 @@ contains
       allocate (joint_row(0))
       call describe(this, row)
       if (allocated(this%error)) then
-         row%verdict = verdict_name(verdict%undecided)
+         row%verdict = verdict_word(verdict%undecided)
          remark = error_line(this%error)
       else if (this%searches) then
          call tell_search(this, row, joint_row, blocks, remark)
@@ -105,11 +78,9 @@ contains
       end if
       if (this%has_worst) row%worst_position = &
          & some_number(this%family%deck%value(vehicle_position)%number)
-      if (this%has_worst .and. row%verdict /= "collapsed") then
-         if (len(remark) > 0) remark = remark//"; "
-         remark = remark//"the least load factor is carried with the first axle at " &
-            & //to_text(row%worst_position%value)//" m"
-      end if
+      if (this%has_worst .and. row%verdict /= "collapsed") remark = joined(remark, &
+         & "the least load factor is carried with the first axle at " &
+         & //to_text(row%worst_position%value)//" m")
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
@@ -177,7 +148,7 @@ contains
       character(len=:), allocatable, intent(inout) :: remark  !! Why the verdict is undecided
 
       associate (outcome => this%decision%outcome)
-         row%verdict = verdict_name(outcome%verdict)
+         row%verdict = verdict_word(outcome%verdict)
          if (allocated(outcome%reason)) remark = outcome%reason
          if (outcome%has_path) then
             row%path_time = some_number(outcome%path_time)
@@ -229,7 +200,7 @@ contains
       character(len=:), allocatable, intent(inout) :: remark
 
       associate (critical => this%critical)
-         row%verdict = verdict_name(critical%verdict)
+         row%verdict = verdict_word(critical%verdict)
          if (critical%verdict == verdict%undecided) then
             remark = "the bracket cannot be narrowed further"
             if (allocated(critical%reason)) &
@@ -303,15 +274,125 @@ contains
       end if
    end function fallen_contacts
 
-   !> A verdict in a word
-   pure function verdict_name(answer) result(name)
-      integer, intent(in) :: answer  !! One of verdict
-      character(len=10) :: name
+   !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
+   pure function fall_remark(system, motion, before) result(remark)
+      type(block_system_t), intent(in) :: system  !! The blocks at the beginning
+      real(wp), intent(in) :: motion(:, :)        !! Their collapse: (n_dof, n_equation)
+      character(len=*), intent(in) :: before      !! What else there is to know
+      character(len=:), allocatable :: remark     !! All of it
+      real(wp) :: way(size(system%equation))
+      integer :: b, e, i, n
 
-      name = "undecided"
-      if (answer == verdict%stable) name = "stable"
-      if (answer == verdict%collapsed) name = "collapsed"
-      if (answer == verdict%completed) name = "completed"
-      if (answer == verdict%found) name = "found"
-   end function verdict_name
+      remark = before
+      way = 0.0_wp
+      do b = 1, size(way)
+         e = system%equation(b)
+         if (e > 0 .and. e <= size(motion, 2)) way(b) = norm2(motion(1:2, e)) &
+            & + abs(motion(3, e))*sqrt(system%area(b))
+      end do
+      n = count(way > moves*maxval(way))
+      if (n == 0 .or. 3*n > count(system%equation > 0)) return
+      remark = joined(before, "of "//to_text(count(system%equation > 0))//" blocks " &
+         & //to_text(n)//" move:")
+      do i = 1, min(n, most_named)
+         b = maxloc(way, dim=1)
+         way(b) = -1.0_wp
+         if (i > 1) remark = remark//","
+         remark = remark//" "//to_text(b)
+      end do
+      if (n > most_named) remark = remark//" and others"
+   end function fall_remark
+
+   !> What the user should know of the path of a static run
+   pure function path_remark(outcome, before) result(remark)
+      type(outcome_t), intent(in) :: outcome
+      character(len=*), intent(in) :: before
+      character(len=:), allocatable :: remark
+      character(len=:), allocatable :: place
+
+      remark = before
+      if (outcome%verdict /= verdict%stable) then
+         place = " time "//to_text(outcome%path_time)
+         if (outcome%path_time < 0.0_wp) place = " "//to_text(1.0_wp + outcome%path_time) &
+            & //" of the prescribed displacement"
+         remark = joined(before, trim(merge("the blocks collapse at     ", &
+            & "equilibrium is proven up to", outcome%verdict == verdict%collapsed))//place)
+      end if
+      remark = order_remark(outcome, remark)
+   end function path_remark
+
+   !> Why forces after stages are not those of the last shape built at once
+   pure function order_remark(outcome, before) result(remark)
+      type(outcome_t), intent(in) :: outcome
+      character(len=*), intent(in) :: before
+      character(len=:), allocatable :: remark
+
+      remark = before
+      if (.not. (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once)) return
+      if (outcome%n_slid > 0) remark = joined(remark, "joints that slid between stages: " &
+         & //to_text(outcome%n_slid)//numbered(outcome%slid))
+      if (outcome%has_built) remark = joined(remark, "blocks were built between stages")
+      if (outcome%slides_at_once) remark = joined(remark, "no joint slid between stages, " &
+         & //"but the last shape slides or collapses if it is built at once")
+      remark = joined(remark, "forces depend on the order of the stages")
+   end function order_remark
+
+   !> Two remarks in one
+   pure function joined(first, second) result(both)
+      character(len=*), intent(in) :: first   !! The one; it may be empty
+      character(len=*), intent(in) :: second  !! The other
+      character(len=:), allocatable :: both   !! Both, parted by a semicolon
+
+      both = second
+      if (len(first) > 0) both = first//"; "//second
+   end function joined
+
+   !> Numbers of joints in parentheses, not too many of them; nothing for none
+   pure function numbered(joint) result(text)
+      integer, intent(in) :: joint(:)  !! The numbers: (n)
+      character(len=:), allocatable :: text
+      integer, parameter :: most = 12
+      integer :: i
+
+      text = ""
+      do i = 1, min(size(joint), most)
+         text = text//", "//to_text(joint(i))
+      end do
+      if (size(joint) > most) text = text//" and others"
+      if (len(text) > 0) text = " ("//text(3:)//")"
+   end function numbered
+
+   !> What a search in time has found on both sides of its bracket
+   pure function change_remark(critical, before) result(remark)
+      type(critical_t), intent(in) :: critical
+      character(len=*), intent(in) :: before
+      character(len=:), allocatable :: remark
+      integer :: i
+
+      if (.not. allocated(critical%other_change)) then
+         remark = joined(before, to_text(critical%others) &
+            & //" values between the ends agree with them")
+      else if (size(critical%other_change) == 0) then
+         remark = joined(before, to_text(critical%others)//" values on both sides agree with it")
+      else
+         remark = joined(before, "not monotone: the answer changes again")
+         do i = 1, size(critical%other_change, 2)
+            if (i > 1) remark = remark//","
+            remark = remark//" between "//to_text(critical%other_change(1, i))//" and " &
+               & //to_text(critical%other_change(2, i))
+         end do
+      end if
+   end function change_remark
+
+   !> What the user should know of jumps on the loading path
+   pure function jump_remark(jumps, largest, before) result(remark)
+      integer, intent(in) :: jumps     !! How many there were
+      real(wp), intent(in) :: largest  !! The largest displacement of one [m]
+      character(len=*), intent(in) :: before
+      character(len=:), allocatable :: remark
+
+      remark = before
+      if (jumps > 0) remark = joined(before, "jumps on the loading path: "//to_text(jumps) &
+         & //", the largest "//to_text(largest)//" m")
+   end function jump_remark
 end module dda_case_rows

@@ -3,20 +3,17 @@ module dda_compute_case
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_arch_chain, only : arch_rays
    use dda_arch_scene, only : exact_thickness
-   use dda_block_system, only : block_system_t
    use dda_case, only : case_t
    use dda_critical, only : find_critical
    use dda_deck, only : deck_t
-   use dda_deck_scene, only : deck_family_t, deck_scene
-   use dda_error, only : error_t
+   use dda_deck_scene, only : deck_scene
    use dda_frames, only : album_t
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
-   use dda_key_names, only : arch_thickness_ratio, output_frames, &
-      & output_thrust_bar, output_thrust_joint, vehicle_worst
+   use dda_key_names, only : arch_thickness_ratio, output_frames, vehicle_worst
    use dda_kinds, only : wp
-   use dda_scene, only : build_once, family_t, scene_t
-   use dda_search, only : critical_t, decision_t, proof_t, search_t
+   use dda_scene, only : build_once, scene_t
+   use dda_search, only : decision_t
    implicit none
    private
 
@@ -38,40 +35,13 @@ module dda_compute_case
       real(wp) :: place = 0.0_wp     !! The place [m]
    end type least_factor_t
 
-   !> The thrust of an arch of more joints than this is reported only where it is asked for
-   integer, parameter :: most_thrust_joints = 2001
-
    interface
 
-      !> Search the critical value
-      pure module subroutine find_limerick_critical(family, search, critical)
-         type(deck_family_t), intent(in) :: family
-         !> What is searched; where the far end needs no check, the search strides out from the
-         !> start
-         type(search_t), intent(in) :: search
-         type(critical_t), intent(out) :: critical
-      end subroutine find_limerick_critical
-
-      !> Pictures of the run nearest to critical that was found to fall, else to stand
-      pure module subroutine repeat_with_pictures(family, critical, album)
-         type(deck_family_t), intent(in) :: family
-         type(critical_t), intent(in) :: critical
-         type(album_t), intent(inout) :: album
-      end subroutine repeat_with_pictures
-
-      !> Find the worst position
-      pure module subroutine find_worst_position(deck, scene, position, found)
-         type(deck_t), intent(in) :: deck
-         type(scene_t), intent(in) :: scene
-         real(wp), intent(out) :: position  !! The position of the first axle [m]
-         logical, intent(out) :: found      !! Whether any position is bounded
-      end subroutine find_worst_position
-
-      !> Supports whose reactions a dynamic run tells
-      pure module subroutine keep_supports(this, system)
+      !> Search the critical value of Shi's scheme, with pictures of the run nearest to it that was
+      !> found to fall, else to stand
+      pure module subroutine search_limerick(this)
          type(case_t), intent(inout) :: this
-         type(block_system_t), intent(in) :: system
-      end subroutine keep_supports
+      end subroutine search_limerick
 
       !> What the album of the case is to hold
       pure module subroutine plan_album(this)
@@ -109,34 +79,15 @@ module dda_compute_case
          type(decision_t), intent(inout) :: decision
       end subroutine see_collapse
 
-      !> Forget the joints of a decision that are those of its scene: its proof needs room
-      pure module subroutine leave_joints(this)
-         type(case_t), intent(inout) :: this
-      end subroutine leave_joints
-
       !> Give what was decided the joints of its scene where it has none; the scene may lose them
       pure module subroutine place_joints(this)
          type(case_t), intent(inout) :: this
       end subroutine place_joints
 
-      !> Prove a decision
-      pure module subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
-         type(scene_t), intent(in) :: scene   !! Its scene at the beginning
-         type(decision_t), intent(in) :: decision
-         integer, intent(in) :: thrust_joint  !! Joint whose range of thrust is wanted, 0 for none
-         integer, intent(in) :: thrust_bar    !! Bar whose range of force is wanted, 0 for none
-         type(proof_t), intent(out) :: proof
-      end subroutine prove_decision
-
-      !> Prove both sides of what a search has found
-      pure module subroutine prove_search(family, critical, stands, falls, proof)
-         class(family_t), intent(in) :: family
-         type(critical_t), intent(in) :: critical
-         !> The scenes of its two sides; made here if they are not there yet
-         type(scene_t), intent(inout) :: stands
-         type(scene_t), intent(inout) :: falls
-         type(proof_t), intent(out) :: proof
-      end subroutine prove_search
+      !> Prove the verdict of a case by limit analysis
+      pure module subroutine prove_case(this)
+         type(case_t), intent(inout) :: this
+      end subroutine prove_case
 
       !> Run what a deck describes under Shi's scheme
       pure module subroutine decide_limerick(deck, scene, decision, album)
@@ -177,6 +128,7 @@ contains
       if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
       if (this%searches .and. this%limerick) then
          call search_limerick(this)
+         call see_standing(this)
       else if (this%searches) then
          call search_critical(this)
       else if (this%limerick) then
@@ -190,10 +142,7 @@ contains
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
       if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
-         & .or. allocated(this%error))) then
-         call leave_joints(this)
-         call prove_case(this)
-      end if
+         & .or. allocated(this%error))) call prove_case(this)
       call place_joints(this)
    end subroutine compute_case
 
@@ -209,22 +158,6 @@ contains
       if (nint(this%family%deck%value(output_frames)%number) > 0) call take_pictures(this)
    end subroutine search_critical
 
-   !> Search the critical value of Shi's scheme
-   pure subroutine search_limerick(this)
-      type(case_t), intent(inout) :: this
-      type(error_t), allocatable :: error
-
-      ! the limit of this scheme lies somewhat above the exact value
-      if (this%exact_known .and. .not. this%search%check_far_end) &
-         & this%search%start = min(max(this%exact, this%search%low), this%search%high)
-      call find_limerick_critical(this%family, this%search, this%critical)
-      if (allocated(this%critical%fallen)) &
-         & call this%family%build(this%critical%falls, this%scene, error)
-      call see_standing(this)
-      if (nint(this%family%deck%value(output_frames)%number) > 0) &
-         & call repeat_with_pictures(this%family, this%critical, this%album)
-   end subroutine search_limerick
-
    !> Make the scene that stands, where none was found to fall
    pure subroutine see_standing(this)
       type(case_t), intent(inout) :: this
@@ -234,22 +167,4 @@ contains
       call build_once(this%family, this%critical%stands, this%standing)
       this%scene = this%standing
    end subroutine see_standing
-
-   !> Prove the verdict of a case by limit analysis
-   pure subroutine prove_case(this)
-      type(case_t), intent(inout) :: this
-      integer :: joint
-
-      if (this%searches) then
-         call prove_search(this%family, this%critical, this%standing, this%scene, this%proof)
-      else if (allocated(this%scene%contacts%joint)) then
-         joint = nint(this%family%deck%value(output_thrust_joint)%number)
-         if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
-            & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
-            & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
-         joint = merge(joint, this%scene%crown_joint, joint > 0)
-         call prove_decision(this%scene, this%decision, joint, &
-            & nint(this%family%deck%value(output_thrust_bar)%number), this%proof)
-      end if
-   end subroutine prove_case
 end module dda_compute_case

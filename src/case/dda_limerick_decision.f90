@@ -1,7 +1,7 @@
 !> A run of Shi's scheme as a decision of ours: its verdict and the joints at its end
 submodule (dda_compute_case) dda_limerick_decision
    use dda_contact_types, only : place_joint
-   use dda_block_system, only : begin_motion
+   use dda_block_system, only : begin_motion, block_system_t
    use dda_contacts, only : begin_forces, contacts_t
    use dda_frames, only : frame_is_due, keep_frame
    use dda_key_names, only : scene_kind

@@ -1,11 +1,12 @@
 !> Critical value under Shi's scheme: a bracket of two runs, halved
 submodule (dda_compute_case) dda_limerick_search
-   use dda_deck, only : deck_t
    use dda_deck_keys, only : deck_key
+   use dda_deck_scene, only : deck_family_t
    use dda_deck_set, only : put_number
+   use dda_error, only : error_t
    use dda_key_value, only : number_fits
    use dda_scene_plan, only : plan_scene
-   use dda_search, only : keep_decision
+   use dda_search, only : critical_t, keep_decision, search_t
    use dda_verdict, only : verdict
    implicit none
 
@@ -16,8 +17,26 @@ submodule (dda_compute_case) dda_limerick_search
 
 contains
 
-   !> Search the critical value
-   module procedure find_limerick_critical
+   !> Search the critical value of Shi's scheme
+   module procedure search_limerick
+      type(error_t), allocatable :: error
+
+      ! the limit of this scheme lies somewhat above the exact value
+      if (this%exact_known .and. .not. this%search%check_far_end) &
+         & this%search%start = min(max(this%exact, this%search%low), this%search%high)
+      call close_bracket(this%family, this%search, this%critical)
+      if (allocated(this%critical%fallen)) &
+         & call this%family%build(this%critical%falls, this%scene, error)
+      if (nint(this%family%deck%value(output_frames)%number) > 0) &
+         & call repeat_with_pictures(this%family, this%critical, this%album)
+   end procedure search_limerick
+
+   !> Close the bracket around the value
+   pure subroutine close_bracket(family, search, critical)
+      type(deck_family_t), intent(in) :: family
+      !> What is searched; where the far end needs no check, the search strides out from the start
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(out) :: critical
       integer :: answer
 
       critical%current = .true.
@@ -38,10 +57,13 @@ contains
       end do
       if (answer == verdict%undecided .or. both_sides(critical)) return
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
-   end procedure find_limerick_critical
+   end subroutine close_bracket
 
    !> Pictures of the run nearest to critical that was found to fall, else to stand
-   module procedure repeat_with_pictures
+   pure subroutine repeat_with_pictures(family, critical, album)
+      type(deck_family_t), intent(in) :: family
+      type(critical_t), intent(in) :: critical
+      type(album_t), intent(inout) :: album
       type(decision_t) :: decision
       type(deck_t) :: deck
       type(scene_t) :: scene
@@ -51,7 +73,7 @@ contains
       call put_value(family, merge(critical%falls, critical%stands, allocated(critical%fallen)), &
          & deck, scene, fits)
       if (fits) call decide_limerick(deck, scene, decision, album)
-   end procedure repeat_with_pictures
+   end subroutine repeat_with_pictures
 
    !> Deck and scene of a value of the searched parameter, if it can have it
    pure subroutine put_value(family, value, deck, scene, fits)

@@ -8,11 +8,11 @@ submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t, value_at
-   use dda_deck, only : has_group
+   use dda_deck, only : has_group, parameter_t
+   use dda_deck_set, only : put_number
+   use dda_error, only : error_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
-   use dda_interior_state, only : no_limit
-   use dda_joint_graph, only : joint_graph_t
-   use dda_key_names, only : fill_group
+   use dda_key_names, only : fill_group, vehicle_position
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_scene, only : searched_load
@@ -49,17 +49,19 @@ submodule (dda_compute_case) dda_worst_position
 
 contains
 
-   !> Find the worst position
-   module procedure find_worst_position
+   !> Put the vehicle where the least load factor is carried
+   module procedure place_vehicle
       type(bridge_t) :: bridge
+      type(error_t), allocatable :: error
       type(least_factor_t) :: least
+      type(parameter_t) :: position
+      type(scene_t) :: scene
       type(stretch_t), allocatable :: stretch(:)
       integer :: first, last
 
-      position = 0.0_wp
-      found = .false.
+      call deck_scene(this%family%deck, this%plan, scene)
       if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
-      call take_bridge(deck, scene, bridge)
+      call take_bridge(this%family%deck, scene, bridge)
       call part_road(bridge, stretch)
       first = 1
       do while (first <= size(stretch) .and. least%factor > 0.0_wp)
@@ -72,9 +74,13 @@ contains
          first = last + 1
       end do
       ! what falls wherever the axles stand, and leans against nothing, has no worst position
-      found = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
-      if (found) position = least%place
-   end procedure find_worst_position
+      this%has_worst = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
+      if (.not. this%has_worst) return
+      position%key = vehicle_position
+      associate (deck => this%family%deck)
+         call put_number(deck, position, least%place, deck%value(position%key)%place, error)
+      end associate
+   end procedure place_vehicle
 
    !> Whether there is fill that the bridge can lean against
    pure logical function leans(bridge)
@@ -186,7 +192,7 @@ contains
    !> Which fill the bridge leans against with the vehicle at a position
    pure integer function side_at(bridge, position) result(side)
       type(bridge_t), intent(in) :: bridge
-      real(wp), intent(in) :: position
+      real(wp), intent(in) :: position  !! Where its first axle is [m]
 
       side = 0
       if (allocated(bridge%fill)) side = live_side(bridge%fill, bridge%scene%origin, &
