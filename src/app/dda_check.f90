@@ -2,13 +2,12 @@
 submodule (dda_verbs) dda_check
    use dda_deck, only : deck_t
    use dda_process, only : deck_stem, error_is_terminal, exit_status
-   use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : name_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_scene
-   use dda_screen, only : print_line, print_warnings, screen_t
+   use dda_screen, only : end_watch, print_line, print_warnings, screen_t, terminal_watch_t
    implicit none
 
    interface

@@ -2,7 +2,7 @@
 module dda_command_line
    use dda_error, only : error_t, fatal_error
    use dda_deck_token, only : shown
-   use dda_deck_words, only : near_one
+   use dda_deck_key, only : near_one
    use dda_screen, only : screen_t
    use dda_text, only : read_integer, to_text
    implicit none

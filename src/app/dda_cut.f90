@@ -1,7 +1,6 @@
 !> dda cut: lines to blocks
 submodule (dda_verbs) dda_cut
-   use dda_cut_model, only : block_vertices, cut_model_t, point_kind
-   use dda_cut_report, only : cut_reason, cut_remark_t
+   use dda_cut_model, only : block_vertices, cut_model_t, cut_reason, cut_remark_t, point_kind
    use dda_cutting, only : cut_blocks
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
@@ -10,7 +9,7 @@ submodule (dda_verbs) dda_cut
    use dda_screen, only : print_line, print_warnings, screen_t
    use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
-   use dda_warnings, only : warnings_t
+   use dda_error, only : warnings_t
    use dda_write_vtu, only : write_cut_table, write_cut_vtu
    implicit none
 

@@ -4,7 +4,7 @@ module dda_help
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
    use dda_deck_keys, only : deck_group, deck_key
-   use dda_deck_words, only : near_one, registry_help
+   use dda_deck_key, only : near_one, registry_help
    use dda_map_keys, only : map_group, map_key
    use dda_model_table, only : models_help
    use dda_process, only : exit_status

@@ -2,18 +2,16 @@
 submodule (dda_verbs) dda_run
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_case_choice, only : choose_cases
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
    use dda_command_line, only : name_of
    use dda_deck, only : deck_t
-   use dda_deck_sweep, only : n_cases
+   use dda_deck_sweep, only : choose_cases, n_cases
    use dda_error, only : error_line
    use dda_process, only : deck_stem, error_is_terminal, exit_status, make_folder, worst_status
-   use dda_progress, only : clear_progress, progress_t
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene_check, only : check_lines
-   use dda_screen, only : print_line, print_warnings
+   use dda_screen, only : clear_progress, print_line, print_warnings, progress_t
    use dda_text, only : to_text
    implicit none
 

@@ -7,8 +7,8 @@ submodule (dda_verbs:dda_run) dda_run_cases
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_key_names, only : output_restart
    use dda_kinds, only : wp
-   use dda_progress, only : report_progress
-   use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
+   use dda_screen, only : report_progress
+   use dda_force_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : swept_fields, table, write_case, write_waiting
    use dda_table_file, only : append_line

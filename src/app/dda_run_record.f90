@@ -1,15 +1,12 @@
 !> What a run was asked for, and who computes it: results with equal records go together
 module dda_run_record
    use dda_build_mark, only : build_mark
-   use dda_deck, only : deck_sweep_t, deck_t
-   use dda_deck_key, only : key_kind
+   use dda_deck, only : deck_sweep_t, deck_t, parameter_name
+   use dda_deck_key, only : full_name, key_kind
    use dda_deck_keys, only : deck_group, deck_key
-   use dda_deck_parameter, only : parameter_name
-   use dda_deck_words, only : full_name
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_help, only : version
    use dda_key_value, only : deck_value_t
-   use dda_text, only : to_text
+   use dda_text, only : add_line, growing_text_t, lines_of, to_text
    implicit none
    private
 

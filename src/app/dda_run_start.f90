@@ -2,7 +2,7 @@
 submodule (dda_verbs:dda_run) dda_run_start
    use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
    use dda_error, only : fatal_error
-   use dda_progress, only : end_watch, terminal_watch_t
+   use dda_screen, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_scene

@@ -1,9 +1,11 @@
-!> Failures are values: the last argument of whatever can fail
+!> Failures are values: the last argument of whatever can fail; warnings are values too
 module dda_error
+   use dda_text, only : to_text
    implicit none
    private
 
    public :: error_t, fatal_error, require, error_line
+   public :: warning_t, warnings_t, add_warning, warning_line
 
    !> What went wrong and where; an allocated error_t means failure
    type :: error_t
@@ -14,6 +16,22 @@ module dda_error
       !> Line of that file, counted from 1; 0 if the whole file is meant
       integer :: line = 0
    end type error_t
+
+   !> A warning, and how often it came again
+   type, extends(error_t) :: warning_t
+      integer :: repeats = 0  !! How many of the same words were given for later lines
+   end type warning_t
+
+   !> A list of warnings; a file of a million faults has a short one
+   type :: warnings_t
+      !> The warnings, each message once; unallocated if there is none
+      type(warning_t), allocatable :: item(:)
+      !> How many other ones found no place in it
+      integer :: left_out = 0
+   end type warnings_t
+
+   !> Longest list
+   integer, parameter :: most_items = 50
 
 contains
 
@@ -46,11 +64,49 @@ contains
    pure function error_line(error) result(line)
       type(error_t), intent(in) :: error
       character(len=:), allocatable :: line  !! One line of text
-      character(len=12) :: number
 
       line = "error: "//error%message
-      if (.not. allocated(error%file)) return
-      write (number, "(i0)") max(error%line, 1)
-      line = error%file//":"//trim(number)//": "//line
+      if (allocated(error%file)) line = error%file//":"//to_text(max(error%line, 1))//": "//line
    end function error_line
+
+   !> Add a warning
+   pure subroutine add_warning(warnings, message, file, line)
+      type(warnings_t), intent(inout) :: warnings
+      character(len=*), intent(in) :: message  !! What was found, and what was made of it
+      character(len=*), intent(in) :: file
+      integer, intent(in) :: line
+      type(error_t), allocatable :: new
+      type(warning_t), allocatable :: longer(:)
+      integer :: i, n
+
+      if (.not. allocated(warnings%item)) allocate (warnings%item(0))
+      n = size(warnings%item)
+      do i = 1, n
+         associate (item => warnings%item(i))
+            if (item%message /= message .or. item%file /= file) cycle
+            item%repeats = item%repeats + 1
+            return
+         end associate
+      end do
+      if (n == most_items) then
+         warnings%left_out = warnings%left_out + 1
+         return
+      end if
+      call fatal_error(new, message, file, line)
+      allocate (longer(n + 1))
+      longer(:n) = warnings%item
+      longer(n + 1)%error_t = new
+      call move_alloc(longer, warnings%item)
+   end subroutine add_warning
+
+   !> The line a user sees: FILE:LINE: warning: message
+   pure function warning_line(warning) result(line)
+      type(warning_t), intent(in) :: warning
+      character(len=:), allocatable :: line  !! One line of text
+
+      line = "warning: "//warning%message
+      if (warning%repeats > 0) line = line//" (and "//to_text(warning%repeats)//" more like it)"
+      if (allocated(warning%file)) &
+         & line = warning%file//":"//to_text(max(warning%line, 1))//": "//line
+   end function warning_line
 end module dda_error

@@ -1,9 +1,8 @@
 !> One case of a deck, ready to be computed
 module dda_case
    use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
-   use dda_deck, only : deck_t, file_beside, has_group, parameter_t, source_of
+   use dda_deck, only : deck_t, file_beside, has_group, parameter_name, parameter_t, source_of
    use dda_deck_check_case, only : search_bracket
-   use dda_deck_parameter, only : parameter_name
    use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
    use dda_frames, only : album_t

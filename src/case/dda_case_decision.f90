@@ -3,8 +3,7 @@
 submodule (dda_compute_case) dda_case_decision
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
-   use dda_chain_decision, only : decide_chain
-   use dda_chain_unfold, only : unfold
+   use dda_chain_decision, only : decide_chain, unfold
    use dda_contacts, only : contacts_t, place_all_joints
    use dda_decision, only : decide_in_stages
    use dda_key_names, only : analysis_restart, output_joints, output_reactions

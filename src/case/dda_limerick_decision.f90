@@ -8,11 +8,10 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_contact, only : limerick_contact_t
-   use dda_limerick_model, only : contact_law, finite_law, limerick_model_t
+   use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
       & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene
-   use dda_limerick_state, only : limerick_state
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
    use dda_verdict, only : verdict

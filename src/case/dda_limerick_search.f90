@@ -2,7 +2,7 @@
 submodule (dda_compute_case) dda_limerick_search
    use dda_deck_keys, only : deck_key
    use dda_deck_scene, only : deck_family_t
-   use dda_deck_set, only : put_number
+   use dda_deck, only : put_number
    use dda_error, only : error_t
    use dda_key_value, only : number_fits
    use dda_scene_plan, only : plan_scene

@@ -1,6 +1,6 @@
 !> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
 submodule (dda_restart) dda_restart_joints
-   use dda_contact_detection, only : begin_memory, set_joints
+   use dda_contacts, only : begin_memory, set_joints
    use dda_contact_search, only : law_between
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
    use dda_outline, only : outline_of, outline_t

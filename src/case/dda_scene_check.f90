@@ -4,16 +4,15 @@ module dda_scene_check
    use dda_deck_check_case, only : check_model
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_key_names, only : analysis_mode, analysis_restart, limerick_dynamic, scene_kind
    use dda_kinds, only : wp
-   use dda_limerick_blocks, only : check_limerick_blocks
+   use dda_limerick_scene, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
    use dda_read_deck, only : geometry_file
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
    use dda_shape_check, only : check_shapes
-   use dda_warnings, only : add_warning, warnings_t
    use dda_watch, only : watch_t
    implicit none
    private

@@ -8,8 +8,7 @@ submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t, value_at
-   use dda_deck, only : has_group, parameter_t
-   use dda_deck_set, only : put_number
+   use dda_deck, only : has_group, parameter_t, put_number
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
    use dda_key_names, only : fill_group, vehicle_position

@@ -3,11 +3,10 @@
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : begin_memory, set_joints, set_strength
    use dda_contact_search, only : look_around, near_joints, touching_joints
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
       & place_joint, slip_at, vertex_number
-   use dda_contacts, only : contacts_t
+   use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
    use dda_kinds, only : wp
    use dda_sort, only : rising_order
    implicit none

@@ -1,18 +1,25 @@
-!> A text file as one string, whatever its line ends, or a failure with a line
+!> A text file as one string, whatever its line ends, or a failure with a line; and the check sums
+!> by which another one of the same name is known
 module dda_text_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, c_size_t
-   use dda_c_files, only : c_fopen, c_ferror, c_fclose, c_fread, c_access
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_c_files, only : c_access, c_fclose, c_ferror, c_fopen, c_fread
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text
    implicit none
    private
 
    public :: read_bytes, read_text_file, plain_text
+   public :: file_mark, text_mark
 
    !> One megabyte [bytes]
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
    integer, parameter :: max_file_size = 512*megabyte
+
+   !> The sums are polynomials at these places, modulo these primes
+   integer(int64), parameter :: place(2) = [257_int64, 263_int64]
+   integer(int64), parameter :: prime(2) = [2147483629_int64, 2147483587_int64]
 
 contains
 
@@ -132,4 +139,32 @@ contains
       end do
       text = text(:n)
    end subroutine plain_text
+
+   !> The mark of a file: three numbers; a dash for one that cannot be read
+   function file_mark(file) result(mark)
+      character(len=*), intent(in) :: file  !! Name of the file
+      character(len=:), allocatable :: mark
+      character(len=:), allocatable :: bytes
+      type(error_t), allocatable :: error
+
+      mark = "-"
+      call read_bytes(file, bytes, error)
+      if (.not. allocated(error)) mark = text_mark(bytes)
+   end function file_mark
+
+   !> The mark of a text
+   pure function text_mark(text) result(mark)
+      character(len=*), intent(in) :: text  !! The text
+      character(len=:), allocatable :: mark
+      integer(int64) :: total(2)
+      character(len=62) :: digits
+      integer :: i
+
+      total = 0
+      do i = 1, len(text)
+         total = modulo(total*place + ichar(text(i:i)), prime)
+      end do
+      write (digits, "(i0, 1x, i0, 1x, i0)") len(text, int64), total
+      mark = trim(digits)
+   end function text_mark
 end module dda_text_file

@@ -2,10 +2,9 @@
 !> checks them does nothing after an error: the first one stays
 module dda_word_list
    use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_text, only : read_number, to_text
-   use dda_warnings, only : add_warning, warnings_t
    implicit none
    private
 

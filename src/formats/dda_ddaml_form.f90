@@ -1,8 +1,7 @@
 !> Which elements a DDAML file has, where they stand and what they hold: nothing else is lost
 !> without a word
 module dda_ddaml_form
-   use dda_error, only : error_t, fatal_error
-   use dda_warnings, only : add_warning, warnings_t
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_word_list, only : quoted, split_words, this_row, this_word, word_list_t
    use dda_xml_tree, only : attribute_place, find_child, xml_tree_t
    implicit none

@@ -1,12 +1,11 @@
 !> Attributes and words of elements of DDAML, and the materials and loads that an analysis file says
 !> by them. What reads them does nothing after an error: the first one stays
 module dda_ddaml_material
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : analysis_material_t, limerick_joint_t, load_history_t
    use dda_plain_files, only : check_joint, check_material, largest_value
    use dda_text, only : to_text
-   use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : check_number, quoted, split_words, take_whole, take_word_numbers, &
       & this_row, warn_of_rest, word_list_t
    use dda_xml_tree, only : attribute_of, find_child, xml_tree_t

@@ -1,13 +1,12 @@
 !> Geometry and analysis files in the plain form: numbers between blanks, in a fixed order (Shi:
 !> dc01, df02)
 module dda_plain_files
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : analysis_material_t, limerick_analysis_t, limerick_joint_t
    use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
       & new_line_model
    use dda_text, only : to_text
-   use dda_warnings, only : warnings_t
    use dda_word_list, only : check_number, largest_coordinate, split_words, take_material, &
       & take_number, take_property, take_whole, take_word_numbers, this_row, warn_of_rest, &
       & word_list_t, words_left

@@ -1,12 +1,11 @@
 !> Geometry and analysis files of the Limerick line, plain or DDAML, known by their first word
 module dda_read_limerick
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : entities_t, line_model_t
    use dda_plain_files, only : read_plain_analysis, read_plain_geometry
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
-   use dda_warnings, only : add_warning, warnings_t
    use dda_xml_parser, only : parse_xml
    use dda_xml_tree, only : xml_tree_t
    implicit none

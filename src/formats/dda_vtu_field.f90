@@ -1,20 +1,21 @@
-!> Fields of a grid for ParaView: a name and one column of numbers a point or a cell
+!> Fields of a grid for ParaView: a name and one column of numbers a point or a cell; the XML that
+!> holds them
 !>
 !> Make an array of fields element by element: gfortran never frees the numbers of fields that stand
 !> in an array constructor
 module dda_vtu_field
-   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use, intrinsic :: iso_fortran_env, only : int16, int32, int64, int8
    use dda_binary_file, only : append_integers, append_length, append_reals, binary_file_t
    use dda_error, only : error_t, require
    use dda_kinds, only : wp
    use dda_text, only : to_text
-   use dda_xml_text, only : attribute
    implicit none
    private
 
    public :: field_t, field_kind, field_kind_enum
    public :: scalar_field, vector_field, tensor_field, state_field
    public :: check_field, field_attributes, field_bytes, append_field, append_vectors
+   public :: attribute, file_head
 
    !> What the numbers of a field are
    type :: field_kind_enum
@@ -45,6 +46,51 @@ module dda_vtu_field
    integer, parameter :: chunk = 2048
 
 contains
+
+   !> First lines of a file for ParaView
+   pure function file_head(kind) result(text)
+      character(len=*), intent(in) :: kind   !! What the file holds, in VTK's word
+      character(len=:), allocatable :: text  !! The lines; the element VTKFile is left open
+
+      text = "<?xml version=""1.0""?>"//new_line("a")//"<VTKFile"//attribute("type", kind) &
+         & //attribute("version", "1.0")//attribute("byte_order", byte_order()) &
+         & //attribute("header_type", "UInt64")//">"//new_line("a")
+   end function file_head
+
+   !> An attribute of an element, with a blank before it
+   pure function attribute(name, value) result(text)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Its value; what XML reserves is written as XML wants it
+      character(len=*), intent(in) :: value
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = " "//name//"="""
+      do i = 1, len(value)
+         select case (value(i:i))
+         case ("&")
+            text = text//"&amp;"
+         case ("<")
+            text = text//"&lt;"
+         case (">")
+            text = text//"&gt;"
+         case ("""")
+            text = text//"&quot;"
+         case default
+            text = text//value(i:i)
+         end select
+      end do
+      text = text//""""
+   end function attribute
+
+   !> The order in which this machine keeps the bytes of a number, in VTK's word
+   pure function byte_order() result(word)
+      character(len=:), allocatable :: word
+
+      word = "BigEndian"
+      if (transfer(1_int16, 0_int8) == 1_int8) word = "LittleEndian"
+   end function byte_order
 
    !> A field of real numbers
    pure type(field_t) function scalar_field(name, values) result(field)

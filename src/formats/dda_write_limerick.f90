@@ -1,12 +1,11 @@
 !> Geometry and analysis files of the Limerick line, plain and DDAML, as texts and on disk
 module dda_write_limerick
    use dda_error, only : error_t
-   use dda_growing_text, only : fields
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
    use dda_line_model, only : entities_t, line_model_t
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
-   use dda_text, only : to_text
+   use dda_text, only : fields, to_text
    implicit none
    private
 

@@ -1,9 +1,8 @@
 !> Lines of a file of blocks as words, and the words' numbers, of which a record may stand in the
 !> place: WORD ... file 'NAME' [columns T X [Y]] [scale S]
 module dda_block_lines
-   use dda_deck_key, only : in_range, key_kind, key_t
+   use dda_deck_key, only : in_range, key_kind, key_t, wanted
    use dda_deck_token, only : shown
-   use dda_deck_words, only : wanted
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_read_record, only : read_record

@@ -7,7 +7,7 @@ submodule (dda_read_blocks) dda_block_plan_check
    use dda_polygon, only : find_crossing
    use dda_sort, only : rising_order
    use dda_vector, only : area_moments, area_moments_t
-   use dda_warnings, only : add_warning
+   use dda_error, only : add_warning
    implicit none
 
    !> Corners nearer than this share of a block's extent are one

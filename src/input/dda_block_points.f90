@@ -6,7 +6,7 @@ submodule (dda_read_blocks) dda_block_points
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
    use dda_polygon, only : parts_inside
-   use dda_warnings, only : add_warning
+   use dda_error, only : add_warning
    implicit none
 
    !> Points nearer than this share of the block's size are one

@@ -1,21 +1,23 @@
-!> A deck in memory: a value for every key of the registry, and where each one came from
+!> A deck in memory: a value for every key of the registry, and where each one came from; names of
+!> what may be varied, and new values, each checked against the registry first
 module dda_deck
-   use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use dda_block_input, only : block_plan_t, new_plan
    use dda_boundary, only : history_t
    use dda_cut_model, only : cut_model_t
-   use dda_key_names, only : analysis_geometry, analysis_mode, arch_lune_deg, arch_shape, &
-      & arch_span, fill_group, ground_record, limerick_dynamic, material_compressive_strength, &
-      & scene_kind, search_group, search_parameter, tie_group
-   use dda_key_value, only : deck_place_t, deck_value_t, default_value
+   use dda_deck_key, only : full_name, key_kind, key_t, near_key, word_length
+   use dda_deck_keys, only : deck_group, deck_key, group_index
+   use dda_deck_token, only : shown
+   use dda_error, only : error_t, fatal_error, warnings_t
+   use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
+      & arch_joints_deg, arch_lune_deg, arch_shape, arch_span, arch_voussoirs, fill_group, &
+      & ground_record, limerick_dynamic, material_compressive_strength, scene_kind, search_group, &
+      & search_parameter, tie_group
+   use dda_key_value, only : deck_place_t, deck_value_t, default_value, set_number, set_text
    use dda_kinds, only : wp
-   use dda_error, only : error_t, fatal_error
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
-   use dda_text, only : lower_case
-   use dda_warnings, only : warnings_t
-   use dda_deck_key, only : word_length
-   use dda_deck_keys, only : deck_group, deck_key, group_index
+   use dda_text, only : lower_case, read_integer, to_text
    implicit none
    private
 
@@ -24,6 +26,8 @@ module dda_deck
    public :: new_deck, has_group, geometry_of, keeps_velocities, place_of, deck_error, key_error
    public :: number_or, source_of
    public :: add_file_mark, file_beside
+   public :: follow_joints, put_number, put_text
+   public :: split_name, find_parameter, parameter_name
 
    !> A key, or one item of its list
    type :: parameter_t
@@ -215,4 +219,150 @@ contains
       path = name
       if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
    end function file_beside
+
+   !> Put a number into a key or into one item of its list
+   pure subroutine put_number(deck, parameter, number, place, error)
+      type(deck_t), intent(inout) :: deck
+      !> The key, with the item if it is a list
+      type(parameter_t), intent(in) :: parameter
+      !> The number in the unit of the registry
+      real(wp), intent(in) :: number
+      type(deck_place_t), intent(in) :: place
+      !> Not a number's key, out of range, or an item that the list lacks
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+
+      call set_number(deck%value(parameter%key), deck_key(parameter%key), parameter%item, number, &
+         & problem)
+      call close_value(deck, parameter%key, problem, place, error)
+   end subroutine put_number
+
+   !> Put a text, a word or the text of a flag into a key
+   pure subroutine put_text(deck, parameter, text, place, error)
+      type(deck_t), intent(inout) :: deck
+      type(parameter_t), intent(in) :: parameter
+      character(len=*), intent(in) :: text  !! The value, without quotes
+      type(deck_place_t), intent(in) :: place
+      !> Not a text's key, or a word that it does not know
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+
+      call set_text(deck%value(parameter%key), deck_key(parameter%key), text, problem)
+      call close_value(deck, parameter%key, problem, place, error)
+   end subroutine put_text
+
+   !> Say where a key was given, or what kept it from its value
+   pure subroutine close_value(deck, key, problem, place, error)
+      type(deck_t), intent(inout) :: deck
+      integer, intent(in) :: key               !! Place of the key in the registry
+      character(len=*), intent(in) :: problem  !! Why it has no value; empty if it has
+      type(deck_place_t), intent(in) :: place
+      type(error_t), allocatable, intent(out) :: error
+
+      if (len(problem) > 0) then
+         call deck_error(error, problem, deck, place)
+      else
+         deck%value(key)%place = place
+         if (key == arch_joints_deg) call follow_joints(deck)
+      end if
+   end subroutine close_value
+
+   !> Half angle and number of voussoirs follow joints_deg where they are not given
+   pure subroutine follow_joints(deck)
+      type(deck_t), intent(inout) :: deck
+      integer :: n
+
+      associate (joints => deck%value(arch_joints_deg), angle => deck%value(arch_half_angle_deg), &
+         & voussoirs => deck%value(arch_voussoirs))
+         n = size(joints%numbers)
+         if (n == 0) return
+         if (.not. angle%given) angle%number = joints%numbers(n)
+         if (.not. voussoirs%given) voussoirs%number = real(2*(n - 1), wp)
+      end associate
+   end subroutine follow_joints
+
+   !> Split a name such as arch%joints_deg(2)
+   pure subroutine split_name(name, group, key, item, ok)
+      !> The name
+      character(len=*), intent(in) :: name
+      !> Group, lower case; empty if the name has none
+      character(len=:), allocatable, intent(out) :: group
+      !> Key, lower case
+      character(len=:), allocatable, intent(out) :: key
+      !> Item of a list; 0 if the name has none
+      integer, intent(out) :: item
+      !> Whether what stands in parentheses, if they are there, is a number from 1
+      logical, intent(out) :: ok
+      integer :: percent, open
+
+      key = trim(adjustl(lower_case(name)))
+      percent = index(key, "%")
+      group = trim(key(:max(percent - 1, 0)))
+      key = trim(adjustl(key(percent + 1:)))
+      item = 0
+      ok = .true.
+      open = index(key, "(")
+      if (open == 0) return
+      ok = key(len(key):) == ")"
+      if (ok) call read_integer(trim(adjustl(key(open + 1:len(key) - 1))), item, ok)
+      ok = ok .and. item >= 1
+      key = trim(key(:open - 1))
+   end subroutine split_name
+
+   !> Find a key that may vary by its name
+   pure subroutine find_parameter(name, parameter, problem)
+      !> Name of the key, with or without its group: friction_deg, joints_deg(2), arch%radius
+      character(len=*), intent(in) :: name
+      type(parameter_t), intent(out) :: parameter
+      !> Why there is none; empty if there is one
+      character(len=:), allocatable, intent(out) :: problem
+      character(len=:), allocatable :: group, key
+      logical :: ok, fits(size(deck_key))
+      integer :: i
+
+      call split_name(name, group, key, parameter%item, ok)
+      fits = deck_key%name == key .and. (deck_key%group == group &
+         .or. len(group) == 0 .and. deck_key%bare)
+      problem = ""
+      if (.not. ok) then
+         problem = "expected a name such as joints_deg(2), got '"//shown(name)// &
+            "'; number the items from 1"
+      else if (.not. any(fits)) then
+         problem = "'"//shown(name)//"' is no key: "//near_key(key, group, deck_key, "keys")
+      else if (.not. any(fits .and. deck_key%varies)) then
+         problem = "'"//shown(name)//"' cannot be varied; choose a key of the groups arch to "// &
+            "analysis"
+      else if (count(fits .and. deck_key%varies) > 1) then
+         problem = "'"//shown(name)//"' is a key of several groups; write group%key"
+      end if
+      if (len(problem) > 0) return
+      parameter%key = maxloc(merge(1, 0, fits .and. deck_key%varies), dim=1)
+      i = parameter%key
+      if (deck_key(i)%kind == key_kind%numbers .eqv. parameter%item > 0) return
+      problem = trim(deck_key(i)%name)//" is a list; name one item, such as "// &
+         trim(deck_key(i)%name)//"(2)"
+      if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items; remove the "// &
+         "parentheses"
+   end subroutine find_parameter
+
+   !> Name of a parameter as a column is headed
+   pure function parameter_name(parameter) result(name)
+      type(parameter_t), intent(in) :: parameter
+      !> Key, with its group only if the key alone would be ambiguous, and with its item
+      character(len=:), allocatable :: name
+      type(key_t) :: key
+      integer :: alike, i
+
+      key = deck_key(parameter%key)
+      name = trim(key%name)
+      alike = 0
+      do i = 1, size(deck_key)
+         if (.not. (deck_key(i)%varies .and. deck_key(i)%bare)) cycle
+         ! the first letter tells most keys apart, and a comparison of texts is a call
+         if (deck_key(i)%name(1:1) /= name(1:1)) cycle
+         if (deck_key(i)%name == key%name) alike = alike + 1
+      end do
+      if (.not. key%bare .or. alike > 1) name = full_name(key)
+      if (parameter%item > 0) name = name//"("//to_text(parameter%item)//")"
+   end function parameter_name
 end module dda_deck

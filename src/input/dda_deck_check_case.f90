@@ -12,11 +12,9 @@ module dda_deck_check_case
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key
    use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, number_or, &
-      & source_of
+      & parameter_name, put_number, source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
-   use dda_deck_parameter, only : parameter_name
-   use dda_deck_set, only : put_number
-   use dda_deck_words, only : full_name
+   use dda_deck_key, only : full_name
    use dda_model_table, only : model_problem, search_problem
    implicit none
    private

@@ -3,7 +3,7 @@
 module dda_deck_check_loads
    use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of
    use dda_deck_keys, only : deck_key
-   use dda_deck_words, only : full_name
+   use dda_deck_key, only : full_name
    use dda_error, only : error_t
    use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
       & analysis_collapse_rotation_deg, analysis_duration, analysis_flow, analysis_geometry, &

@@ -1,14 +1,11 @@
 !> Groups of a deck, and --set GROUP%KEY=VALUE, into values
 submodule (dda_read_deck) dda_deck_groups
-   use dda_deck, only : deck_error
-   use dda_deck_key, only : key_kind, key_t
+   use dda_deck, only : deck_error, follow_joints, put_text, split_name
+   use dda_deck_key, only : full_name, key_kind, key_t, near_group
    use dda_deck_keys, only : deck_group, deck_key
-   use dda_deck_parameter, only : split_name
    use dda_deck_scan, only : scan_values
-   use dda_deck_set, only : follow_joints, put_text
    use dda_deck_sweep, only : add_sweep
    use dda_deck_token, only : shown, token_kind, token_text
-   use dda_deck_words, only : full_name, near_group
    use dda_key_entry, only : find_key, read_entry, read_value
    use dda_key_names, only : arch_group, sweep_group
    use dda_text, only : to_text

@@ -1,10 +1,13 @@
-!> What the registry says of a key and of a group
+!> What the registry says of a key and of a group, and how that is said in words
 module dda_deck_key
    use dda_kinds, only : wp
+   use dda_text, only : lower_case, to_text
    implicit none
    private
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
+   public :: wanted, quoted_words, full_name, near_group, near_key, near_word
+   public :: near_one, or_leave_out, registry_help
 
    !> Longest name of a key [characters]
    integer, parameter :: name_length = 32
@@ -69,6 +72,10 @@ module dda_deck_key
       character(len=16) :: name = ""     !! Name of the group
       character(len=72) :: meaning = ""  !! What the group describes
    end type group_t
+
+   !> Longest word that is compared letter by letter [characters]
+   integer, parameter :: longest = 40
+
 contains
 
    !> Whether a number is one that a key takes
@@ -81,4 +88,253 @@ contains
       if (in_range .and. key%kind == key_kind%whole) &
          & in_range = .not. abs(number - anint(number)) > 0.0_wp
    end function in_range
+
+   !> What a key takes: kind of value, unit and range
+   pure function wanted(key) result(text)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: text  !! Words such as: a number [m] from 1e-9 to 1e9
+
+      select case (key%kind)
+      case (key_kind%number)
+         text = "a number"//unit_text(key)//range_text(key)
+      case (key_kind%whole)
+         text = "a whole number"//unit_text(key)//range_text(key)
+      case (key_kind%numbers)
+         text = "a list of numbers"//unit_text(key)//range_text(key)
+      case (key_kind%word)
+         text = quoted_words(key%words)
+      case (key_kind%texts)
+         text = "a list of words in quotes, each of at most "//to_text(word_length)//" characters"
+      case (key_kind%flag)
+         text = ".true. or .false."
+      case default
+         text = "a text in quotes"
+      end select
+   end function wanted
+
+   !> Unit in brackets
+   pure function unit_text(key) result(text)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: text  !! The unit after a blank; empty if there is none
+
+      text = ""
+      if (len_trim(key%unit) > 0) text = " ["//trim(key%unit)//"]"
+   end function unit_text
+
+   !> Range of a number
+   pure function range_text(key) result(text)
+      type(key_t), intent(in) :: key
+      !> The range after a blank, such as: from 0 to 90; empty if all numbers will do
+      character(len=:), allocatable :: text
+      real(wp), parameter :: none = huge(1.0_wp)
+      character(len=:), allocatable :: comma
+
+      text = ""
+      comma = ""
+      if (key%within(1) > -none) text = " from "//bound_text(key%within(1))
+      if (key%above > -none) text = " above "//bound_text(key%above)
+      if (len(text) > 0) comma = ","
+      if (key%below < none) then
+         text = text//comma//" below "//bound_text(key%below)
+      else if (key%within(2) < none) then
+         text = text//" to "//bound_text(key%within(2))
+      end if
+   end function range_text
+
+   !> A bound of a range; a one with many zeros as a power of ten
+   pure function bound_text(bound) result(text)
+      real(wp), intent(in) :: bound          !! The bound
+      character(len=:), allocatable :: text  !! Such as: 0.5, 1000 or 1e9
+      integer :: zeros
+
+      text = to_text(bound)
+      zeros = len(text) - 1
+      if (zeros > 6 .and. text == "1"//repeat("0", zeros)) text = "1e"//to_text(zeros)
+   end function bound_text
+
+   !> A list of words, each in quotes
+   pure function quoted_words(words) result(text)
+      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=:), allocatable :: text  !! Such as: 'stress' or 'strain'
+      integer :: first, blank
+
+      text = ""
+      first = 1
+      do while (first <= len_trim(words))
+         blank = index(words(first:)//" ", " ")
+         if (len(text) > 0) text = text//" or "
+         text = text//"'"//words(first:first + blank - 2)//"'"
+         first = first + blank
+      end do
+   end function quoted_words
+
+   !> Name of a key with its group
+   pure function full_name(key) result(name)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: name  !! Such as: arch%radius
+
+      name = trim(key%group)//"%"//trim(key%name)
+   end function full_name
+
+   !> The group that was meant
+   pure function near_group(name, groups, topic) result(text)
+      character(len=*), intent(in) :: name    !! Name that is no group
+      type(group_t), intent(in) :: groups(:)  !! Groups of the registry
+      character(len=*), intent(in) :: topic   !! Page of the help that lists them
+      character(len=:), allocatable :: text   !! Sentence that names the nearest group
+
+      text = "the nearest known group is &"//nearest_word(name, groups%name)//"; 'dda help " &
+         & //topic//"' lists all"
+   end function near_group
+
+   !> The key that was meant
+   pure function near_key(name, group, keys, topic) result(text)
+      !> Name that is no key of the group
+      character(len=*), intent(in) :: name
+      !> Name of the group; empty if any group will do
+      character(len=*), intent(in) :: group
+      !> Keys of the registry
+      type(key_t), intent(in) :: keys(:)
+      !> Page of the help that lists them
+      character(len=*), intent(in) :: topic
+      !> Sentence that names the group of that key, or the nearest key
+      character(len=:), allocatable :: text
+      logical :: fits(size(keys))
+      integer :: i
+
+      i = findloc(keys%name == name, .true., dim=1)
+      if (i > 0) then
+         text = "it is a key of &"//trim(keys(i)%group)//"; move it there"
+         return
+      end if
+      fits = keys%group == group .or. (len(group) == 0 .and. keys%varies)
+      text = "the nearest known key is "//nearest_word(name, pack(keys%name, fits)) &
+         & //"; 'dda help "//topic//"' lists all"
+   end function near_key
+
+   !> The word that was meant, of those that a key takes
+   pure function near_word(key, text) result(near)
+      type(key_t), intent(in) :: key
+      !> Word that the key does not take
+      character(len=*), intent(in) :: text
+      !> Words after a colon that name the nearest one; empty for a key that takes no words
+      character(len=:), allocatable :: near
+      character(len=word_length) :: list(len(key%words)/2)
+      integer :: i, first, blank
+
+      near = ""
+      if (len_trim(key%words) == 0) return
+      list = ""
+      first = 1
+      do i = 1, size(list)
+         if (first > len_trim(key%words)) exit
+         blank = index(key%words(first:)//" ", " ")
+         list(i) = key%words(first:first + blank - 2)
+         first = first + blank
+      end do
+      near = near_one(lower_case(trim(text)), list(:i - 1))
+   end function near_word
+
+   !> A word of a list that is much like another
+   pure function near_one(word, list) result(near)
+      !> Word that is not on the list
+      character(len=*), intent(in) :: word
+      !> Words to choose from: (n)
+      character(len=*), intent(in) :: list(:)
+      !> Words after a colon that name it; empty if more than half of the letters differ
+      character(len=:), allocatable :: near
+
+      near = nearest_word(word, list)
+      if (2*edit_distance(word, near) <= len(near) + 1) then
+         near = ": did you mean '"//near//"'?"
+      else
+         near = ""
+      end if
+   end function near_one
+
+   !> What a deck may do instead of giving a key a value that it can take
+   pure function or_leave_out(key) result(advice)
+      type(key_t), intent(in) :: key
+      character(len=:), allocatable :: advice  !! Words after a semicolon
+
+      advice = "; correct it"
+      if (len_trim(key%default) > 0) then
+         advice = advice//", or leave it out for "//trim(key%default)
+      else if (len_trim(key%without) > 0 .and. key%group /= "sweep") then
+         advice = advice//", or leave it out: "//trim(key%without)
+      end if
+   end function or_leave_out
+
+   !> The word of a list that is nearest to a word, which may be the beginning of one
+   pure function nearest_word(word, list) result(found)
+      character(len=*), intent(in) :: word    !! Word to compare
+      character(len=*), intent(in) :: list(:)
+      character(len=:), allocatable :: found  !! The first of the nearest ones
+      integer :: i, changes, fewest
+
+      found = ""
+      fewest = huge(1)
+      do i = 1, size(list)
+         changes = min(edit_distance(word, trim(list(i))), 1 + edit_distance(word, &
+            list(i)(:min(len(word), len_trim(list(i))))))
+         if (changes >= fewest) cycle
+         fewest = changes
+         found = trim(list(i))
+      end do
+   end function nearest_word
+
+   !> Fewest letters to insert, delete or replace to turn one word into another (Levenshtein)
+   pure integer function edit_distance(a, b)
+      !> First word; only its beginning counts where it is very long
+      character(len=*), intent(in) :: a
+      !> Second word
+      character(len=*), intent(in) :: b
+      integer :: row(0:len(b)), diagonal, above, i, j
+
+      row = [(j, j=0, len(b))]
+      do i = 1, min(len(a), longest)
+         diagonal = row(0)
+         row(0) = i
+         do j = 1, len(b)
+            above = row(j)
+            row(j) = min(above + 1, row(j - 1) + 1, diagonal + merge(0, 1, a(i:i) == b(j:j)))
+            diagonal = above
+         end do
+      end do
+      edit_distance = row(len(b))
+   end function edit_distance
+
+   !> The groups and keys of a registry with unit, range, default and meaning: what `dda help keys`
+   !> and `dda help lines` print
+   pure function registry_help(groups, keys) result(text)
+      type(group_t), intent(in) :: groups(:)  !! The groups
+      type(key_t), intent(in) :: keys(:)      !! The keys
+      character(len=:), allocatable :: text   !! Lines, each ended by a line feed
+      character(len=1), parameter :: lf = achar(10)
+      integer :: g, i
+
+      text = ""
+      do g = 1, size(groups)
+         if (g > 1) text = text//lf
+         text = text//"&"//trim(groups(g)%name)//"   "//trim(groups(g)%meaning)//lf
+         do i = 1, size(keys)
+            if (keys(i)%group /= groups(g)%name) cycle
+            text = text//key_help(keys(i), lf)
+         end do
+      end do
+   end function registry_help
+
+   !> Help on one key
+   pure function key_help(key, lf) result(text)
+      type(key_t), intent(in) :: key
+      character(len=*), intent(in) :: lf     !! End of a line
+      character(len=:), allocatable :: text  !! Two or three lines
+      character(len=*), parameter :: indent = "      "
+
+      text = "   "//trim(key%name)
+      if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
+      if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
+      text = text//lf//indent//trim(key%meaning)//lf
+      if (key%kind /= key_kind%later) text = text//indent//wanted(key)//lf
+   end function key_help
 end module dda_deck_key

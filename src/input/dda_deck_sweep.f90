@@ -1,21 +1,22 @@
-!> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
+!> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it; and
+!> which of them --cases chooses
 module dda_deck_sweep
-   use dda_deck, only : deck_error, deck_sweep_t, deck_t, key_error
-   use dda_deck_key, only : key_kind, key_t, word_length
+   use dda_deck, only : deck_error, deck_sweep_t, deck_t, find_parameter, key_error, &
+      & parameter_name, put_number, put_text
+   use dda_deck_key, only : full_name, key_kind, key_t, wanted, word_length
    use dda_deck_keys, only : deck_key
-   use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_set, only : put_number, put_text
-   use dda_deck_words, only : full_name, wanted
-   use dda_error, only : error_t
-   use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, &
-      & sweep_parameter, sweep_texts, sweep_values
+   use dda_deck_token, only : shown
+   use dda_error, only : error_t, fatal_error
+   use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, sweep_parameter, &
+      & sweep_texts, sweep_values
    use dda_key_value, only : deck_place_t, default_value, is_numeric, number_problem, text_problem
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, to_text
+   use dda_text, only : lower_case, read_integer, to_text
    implicit none
    private
 
    public :: add_sweep, few_cases, max_sweeps, n_cases, swept_texts, turn_to_case
+   public :: choose_cases
 
    !> Most &sweep groups of a deck
    integer, parameter :: max_sweeps = 8
@@ -278,4 +279,53 @@ contains
          end associate
       end do
    end function swept_texts
+
+   !> Choose cases by their numbers
+   pure subroutine choose_cases(text, total, chosen, error)
+      !> Numbers and ranges parted by commas, such as 1-500,812; empty for all cases
+      character(len=*), intent(in) :: text
+      !> Number of cases of the deck
+      integer, intent(in) :: total
+      !> Whether a case is chosen: (total)
+      logical, allocatable, intent(out) :: chosen(:)
+      !> Not such a list, or a case that the deck does not have
+      type(error_t), allocatable, intent(out) :: error
+      integer :: first, comma, low, high
+      logical :: ok
+
+      allocate (chosen(total), source=text == "")
+      if (text == "") return
+      first = 1
+      do while (first <= len(text) + 1)
+         comma = index(text(first:)//",", ",")
+         call read_range(text(first:first + comma - 2), low, high, ok)
+         if (ok) ok = low >= 1 .and. low <= high .and. high <= total
+         if (.not. ok) then
+            call fatal_error(error, "expected cases from 1 to "//to_text(total)// &
+               & ", got '"//shown(text(first:first + comma - 2))//"'; write them like 1-4,7", &
+               & "--cases", 1)
+            return
+         end if
+         chosen(low:high) = .true.
+         first = first + comma
+      end do
+   end subroutine choose_cases
+
+   !> Read a number, or two with a dash between
+   pure subroutine read_range(text, low, high, ok)
+      character(len=*), intent(in) :: text
+      integer, intent(out) :: low   !! First number
+      integer, intent(out) :: high  !! Last number
+      logical, intent(out) :: ok    !! Whether the text is that
+      integer :: dash
+
+      dash = index(text, "-")
+      if (dash == 0) then
+         call read_integer(text, low, ok)
+         high = low
+      else
+         call read_integer(text(dash + 1:), high, ok)
+         if (ok) call read_integer(text(:dash - 1), low, ok)
+      end if
+   end subroutine read_range
 end module dda_deck_sweep

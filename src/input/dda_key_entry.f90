@@ -1,9 +1,9 @@
 !> Groups, keys and their values, from the tokens of a namelist file by a registry
 module dda_key_entry
-   use dda_deck_key, only : group_t, key_kind, key_t, max_items, word_length
+   use dda_deck_key, only : full_name, group_t, key_kind, key_t, max_items, near_group, near_key, &
+      & or_leave_out, wanted, word_length
    use dda_deck_scan, only : scan_deck
    use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
-   use dda_deck_words, only : full_name, near_group, near_key, or_leave_out, wanted
    use dda_error, only : error_t, fatal_error
    use dda_key_value, only : deck_place_t, deck_value_t, default_value, number_problem, &
       & set_number, set_text

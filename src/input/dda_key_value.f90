@@ -1,8 +1,8 @@
 !> Values of the keys of a registry: their defaults, and what numbers and texts they take
 module dda_key_value
-   use dda_deck_key, only : in_range, key_kind, key_t, word_length
+   use dda_deck_key, only : full_name, in_range, key_kind, key_t, near_word, or_leave_out, &
+      & quoted_words, wanted, word_length
    use dda_deck_token, only : shown
-   use dda_deck_words, only : full_name, near_word, or_leave_out, quoted_words, wanted
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_number, to_text
    implicit none

@@ -7,11 +7,10 @@ module dda_read_blocks
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : joint_keys, material_keys
    use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : error_t, fatal_error, warnings_t
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_text, only : read_integer, read_number, to_text
-   use dda_warnings, only : warnings_t
    use dda_watch, only : watch_t
    use dda_word_list, only : largest_coordinate
    implicit none

@@ -1,19 +1,18 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
-   use dda_deck, only : add_file_mark, deck_t, file_beside, has_group, new_deck, parameter_t
+   use dda_deck, only : add_file_mark, deck_t, file_beside, find_parameter, has_group, new_deck, &
+      & parameter_t
    use dda_deck_check_loads, only : check_block_file
    use dda_deck_keys, only : group_index
-   use dda_deck_parameter, only : find_parameter
    use dda_deck_scan, only : scan_deck
    use dda_deck_sweep, only : few_cases, n_cases
    use dda_deck_token, only : deck_scan_t
    use dda_error, only : error_t
-   use dda_file_mark, only : file_mark, text_mark
    use dda_key_names, only : analysis_mode, analysis_restart, output_blocks, output_joints, &
       & output_proof, output_reactions, scene_geometry, scene_kind, search_group, search_parameter
    use dda_key_value, only : deck_place_t
    use dda_read_blocks, only : parse_blocks
-   use dda_text_file, only : read_text_file
+   use dda_text_file, only : file_mark, read_text_file, text_mark
    use dda_watch, only : watch_t
    implicit none
    private

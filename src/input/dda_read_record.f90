@@ -5,8 +5,7 @@ module dda_read_record
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_integer, read_number, to_text
-   use dda_text_file, only : read_text_file
-   use dda_file_mark, only : text_mark
+   use dda_text_file, only : read_text_file, text_mark
    implicit none
    private
 

@@ -9,8 +9,8 @@ module dda_limerick_assembly
    use dda_block_system, only : n_unknown
    use dda_kinds, only : wp
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t
-   use dda_limerick_model, only : contact_law, force_at, limerick_model_t
-   use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state
+   use dda_limerick_model, only : contact_law, force_at, limerick_blocks_t, limerick_march_t, &
+      & limerick_model_t, limerick_state
    use dda_submatrices, only : elastic_matrix, mass_matrix, point_load, stress_load
    implicit none
    private

@@ -2,7 +2,7 @@
 !> they begin, and what they carry from step to step (Shi: df06, df07)
 module dda_limerick_contact
    use dda_kinds, only : wp
-   use dda_limerick_state, only : limerick_blocks_t, limerick_state
+   use dda_limerick_model, only : limerick_blocks_t, limerick_state
    use dda_submatrices, only : point_load
    use dda_vector, only : cross
    implicit none

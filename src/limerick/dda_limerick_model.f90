@@ -1,14 +1,19 @@
-!> A model in the terms of the original program: polygons, materials, points, and its constants
+!> A model in the terms of the original program: polygons, materials, points, and its constants; and
+!> its blocks in a run
 module dda_limerick_model
+   use dda_block_system, only : n_unknown
    use dda_boundary, only : boundary_t, records_before, value_at
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
 
    public :: limerick_model_t, limerick_material_t
    public :: contact_law, finite_law, force_at, half_size, loads_end, next_record
+   public :: limerick_blocks_t, limerick_march_t, limerick_state, limerick_state_enum
+   public :: new_blocks, new_march, measure_blocks
 
    !> Friction angle of a joint that cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -52,6 +57,87 @@ module dda_limerick_model
       !> Constants of the scheme
       type(limerick_constants_t) :: constants
    end type limerick_model_t
+
+   !> States of a contact
+   type :: limerick_state_enum
+      !> No spring
+      integer :: open = 0
+      !> A normal spring, and friction; of two corners: a normal spring at the first line
+      integer :: sliding = 1
+      !> A normal and a shear spring
+      integer :: locked = 2
+      !> Of two corners: a normal spring at the second line
+      integer :: second_line = 3
+   end type limerick_state_enum
+
+   !> Names of the states
+   type(limerick_state_enum), parameter :: limerick_state = limerick_state_enum()
+
+   !> The blocks where they are now
+   type :: limerick_blocks_t
+      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      integer, allocatable :: first_vertex(:)
+      !> Block of each vertex: (n_vertex)
+      integer, allocatable :: owner(:)
+      !> The vertex after each one round its block: (n_vertex)
+      integer, allocatable :: next(:)
+      !> The vertex before each one: (n_vertex)
+      integer, allocatable :: previous(:)
+      !> Corners: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> Area: (n_block) [m2]
+      real(wp), allocatable :: area(:)
+      !> Centre of gravity: (2, n_block) [m]
+      real(wp), allocatable :: centroid(:, :)
+      !> Central second moments Sxx, Syy, Sxy: (3, n_block) [m4]
+      real(wp), allocatable :: second(:, :)
+      !> Stress sx, sy, txy: (3, n_block) [Pa]
+      real(wp), allocatable :: stress(:, :)
+      !> Rotation since the beginning: (n_block) [rad]
+      real(wp), allocatable :: rotation(:)
+      !> Rates of the unknowns: (n_unknown, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Fixed points: (2, n_fixed) [m]
+      real(wp), allocatable :: fixed_point(:, :)
+      !> How far each has drifted from where it was fixed: (2, n_fixed) [m]
+      real(wp), allocatable :: fixed_drift(:, :)
+      !> Load points: (2, n_load) [m]
+      real(wp), allocatable :: load_point(:, :)
+      !> Ends of the bolts: (2, 2, n_bolt) [m]
+      real(wp), allocatable :: bolt_point(:, :, :)
+      !> Force of each, positive where it pulls: (n_bolt) [N]
+      real(wp), allocatable :: bolt_force(:)
+      !> Measured points: (2, n_measured) [m]
+      real(wp), allocatable :: measured_point(:, :)
+   end type limerick_blocks_t
+
+   !> Numbers of the march of steps
+   type :: limerick_march_t
+      !> Half the larger side of the model (w0) [m]
+      real(wp) :: half_size = 0.0_wp
+      !> Distance within which contacts are sought (d0) [m]
+      real(wp) :: reach = 0.0_wp
+      !> Mean area of the blocks at the beginning [m2]
+      real(wp) :: mean_area = 0.0_wp
+      !> Stiffness of the springs at the fixed points [N/m2]
+      real(wp) :: fixed_stiffness = 0.0_wp
+      !> Stiffness of the contacts in the next solution [N/m2]
+      real(wp) :: penalty = 0.0_wp
+      !> Stiffness of the contacts in the last solution [N/m2]
+      real(wp) :: used_penalty = 0.0_wp
+      !> Deepest penetration of the last step over the half size; 0 with a fixed penalty
+      real(wp) :: penetration = 0.0_wp
+      !> Length of the step [s]
+      real(wp) :: time_step = 0.0_wp
+      !> Time at the end of the last accepted step [s]
+      real(wp) :: time = 0.0_wp
+      !> Largest motion of a vertex in the step over what is allowed
+      real(wp) :: displacement_ratio = 0.0_wp
+      !> Accepted steps
+      integer :: steps = 0
+      !> Passes of the open-close loop, each of one factorisation
+      integer :: passes = 0
+   end type limerick_march_t
 
 contains
 
@@ -130,4 +216,82 @@ contains
          end associate
       end do
    end function next_record
+
+   !> The blocks at the beginning
+   pure subroutine new_blocks(model, blocks)
+      type(limerick_model_t), intent(in) :: model
+      type(limerick_blocks_t), intent(out) :: blocks
+      integer :: b, i, n, nv, v, first, last
+
+      nv = size(model%vertex, 2)
+      blocks%first_vertex = model%first_vertex
+      blocks%vertex = model%vertex
+      associate (boundary => model%boundary)
+         allocate (blocks%fixed_point(2, size(boundary%held)))
+         allocate (blocks%load_point(2, size(boundary%loaded)))
+         allocate (blocks%measured_point(2, size(boundary%measured)))
+         do v = 1, 2
+            blocks%fixed_point(v, :) = boundary%held%point(v)
+            blocks%load_point(v, :) = boundary%loaded%point(v)
+            blocks%measured_point(v, :) = boundary%measured%point(v)
+         end do
+         allocate (blocks%fixed_drift(2, size(boundary%held)), source=0.0_wp)
+         n = 0
+         if (allocated(boundary%bar)) n = size(boundary%bar)
+         allocate (blocks%bolt_point(2, 2, n), blocks%bolt_force(n))
+         do i = 1, n
+            blocks%bolt_point(:, :, i) = boundary%bar(i)%point
+            blocks%bolt_force(i) = boundary%bar(i)%prestress
+         end do
+      end associate
+      n = size(model%first_vertex) - 1
+      allocate (blocks%owner(nv), blocks%next(nv), blocks%previous(nv))
+      allocate (blocks%area(n), blocks%centroid(2, n), blocks%second(3, n), blocks%stress(3, n))
+      allocate (blocks%velocity(n_unknown, n), source=0.0_wp)
+      allocate (blocks%rotation(n), source=0.0_wp)
+      call measure_blocks(blocks)
+      do b = 1, n
+         first = model%first_vertex(b)
+         last = model%first_vertex(b + 1) - 1
+         blocks%owner(first:last) = b
+         blocks%next(first:last) = [(v, v=first + 1, last), first]
+         blocks%previous(first:last) = [last, (v, v=first, last - 1)]
+         associate (material => model%material(model%block_material(b)))
+            blocks%stress(:, b) = material%stress + blocks%centroid(2, b)*material%stress_gradient
+            blocks%velocity(1:3, b) = material%velocity
+         end associate
+      end do
+   end subroutine new_blocks
+
+   !> Areas and moments of the blocks as they are now (Shi: area)
+   pure subroutine measure_blocks(blocks)
+      type(limerick_blocks_t), intent(inout) :: blocks  !! The blocks; their vertices are set
+      type(area_moments_t) :: moments
+      integer :: b
+
+      do b = 1, size(blocks%area)
+         moments = area_moments(blocks%vertex(:, &
+            & blocks%first_vertex(b):blocks%first_vertex(b + 1) - 1))
+         blocks%area(b) = moments%area
+         blocks%centroid(:, b) = moments%centroid
+         blocks%second(:, b) = moments%second
+      end do
+   end subroutine measure_blocks
+
+   !> Scales of a run before its first step
+   pure type(limerick_march_t) function new_march(model, blocks) result(march)
+      type(limerick_model_t), intent(in) :: model
+      type(limerick_blocks_t), intent(in) :: blocks
+
+      associate (constants => model%constants)
+         march%half_size = half_size(model)
+         march%reach = march%half_size*max(2.5_wp*constants%max_displacement_ratio, &
+            & 3.0_wp*constants%penetration_ratio)
+         march%mean_area = sum(blocks%area)/real(size(blocks%area), wp)
+         march%penalty = constants%penalty_factor*maxval(model%material%young)
+         march%used_penalty = march%penalty
+         march%fixed_stiffness = 100.0_wp*march%penalty
+         march%time_step = constants%time_step
+      end associate
+   end function new_march
 end module dda_limerick_model

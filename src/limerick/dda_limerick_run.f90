@@ -3,8 +3,7 @@ module dda_limerick_run
    use dda_block_system, only : n_unknown
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_limerick_model, only : limerick_model_t, loads_end
-   use dda_limerick_state, only : limerick_state, new_blocks, new_march
+   use dda_limerick_model, only : limerick_model_t, limerick_state, loads_end, new_blocks, new_march
    use dda_limerick_step, only : advance_limerick, limerick_run_t
    use dda_material, only : friction_coefficient
    implicit none

@@ -6,8 +6,8 @@ module dda_limerick_step
    use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t
    use dda_limerick_contact, only : begin_contacts, contact_list_t, contact_spring_t, &
       & place_springs, transfer_contacts
-   use dda_limerick_model, only : force_at, limerick_model_t, next_record
-   use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state
+   use dda_limerick_model, only : force_at, limerick_blocks_t, limerick_march_t, limerick_model_t, &
+      & limerick_state, next_record
    implicit none
    private
 

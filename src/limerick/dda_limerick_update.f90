@@ -1,7 +1,7 @@
 !> Where a step takes the blocks, and what it leaves behind (Shi: df24, df25)
 submodule (dda_limerick_step) dda_limerick_update
    use dda_limerick_assembly, only : bolt_elongation, n_bolts
-   use dda_limerick_state, only : measure_blocks
+   use dda_limerick_model, only : measure_blocks
    use dda_material, only : elasticity_matrix
    implicit none
 

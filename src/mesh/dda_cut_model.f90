@@ -1,17 +1,67 @@
 !> Blocks that were cut from lines: polygons, what they are made of, what acts on them, and which
-!> edges lie together
+!> edges lie together; the scales of a cut (Shi: dc02), and what it drops
 !>
 !> Edges that lie together in part get corners there, so that they lie together as wholes.
 module dda_cut_model
-   use dda_cut_report, only : cut_remarks_t
-   use dda_cut_scale, only : cut_scale_t
    use dda_kinds, only : wp
+   use dda_line_model, only : line_model_t
    use dda_sort, only : sorted_order
    implicit none
    private
 
    public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, point_kind, block_vertices
    public :: split_edges
+   public :: cut_remark_t, cut_remarks_t, cut_reason, cut_reason_enum, add_remark
+   public :: cut_scale_t, cut_scale
+
+   !> Scales of a cut
+   type :: cut_scale_t
+      !> What coordinates are counted from, so that none far from zero loses digits: (2) [m]
+      real(wp) :: origin(2) = 0.0_wp
+      !> Size w0 of the model: 1.02 times the larger of height/2 and width/2.6 [m]
+      real(wp) :: size = 0.0_wp
+      !> Distance within which things touch [m]
+      real(wp) :: reach = 0.0_wp
+      !> Distance within which a crossing becomes a node that is there already [m]
+      real(wp) :: merge = 0.0_wp
+      !> Distance within which an edge disturbs a node of other lines [m]
+      real(wp) :: clearance = 0.0_wp
+   end type cut_scale_t
+
+   !> Why a part of a line bounds no block
+   type :: cut_reason_enum
+      !> The line has no length
+      integer :: point = 1
+      !> The line meets fewer than two others
+      integer :: loose_line = 2
+      !> The part ends in nothing
+      integer :: loose_edge = 3
+      !> The part lies on a part of another line
+      integer :: doubled = 4
+      !> The part crosses another line although they have no node in common
+      integer :: crossing = 5
+      !> The part passes a node of other lines too closely
+      integer :: too_close = 6
+      !> The lines enclose a block without area
+      integer :: flat = 7
+   end type cut_reason_enum
+
+   !> Names of the reasons
+   type(cut_reason_enum), parameter :: cut_reason = cut_reason_enum()
+
+   !> A part of a line that was dropped
+   type :: cut_remark_t
+      integer :: line = 0            !! Number of the line
+      integer :: reason = 0          !! One of cut_reason
+      integer :: other = 0           !! Number of the line that is in the way; 0 if none is
+      real(wp) :: place(4) = 0.0_wp  !! Ends of the part, from the origin of the cut: (4) [m]
+   end type cut_remark_t
+
+   !> A list of remarks
+   type :: cut_remarks_t
+      integer :: n = 0                            !! How many there are
+      type(cut_remark_t), allocatable :: item(:)  !! The remarks: (n or more)
+   end type cut_remarks_t
 
    !> What a point of a block is for
    type :: point_kind_enum
@@ -100,6 +150,58 @@ module dda_cut_model
    end type corners_t
 
 contains
+
+   !> The scales of a model with at least one line that has a length
+   pure type(cut_scale_t) function cut_scale(model) result(scale)
+      type(line_model_t), intent(in) :: model
+      real(wp) :: low(2), high(2), largest
+      integer :: i
+
+      associate (place => model%line%place(:, :model%line%n))
+         do i = 1, 2
+            low(i) = min(minval(place(i, :)), minval(place(i + 2, :)))
+            high(i) = max(maxval(place(i, :)), maxval(place(i + 2, :)))
+         end do
+      end associate
+      scale%size = 1.02_wp*max((high(2) - low(2))/2.0_wp, (high(1) - low(1))/2.6_wp)
+      do i = 1, 2
+         scale%origin(i) = far_origin(low(i), high(i), scale%size)
+      end do
+      largest = maxval(max(abs(low), abs(high)))
+      scale%reach = max(1.0e-9_wp*scale%size, 4.0_wp*spacing(largest))
+      scale%merge = max(1.25_wp*model%edge_node_ratio*scale%size, scale%reach)
+      scale%clearance = max(model%edge_node_ratio*scale%size, scale%reach)
+   end function cut_scale
+
+   !> Origin of a coordinate: 0 near zero; far from it a power of two near the model, from which
+   !> coordinates are subtracted without rounding
+   pure real(wp) function far_origin(low, high, size)
+      real(wp), intent(in) :: low   !! Smallest coordinate [m]
+      real(wp), intent(in) :: high  !! Largest coordinate [m]
+      real(wp), intent(in) :: size  !! Size of the model [m]
+      real(wp) :: middle, step
+
+      far_origin = 0.0_wp
+      middle = low/2.0_wp + high/2.0_wp
+      if (abs(middle) < 8.0_wp*size) return
+      step = set_exponent(1.0_wp, exponent(size))
+      far_origin = anint(middle/step)*step
+   end function far_origin
+
+   !> Add a remark
+   pure subroutine add_remark(remarks, line, reason, other, place)
+      type(cut_remarks_t), intent(inout) :: remarks
+      integer, intent(in) :: line       !! Number of the line
+      integer, intent(in) :: reason     !! One of cut_reason
+      integer, intent(in) :: other      !! Number of the line in the way, or 0
+      real(wp), intent(in) :: place(4)  !! Ends of the part: (4) [m]
+
+      if (.not. allocated(remarks%item)) allocate (remarks%item(16))
+      ! the second half is room
+      if (remarks%n == size(remarks%item)) remarks%item = [remarks%item, remarks%item]
+      remarks%n = remarks%n + 1
+      remarks%item(remarks%n) = cut_remark_t(line, reason, other, place)
+   end subroutine add_remark
 
    !> Corners of one block
    pure function block_vertices(cut, block) result(vertex)
@@ -232,5 +334,4 @@ contains
          edge_at = k - split%first_vertex(block) + 1
       end do
    end function edge_at
-
 end module dda_cut_model

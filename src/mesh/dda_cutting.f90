@@ -3,9 +3,7 @@
 !> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
 !> dc06).
 module dda_cutting
-   use dda_cut_model, only : cut_model_t
-   use dda_cut_report, only : cut_remarks_t
-   use dda_cut_scale, only : cut_scale, cut_scale_t
+   use dda_cut_model, only : cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t

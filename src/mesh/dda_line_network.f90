@@ -2,8 +2,7 @@
 module dda_line_network
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
-   use dda_cut_report, only : add_remark, cut_reason, cut_remarks_t
-   use dda_cut_scale, only : cut_scale_t
+   use dda_cut_model, only : add_remark, cut_reason, cut_remarks_t, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
    use dda_kinds, only : wp

@@ -1,8 +1,7 @@
 !> From loops to blocks: corners on a straight edge go, coincident edges are found
 !> (Shi: dc08, dc09)
 submodule (dda_cutting) dda_loop_blocks
-   use dda_cut_model, only : edge_pair_t
-   use dda_cut_report, only : add_remark, cut_reason
+   use dda_cut_model, only : add_remark, cut_reason, edge_pair_t
    use dda_line_network, only : edge_place, half_edge_start
    use dda_sort, only : sorted_order
    use dda_vector, only : cross

@@ -1,7 +1,7 @@
 !> Edges that bound nothing or stand in the way are taken out of a network (Shi: dc05, dc06)
 submodule (dda_cutting) dda_network_trim
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
-   use dda_cut_report, only : cut_reason
+   use dda_cut_model, only : cut_reason
    use dda_line_network, only : drop_edge, edge_place
    use dda_segment, only : crossing_parameters, segment_distance
    use dda_sort, only : sort_numbers

@@ -1,9 +1,8 @@
 !> Frames of a run as CSV: a row for each corner of each block (frames.csv), a row for each joint
 !> (frame_joints.csv)
 module dda_write_frames
-   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
-   use dda_text, only : to_text
+   use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
    private
 

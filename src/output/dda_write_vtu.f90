@@ -12,9 +12,8 @@ module dda_write_vtu
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
-   use dda_vtu_field, only : append_field, append_vectors, check_field, field_attributes, &
-      & field_bytes, field_t, scalar_field, state_field
-   use dda_xml_text, only : attribute, file_head
+   use dda_vtu_field, only : append_field, append_vectors, attribute, check_field, &
+      & field_attributes, field_bytes, field_t, file_head, scalar_field, state_field
    implicit none
    private
 

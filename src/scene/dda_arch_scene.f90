@@ -3,7 +3,7 @@ module dda_arch_scene
    use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
    use dda_arch_chain, only : arch_numbers_t
-   use dda_contact_detection, only : find_contacts
+   use dda_contacts, only : find_contacts
    use dda_deck, only : deck_t, has_group, number_or
    use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
       & analysis_collapse_rotation_deg, analysis_damping, analysis_duration, analysis_flow, &

@@ -6,7 +6,7 @@ submodule (dda_deck_scene) dda_deck_family
    use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, settings_of, &
       & unit_weight
    use dda_deck_keys, only : deck_key
-   use dda_deck_set, only : put_number
+   use dda_deck, only : put_number
    use dda_error, only : fatal_error
    use dda_key_names, only : arch_half_angle_deg, arch_thickness_ratio, &
       & load_gravity_direction_deg, load_horizontal_coefficient, load_load_factor

@@ -1,7 +1,9 @@
-!> The model of the original program that a deck describes, from its scene
+!> The model of the original program that a deck or a file of blocks describes, from its scene
 module dda_limerick_scene
-   use dda_boundary, only : boundary_t, measured_point_t
+   use dda_block_input, only : block_plan_t
+   use dda_boundary, only : boundary_t, held_point_t, measured_point_t
    use dda_deck, only : deck_t, number_or
+   use dda_error, only : error_t, fatal_error
    use dda_key_names, only : analysis_collapse_displacement, analysis_max_displacement_ratio, &
       & analysis_penalty_ratio, analysis_steps, analysis_time_step, arch_abutment_overhang, &
       & arch_abutment_size, arch_radius, limerick_auto_penalty, limerick_close_ratio, &
@@ -11,22 +13,26 @@ module dda_limerick_scene
    use dda_key_value, only : deck_value_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
-   use dda_limerick_blocks, only : blocks_model, inner_points
    use dda_limerick_model, only : finite_law, half_size, limerick_model_t
    use dda_line_scene, only : law_of_joint, points_of_lines
    use dda_scene, only : scene_t
    use dda_settings, only : load_direction
+   use dda_text, only : to_text
    use dda_vector, only : along, right_normal
    implicit none
    private
 
    public :: abutment_sides, limerick_scene, set_constants
+   public :: blocks_model, check_limerick_blocks, inner_points
 
    !> Depth of the abutments over the radius: with the overhang as large, an arch of 10 m has the
    !> half size of 14.9 m that the published results of the original point to
    real(wp), parameter :: usual_depth = 0.43_wp
    !> Motion that means collapse over the radius of an arch, over the half size of anything else
    real(wp), parameter :: usual_collapse = 0.05_wp
+
+   !> Where the points are that hold a block: this share of the way from its corners to their middle
+   real(wp), parameter :: inset = 0.3_wp
 
 contains
 
@@ -238,4 +244,123 @@ contains
       call move_alloc(measured, boundary%measured)
    end subroutine add_corners
 
+   !> The model of a plan's blocks, without its constants. Every block has a material of its own,
+   !> for its stress and velocity are its own; the first material, which the first step looks at,
+   !> is that of a block that moves
+   pure subroutine blocks_model(plan, scene, model)
+      type(block_plan_t), intent(in) :: plan
+      type(scene_t), intent(in) :: scene
+      !> The model; its parts but for the direction of the weight are set
+      type(limerick_model_t), intent(inout) :: model
+      integer :: b, n
+
+      n = size(plan%fixed)
+      allocate (model%first_vertex, source=plan%first_vertex)
+      allocate (model%vertex, source=plan%vertex)
+      allocate (model%law, source=scene%contacts%search%law)
+      allocate (model%kind, source=plan%material)
+      allocate (model%edge_law(size(plan%vertex, 2)))
+      allocate (model%material(n + 1), model%block_material(n))
+      do b = 1, n
+         model%edge_law(plan%first_vertex(b):plan%first_vertex(b + 1) - 1) = plan%material(b)
+         model%block_material(b) = b + 1
+         associate (material => model%material(b + 1))
+            material%material_t = scene%system%materials(plan%material(b))
+            material%unit_weight = scene%system%unit_weight(b)
+         end associate
+      end do
+      do b = 1, size(plan%starts)
+         associate (block => plan%starts(b), material => model%material(plan%starts(b) + 1))
+            material%stress = plan%start(4:, b)
+            if (.not. plan%fixed(block)) material%velocity = plan%start(:3, b)
+         end associate
+      end do
+      model%material(1) = model%material(1 + max(1, findloc(plan%fixed, .false., dim=1)))
+      model%loads_go_on = .false.
+      model%boundary = scene%settings%boundary
+      call take_points(plan, scene%settings%load_factor, model%boundary)
+   end subroutine blocks_model
+
+   !> The plan's points, and those that hold its fixed blocks
+   pure subroutine take_points(plan, load_factor, boundary)
+      type(block_plan_t), intent(in) :: plan
+      !> What live loads are multiplied by
+      real(wp), intent(in) :: load_factor
+      !> The points of the scene, which may be more than the plan's
+      type(boundary_t), intent(inout) :: boundary
+      type(held_point_t), allocatable :: held(:)
+      integer :: b, i, n, v
+
+      if (.not. allocated(boundary%held)) allocate (boundary%held(0))
+      if (.not. allocated(boundary%loaded)) allocate (boundary%loaded(0))
+      if (.not. allocated(boundary%measured)) allocate (boundary%measured(0))
+      do i = 1, size(boundary%loaded)
+         if (boundary%loaded(i)%live) &
+            & boundary%loaded(i)%force%value = load_factor*boundary%loaded(i)%force%value
+      end do
+      n = size(boundary%held)
+      allocate (held(n + size(plan%vertex, 2)))
+      held(:n) = boundary%held
+      do b = 1, size(plan%fixed)
+         if (.not. plan%fixed(b)) cycle
+         associate (first => plan%first_vertex(b), last => plan%first_vertex(b + 1) - 1)
+            held(n + 1:n + 1 + last - first)%block = b
+            do v = 1, 2
+               held(n + 1:n + 1 + last - first)%point(v) = inner_points(plan%vertex(v, first:last))
+            end do
+            n = n + 1 + last - first
+         end associate
+      end do
+      boundary%held = held(:n)
+   end subroutine take_points
+
+   !> Coordinates of the points that hold a block: its corners, moved towards their middle
+   pure function inner_points(corner) result(point)
+      real(wp), intent(in) :: corner(:)  !! A coordinate of all corners: (n) [m]
+      real(wp) :: point(size(corner))    !! That of the points: (n) [m]
+
+      point = (1.0_wp - inset)*corner + inset*sum(corner)/real(size(corner), wp)
+   end function inner_points
+
+   !> Whether Shi's scheme can run a plan: it holds points where they are, in both
+   !> directions, knows no motion of the ground, and begins every static step at rest
+   pure subroutine check_limerick_blocks(plan, file, dynamic, error)
+      type(block_plan_t), intent(in) :: plan
+      character(len=*), intent(in) :: file              !! Name of its file
+      logical, intent(in) :: dynamic                    !! Whether velocities are kept
+      type(error_t), allocatable, intent(out) :: error  !! What it cannot do
+      integer :: b, i
+
+      if (allocated(plan%boundary%base_acceleration%time)) then
+         call fatal_error(error, "mode = 'limerick' knows no motion of the ground; remove it or " &
+            & //"choose mode = 'dynamic'", file, plan%ground_line)
+         return
+      end if
+      if (allocated(plan%boundary%absorbing)) then
+         call fatal_error(error, "mode = 'limerick' knows no absorbing faces; remove this line " &
+            & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
+         return
+      end if
+      do i = 1, size(plan%starts)
+         if (dynamic .or. .not. any(abs(plan%start(:3, i)) > 0.0_wp)) cycle
+         b = plan%starts(i)
+         call fatal_error(error, "mode = 'limerick' begins every static step at rest, but block " &
+            & //to_text(b)//" has a velocity; remove it or set limerick%dynamic = .true.", file, &
+            & plan%line(b))
+         return
+      end do
+      if (.not. allocated(plan%boundary%held)) return
+      do i = 1, size(plan%boundary%held)
+         associate (held => plan%boundary%held(i))
+            if (allocated(held%path%time)) then
+               call fatal_error(error, "mode = 'limerick' holds points where they are and moves " &
+                  & //"none; remove the displacement or choose another mode", file, held%line)
+            else if (.not. all(held%along)) then
+               call fatal_error(error, "mode = 'limerick' holds points along x and y; hold this " &
+                  & //"one so or choose another mode", file, held%line)
+            end if
+         end associate
+         if (allocated(error)) return
+      end do
+   end subroutine check_limerick_blocks
 end module dda_limerick_scene

@@ -4,7 +4,7 @@ module dda_line_scene
    use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t, new_block_system
    use dda_boundary, only : boundary_t, constant_history, history_t
-   use dda_contact_detection, only : find_contacts
+   use dda_contacts, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind, split_edges
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t

@@ -4,7 +4,6 @@ module dda_line_text
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
-   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_key_names, only : live_group, vehicle_group
    use dda_kinds, only : degree, wp
    use dda_limerick_analysis, only : load_history_t
@@ -13,7 +12,7 @@ module dda_line_text
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
    use dda_shape_text, only : add_bar_lines
-   use dda_text, only : to_text
+   use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
    private
 

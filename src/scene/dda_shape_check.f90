@@ -2,11 +2,10 @@
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_deck, only : deck_t, has_group, key_error, place_of, source_of
+   use dda_deck, only : deck_t, has_group, key_error, place_of, put_number, source_of
    use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_set, only : put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_deck_words, only : full_name
+   use dda_deck_key, only : full_name
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_yields
    use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &

@@ -6,13 +6,12 @@ module dda_shape_text
    use dda_boundary, only : loaded_point_t
    use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
-   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_key_names, only : arch_lune_deg, fill_group
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
    use dda_shape_scene, only : shape_assembly
-   use dda_text, only : to_text
+   use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
    private
 

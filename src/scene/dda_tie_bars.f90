@@ -7,7 +7,7 @@ module dda_tie_bars
    use dda_block_sites, only : block_at, site_t, survey
    use dda_deck, only : deck_error, deck_t, key_error
    use dda_deck_keys, only : deck_key
-   use dda_deck_words, only : full_name
+   use dda_deck_key, only : full_name
    use dda_error, only : error_t
    use dda_key_names, only : search_parameter, tie_ea, tie_group, tie_prestress, tie_strength, &
       & tie_x1, tie_x2, tie_y1

@@ -5,7 +5,7 @@ submodule (dda_critical) dda_collapse_trace
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : begin_motion, block_system_t
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
-   use dda_chain_unfold, only : fold
+   use dda_chain_decision, only : fold
    use dda_contact_types, only : joint_springs_t, new_joint_springs, same_joint
    use dda_contacts, only : joint_place
    use dda_error, only : error_t

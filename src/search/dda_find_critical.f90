@@ -3,8 +3,7 @@
 submodule (dda_critical) dda_find_critical
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
-   use dda_chain_decision, only : decide_chain
-   use dda_chain_unfold, only : unfold
+   use dda_chain_decision, only : decide_chain, unfold
    use dda_contact_types, only : joint_springs_t
    use dda_contacts, only : place_all_joints
    use dda_decision, only : decide

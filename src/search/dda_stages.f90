@@ -7,9 +7,8 @@
 submodule (dda_decision) dda_stages
    use dda_block_system, only : begin_motion
    use dda_boundary, only : present_at, stage_times
-   use dda_contact_detection, only : keep_contacts
    use dda_contact_search, only : forget_pairs
-   use dda_contacts, only : begin_forces
+   use dda_contacts, only : begin_forces, keep_contacts
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : unloaded_state
    use dda_graph_decision, only : decide_graph

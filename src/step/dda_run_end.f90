@@ -2,7 +2,7 @@
 submodule (dda_forward) dda_run_end
    use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned
-   use dda_contact_detection, only : raise_springs
+   use dda_contacts, only : raise_springs
    use dda_energy, only : audit_step
    use dda_load_clock, only : has_path
    use dda_step_interval, only : first_interval, measure_scales

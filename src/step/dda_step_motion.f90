@@ -2,10 +2,9 @@
 submodule (dda_step) dda_step_motion
    use dda_assembly, only : renew_springs, take_springs
    use dda_block_inertia, only : assemble_blocks, turn_masses
-   use dda_contact_detection, only : follow_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : joint_t
-   use dda_contacts, only : contacts_t
+   use dda_contacts, only : contacts_t, follow_contacts
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
    implicit none

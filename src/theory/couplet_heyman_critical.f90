@@ -18,8 +18,8 @@ module couplet_heyman_critical
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_curves, only : embrace_difference, settle_cubic
-   use couplet_heyman_equations, only : heyman_thickness, heyman_thrust, springing_thrust
-   use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
+   use couplet_heyman_equations, only : arc_excess, arm_excess, embrace_deficit, heyman_thickness, &
+      & heyman_thrust, springing_thrust, versine
    use couplet_heyman_theories, only : limits_of, limits_t, theory, weight_arm, weight_flag
    implicit none
    private

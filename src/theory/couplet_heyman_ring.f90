@@ -8,7 +8,7 @@
 !> of the ring is that of its narrowest pair.
 module couplet_heyman_ring
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_kernels, only : arc_excess, arm_excess, versine
+   use couplet_heyman_equations, only : arc_excess, arm_excess, versine
    implicit none
    private
 

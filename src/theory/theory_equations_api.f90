@@ -2,9 +2,8 @@
 module theory_equations_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_domain, only : blame, is_finite, is_half_angle, is_joint, is_thickness
-   use couplet_heyman_equations, only : eccentricity, springing_thrust, tangent_thrust, &
-      thrust_through
-   use couplet_heyman_kernels, only : embrace
+   use couplet_heyman_equations, only : eccentricity, embrace, springing_thrust, tangent_thrust, &
+      & thrust_through
    implicit none
    private
 

@@ -10,11 +10,9 @@ module dda_benchmark
    use dda_block_factor, only : factorise, substitute
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
-   use dda_chain_decision, only : decide_chain
-   use dda_chain_unfold, only : unfold
-   use dda_contacts, only : contacts_t
+   use dda_chain_decision, only : decide_chain, unfold
+   use dda_contacts, only : contacts_t, find_contacts, raise_springs
    use dda_kinds, only : pi, wp
-   use dda_contact_detection, only : find_contacts, raise_springs
    use dda_critical, only : find_critical
    use dda_decision, only : decide
    use dda_error, only : error_t

@@ -1,7 +1,7 @@
 !> A circular arch of equal voussoirs under its own weight, whose thickness or push is varied
 module scene_arch
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
-   use dda_contact_detection, only : find_contacts, raise_springs
+   use dda_contacts, only : find_contacts, raise_springs
    use dda_error, only : error_t
    use dda_kinds, only : degree, pi, wp
    use dda_material, only : joint_law_t, material_t

@@ -1,7 +1,7 @@
 !> Blocks and joints put together one by one, and the scene that they make
 module scene_model
    use dda_block_system, only : new_block_system
-   use dda_contact_detection, only : find_contacts, raise_springs
+   use dda_contacts, only : find_contacts, raise_springs
    use dda_contact_search, only : new_joint_search
    use dda_contact_transfer, only : search_contacts
    use dda_kinds, only : wp
