@@ -4,7 +4,6 @@ submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_block_system, only : block_system_t
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t, frame_t
-   use dda_process, only : make_folder
    use dda_table_file, only : table_file_t
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &

@@ -2,16 +2,21 @@
 submodule (dda_verbs) dda_run
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
+   use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
    use dda_command_line, only : name_of
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : choose_cases, n_cases
-   use dda_error, only : error_line
+   use dda_error, only : error_line, fatal_error
    use dda_process, only : deck_stem, error_is_terminal, exit_status, make_folder, worst_status
+   use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_run_record, only : run_record
-   use dda_scene_check, only : check_lines
-   use dda_screen, only : clear_progress, print_line, print_warnings, progress_t
+   use dda_scene, only : scene_t
+   use dda_scene_check, only : check_lines, check_scene
+   use dda_screen, only : clear_progress, end_watch, print_line, print_warnings, progress_t, &
+      & terminal_watch_t
+   use dda_table_file, only : remove_file
    use dda_text, only : to_text
    implicit none
 
@@ -81,37 +86,10 @@ submodule (dda_verbs) dda_run
          type(error_t), allocatable, intent(inout) :: error
       end subroutine run_cases
 
-      !> Read a deck, and check that its scene can be run
-      module subroutine read_and_check(command, number, deck, error)
-         type(command_t), intent(in) :: command
-         integer, intent(in) :: number  !! Number of the deck
-         type(deck_t), intent(out) :: deck
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine read_and_check
-
-      !> No two decks may write into the same folder
-      module subroutine check_folder(command, number, good, error)
-         type(command_t), intent(in) :: command
-         integer, intent(in) :: number
-         logical, intent(in) :: good(:)  !! Which of the decks before it will run: (number - 1)
-         type(error_t), allocatable, intent(inout) :: error
-      end subroutine check_folder
-
-      !> Take a folder for the rest of the program; nothing of it is touched before
-      module subroutine lock_folder(folder, quiet, error)
-         character(len=*), intent(in) :: folder  !! Name of the folder, which exists
-         logical, intent(in) :: quiet            !! Whether no warning is printed
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine lock_folder
-
-      !> Folder that a deck's results go to
-      pure module function folder_of(command, name) result(folder)
-         type(command_t), intent(in) :: command
-         character(len=*), intent(in) :: name
-         character(len=:), allocatable :: folder  !! Name of the folder
-      end function folder_of
-
    end interface
+
+   !> C's LOCK_EX and LOCK_NB: alone, and without waiting
+   integer(c_int), parameter :: alone = 2, at_once = 4
 
 contains
 
@@ -223,5 +201,100 @@ contains
          call open_tables(tables, record, error)
       end if
    end subroutine begin_tables
+
+   !> Read a deck, and check that its scene can be run
+   subroutine read_and_check(command, number, deck, error)
+      type(command_t), intent(in) :: command
+      integer, intent(in) :: number  !! Number of the deck
+      type(deck_t), intent(out) :: deck
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
+      type(terminal_watch_t) :: watch
+
+      watch%shown = error_is_terminal() .and. .not. command%quiet
+      call read_deck(name_of(command, number), command%setting, deck, error, watch, &
+         & command%cases, command%tight)
+      if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
+      call end_watch(watch)
+   end subroutine read_and_check
+
+   !> No two decks may write into the same folder
+   subroutine check_folder(command, number, good, error)
+      type(command_t), intent(in) :: command
+      integer, intent(in) :: number
+      logical, intent(in) :: good(:)  !! Which of the decks before it will run: (number - 1)
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i
+
+      do i = 1, number - 1
+         if (.not. good(i) .or. folder_of(command, name_of(command, i)) &
+            & /= folder_of(command, name_of(command, number))) cycle
+         call fatal_error(error, "expected a deck with a folder of its own, got "// &
+            & folder_of(command, name_of(command, i))//", to which "//name_of(command, i)// &
+            & " writes too; rename one deck", name_of(command, number), 1)
+         return
+      end do
+   end subroutine check_folder
+
+   !> Take a folder for the rest of the program; nothing of it is touched before
+   subroutine lock_folder(folder, quiet, error)
+      character(len=*), intent(in) :: folder  !! Name of the folder, which exists
+      logical, intent(in) :: quiet            !! Whether no warning is printed
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: file
+      type(binary_file_t) :: held
+
+      file = folder//"/run.lock"
+      call open_binary(file, held, error, keep=.true.)
+      if (allocated(error)) return
+      if (is_locked(held)) return
+      if (has_locks(file)) then
+         call fatal_error(error, "expected a folder that no other run or deck writes to, got "// &
+            & "one in use; choose another folder with --out, or wait for that run to end", file, 1)
+      else if (.not. quiet) then
+         write (error_unit, "(a)") file//":1: warning: this file system knows no locks: "// &
+            & "nothing keeps another run from writing to "//folder
+      end if
+   end subroutine lock_folder
+
+   !> Lock an open file, if nobody else has
+   logical function is_locked(file)
+      !> The file; stays locked until it is closed, at the end of the program
+      type(binary_file_t), intent(in) :: file
+      integer(c_int) :: failed
+
+      failed = c_flock(int(descriptor_of(file), c_int), ior(alone, at_once))
+      is_locked = failed == 0
+   end function is_locked
+
+   !> Whether files of a folder can be locked at all: one that nobody else knows of must
+   logical function has_locks(file)
+      character(len=*), intent(in) :: file  !! Name of the file that could not be locked
+      character(len=:), allocatable :: name
+      type(binary_file_t) :: probe
+      type(error_t), allocatable :: error
+
+      name = file//"."//to_text(int(c_getpid()))
+      call open_binary(name, probe, error)
+      has_locks = .true.
+      if (allocated(error)) return
+      has_locks = is_locked(probe)
+      call close_binary(probe, error)
+      call remove_file(name)
+   end function has_locks
+
+   !> Folder that a deck's results go to
+   pure function folder_of(command, name) result(folder)
+      type(command_t), intent(in) :: command
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: folder  !! Name of the folder
+      folder = deck_stem(name)
+      if (.not. allocated(command%out)) return
+      if (size(command%name) == 1) then
+         folder = command%out
+      else
+         folder = command%out//"/"//folder
+      end if
+   end function folder_of
 
 end submodule dda_run

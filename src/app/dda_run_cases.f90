@@ -4,7 +4,7 @@ submodule (dda_verbs:dda_run) dda_run_cases
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, may_print
    use dda_compute_case, only : compute_case
-   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_deck_sweep, only : turn_to_case
    use dda_key_names, only : output_restart
    use dda_kinds, only : wp
    use dda_screen, only : report_progress

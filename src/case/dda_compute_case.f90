@@ -48,12 +48,6 @@ module dda_compute_case
          type(case_t), intent(inout) :: this
       end subroutine plan_album
 
-      !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has
-      !> moved a tenth of the radius, or of the size of the blocks; or on the path of its histories
-      pure module subroutine plan_fall(this)
-         type(case_t), intent(inout) :: this
-      end subroutine plan_fall
-
       !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its
       !> pictures
       pure module subroutine take_pictures(this)

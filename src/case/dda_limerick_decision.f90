@@ -5,7 +5,6 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_contacts, only : begin_forces, contacts_t
    use dda_frames, only : frame_is_due, keep_frame
    use dda_key_names, only : scene_kind
-   use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state

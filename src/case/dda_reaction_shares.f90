@@ -1,6 +1,5 @@
 !> Reactions of one block shared among the points that hold it
 submodule (dda_force_rows) dda_reaction_shares
-   use dda_contacts, only : joint_place
    use dda_deformation, only : moved_point
    use dda_outer_loads, only : outer_loads
    use dda_reactions, only : force_on

@@ -7,8 +7,9 @@ module dda_contact_transfer
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
       & place_joint, slip_at, vertex_number
    use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
+   use dda_entrance, only : contact_key
    use dda_kinds, only : wp
-   use dda_sort, only : rising_order
+   use dda_sort, only : place_in, rising_order
    implicit none
    private
 
@@ -34,32 +35,6 @@ module dda_contact_transfer
 
    !> An open end takes part in the slip of a joint as far as this share of its length allows
    real(wp), parameter :: closeness = 1.0e-4_wp
-
-   interface
-
-      !> Keys of contacts
-      pure module function contact_keys(system, contact) result(key)
-         type(block_system_t), intent(in) :: system
-         type(contact_t), intent(in) :: contact(:)  !! The contacts: (n)
-         integer(int64) :: key(size(contact))       !! Their keys: (n)
-      end function contact_keys
-
-      !> Find for each contact the one of the step before that it goes on: the same corner and edge,
-      !> or else the nearest of the same two blocks
-      pure module subroutine match_contacts(system, joint, reach, past, source)
-         type(block_system_t), intent(in) :: system
-         !> The joints
-         type(joint_t), intent(in) :: joint(:)
-         !> Contacts farther from one another than their blocks reach are different ones: (n_block)
-         !> [m]
-         real(wp), intent(in) :: reach(:)
-         !> The contacts of the step before in the order of their keys; those taken over are marked
-         type(past_contact_t), intent(inout) :: past(:)
-         !> Places in past, 0 for none: (2, n_joint)
-         integer, intent(out) :: source(:, :)
-      end subroutine match_contacts
-
-   end interface
 
 contains
 
@@ -100,7 +75,7 @@ contains
       type(joint_t), allocatable :: joint(:)
       type(joint_place_t), allocatable :: place(:)
       integer(int64), allocatable :: closed(:)
-      integer :: taken(2), j
+      integer :: j
       integer, allocatable :: source(:, :)
       real(wp) :: gap(3)
 
@@ -111,8 +86,8 @@ contains
       allocate (source(2, size(joint)), place(size(joint)))
       call match_contacts(system, joint, reach, past, source)
       do j = 1, size(joint)
-         taken = source(:, j)
-         call take_over_slip(system, past, taken, .not. contacts%remember, joint(j), place(j))
+         call take_over_slip(system, past, source(:, j), .not. contacts%remember, joint(j), &
+            & place(j))
       end do
       call move_alloc(contacts%face, before%face)
       call move_alloc(contacts%intact, before%intact)
@@ -170,16 +145,8 @@ contains
       allocate (past(n))
       past = list(order)
       key = key(order)
-      allocate (closed, source=pack(key, [(is_closed(past(j)), j=1, n)]))
-
-   contains
-
-      !> Whether a contact of the step before carried a force or touched
-      pure logical function is_closed(old)
-         type(past_contact_t), intent(in) :: old
-
-         is_closed = .not. contacts%face(old%joint)%open(old%place)
-      end function is_closed
+      allocate (closed, source=pack(key, &
+         & [(.not. contacts%face(past(j)%joint)%open(past(j)%place), j=1, n)]))
    end subroutine list_past
 
    !> Let a joint start with the slip that its contacts had, and measure it where it is closed
@@ -205,7 +172,7 @@ contains
             cycle
          end if
          associate (contact => joint%contact(k))
-            length = edge_size(system, contact)
+            length = edge_size(system, system%moved, contact)
             contact%lock = contact%lock - past(source(k))%slip/length
             contact%closed_at = past(source(k))%contact%closed_at
             if (in_time) contact%closed_at = max(0.0_wp, contact%closed_at)
@@ -231,7 +198,7 @@ contains
          if (source(k) == 0) cycle
          associate (contact => joint%contact(k), old => past(source(k)))
             contact%lock = contact%lock + old%slip*(1.0_wp - old%stiffness/stiffness) &
-               & /edge_size(system, contact)
+               & /edge_size(system, system%moved, contact)
          end associate
       end do
    end subroutine keep_shear
@@ -255,27 +222,24 @@ contains
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(joint_t), intent(inout) :: joint
-      real(wp) :: edge(2)
       integer :: k
 
       do k = 1, joint%n_contact
          associate (c => joint%contact(k))
-            edge = vertex(:, vertex_number(system, c%edge_block, c%edge + 1)) &
-               & - vertex(:, vertex_number(system, c%edge_block, c%edge))
             c%lock = 0.0_wp
-            c%lock = slip_at(system, vertex, c)/norm2(edge)
+            c%lock = slip_at(system, vertex, c)/edge_size(system, vertex, c)
          end associate
       end do
    end subroutine lock_joint
 
-   !> Length of a contact's edge where it is now [m]
-   pure real(wp) function edge_size(system, contact)
+   !> Length of a contact's edge [m]
+   pure real(wp) function edge_size(system, vertex, contact)
       type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: vertex(:, :)
       type(contact_t), intent(in) :: contact
 
-      edge_size = norm2(system%moved(:, vertex_number(system, contact%edge_block, &
-         & contact%edge + 1)) - system%moved(:, vertex_number(system, contact%edge_block, &
-         & contact%edge)))
+      edge_size = norm2(vertex(:, vertex_number(system, contact%edge_block, contact%edge + 1)) &
+         & - vertex(:, vertex_number(system, contact%edge_block, contact%edge)))
    end function edge_size
 
    !> Forces, strength and direction of sliding of the contacts that go on
@@ -319,4 +283,112 @@ contains
          if (all(face%open)) face%slip = 0
       end associate
    end subroutine guess_face
+
+   !> Keys of contacts
+   pure function contact_keys(system, contact) result(key)
+      type(block_system_t), intent(in) :: system
+      type(contact_t), intent(in) :: contact(:)  !! The contacts: (n)
+      integer(int64) :: key(size(contact))       !! Their keys: (n)
+      integer :: i
+
+      do i = 1, size(contact)
+         key(i) = contact_key(vertex_number(system, contact(i)%vertex_block, contact(i)%vertex), &
+            & vertex_number(system, contact(i)%edge_block, contact(i)%edge), &
+            & size(system%vertex, 2))
+      end do
+   end function contact_keys
+
+   !> Find for each contact the one of the step before that it goes on: the same corner and edge,
+   !> or else the nearest of the same two blocks
+   pure subroutine match_contacts(system, joint, reach, past, source)
+      type(block_system_t), intent(in) :: system
+      !> The joints
+      type(joint_t), intent(in) :: joint(:)
+      !> Contacts farther from one another than their blocks reach are different ones: (n_block)
+      !> [m]
+      real(wp), intent(in) :: reach(:)
+      !> The contacts of the step before in the order of their keys; those taken over are marked
+      type(past_contact_t), intent(inout) :: past(:)
+      !> Places in past, 0 for none: (2, n_joint)
+      integer, intent(out) :: source(:, :)
+      integer(int64) :: past_key(size(past)), key(2)
+      integer :: order(size(past)), j, k
+
+      past_key = contact_keys(system, past%contact)
+      source = 0
+      do j = 1, size(joint)
+         key = contact_keys(system, joint(j)%contact)
+         do k = 1, joint(j)%n_contact
+            source(k, j) = same_contact(past, past_key, key(k))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
+         end do
+      end do
+      past_key = pair_keys(past%contact, size(system%area))
+      order = rising_order(past_key)
+      past_key = past_key(order)
+      do j = 1, size(joint)
+         key = pair_keys(joint(j)%contact, size(system%area))
+         do k = 1, joint(j)%n_contact
+            if (source(k, j) > 0) cycle
+            source(k, j) = next_contact(system, past, order, past_key, joint(j)%contact(k), &
+               & key(k), sum(reach(joint(j)%block)))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
+         end do
+      end do
+   end subroutine match_contacts
+
+   !> The contact of the step before of the same corner and edge that none has taken over, or 0
+   pure integer function same_contact(past, past_key, key)
+      type(past_contact_t), intent(in) :: past(:)
+      integer(int64), intent(in) :: past_key(:)  !! Their keys, rising
+      integer(int64), intent(in) :: key          !! Key of the contact that looks for one
+      integer :: i
+
+      same_contact = 0
+      do i = place_in(past_key, key), size(past)
+         if (past_key(i) /= key) return
+         if (past(i)%passed_on) cycle
+         same_contact = i
+         return
+      end do
+   end function same_contact
+
+   !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
+   pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
+      type(block_system_t), intent(in) :: system
+      type(past_contact_t), intent(in) :: past(:)
+      integer, intent(in) :: order(:)             !! Their order by blocks
+      integer(int64), intent(in) :: past_pair(:)  !! Keys of their blocks in that order, rising
+      type(contact_t), intent(in) :: contact
+      integer(int64), intent(in) :: pair          !! Key of its blocks
+      real(wp), intent(in) :: reach               !! How far away it may lie [m]
+      real(wp) :: least, distance, here(2), there(2)
+      integer :: m
+
+      next_contact = 0
+      least = reach
+      here = system%moved(:, vertex_number(system, contact%vertex_block, contact%vertex))
+      do m = place_in(past_pair, pair), size(past)
+         if (past_pair(m) /= pair) exit
+         associate (old => past(order(m)))
+            if (old%passed_on .or. .not. old%force(1) > 0.0_wp) cycle
+            there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
+               & old%contact%vertex))
+         end associate
+         distance = norm2(there - here)
+         if (distance > least) cycle
+         least = distance
+         next_contact = order(m)
+      end do
+   end function next_contact
+
+   !> Numbers that tell pairs of blocks apart
+   elemental integer(int64) function pair_keys(contact, n_block) result(key)
+      type(contact_t), intent(in) :: contact  !! A contact of the pair
+      integer, intent(in) :: n_block          !! Number of all blocks
+
+      key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
+         & + int(max(contact%vertex_block, contact%edge_block), int64)
+   end function pair_keys
+
 end module dda_contact_transfer

@@ -1,13 +1,11 @@
 !> Analysis files in DDAML, the XML form
 submodule (dda_read_limerick) dda_ddaml_analysis
-   use dda_ddaml_form, only : analysis_form, check_elements, find_part
-   use dda_ddaml_material, only : choose, element_error, element_words, number_attribute, &
-      & read_history, read_joint, read_material, whole_attribute
-   use dda_kinds, only : wp
+   use dda_ddaml_form, only : analysis_form
+   use dda_ddaml_material, only : choose, element_error, number_attribute, read_history, &
+      & read_joint, read_material, whole_attribute
    use dda_plain_files, only : check_steps
-   use dda_word_list, only : quoted, take_property, word_list_t
-   use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
-      & first_child, next_sibling
+   use dda_word_list, only : quoted
+   use dda_xml_tree, only : attribute_of, count_children, find_child
    implicit none
 
    !> Most steps of that phase where the file does not say it
@@ -31,16 +29,28 @@ contains
       if (at > 0) call number_attribute(tree, at, "value", 0.0_wp, analysis%gravity, error)
       if (.not. allocated(error)) call read_properties(tree, part, analysis, warnings, error)
       if (.not. allocated(error)) call read_loads(tree, part, analysis, error)
-      at = first_child(tree, part)
+      if (.not. allocated(error)) call read_children(tree, part, analysis, warnings, error)
+      if (.not. allocated(error)) call check_complete(tree, part, analysis, warnings, error)
+   end procedure read_ddaml_analysis
+
+   !> Read what an element holds
+   pure recursive subroutine read_children(tree, outer, analysis, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: outer  !! Place of the element
+      type(limerick_analysis_t), intent(inout) :: analysis
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(out) :: error
+      integer :: at
+
+      at = first_child(tree, outer)
       do while (at > 0 .and. .not. allocated(error))
          call read_element(tree, at, analysis, warnings, error)
          at = next_sibling(tree, at)
       end do
-      if (.not. allocated(error)) call check_complete(tree, part, analysis, warnings, error)
-   end procedure read_ddaml_analysis
+   end subroutine read_children
 
-   !> Read one child of Analysis
-   pure subroutine read_element(tree, at, analysis, warnings, error)
+   !> Read one child of Analysis, or of its constants of the scheme
+   pure recursive subroutine read_element(tree, at, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at  !! Place of the child
       type(limerick_analysis_t), intent(inout) :: analysis
@@ -52,7 +62,17 @@ contains
          case ("Analysistype", "Rotation", "Gravity", "Autotimestep", "Autopenalty", "Planestrain")
             call read_switch(tree, at, analysis, warnings, error)
          case ("AConstants")
-            call read_constants(tree, at, analysis, error)
+            call read_children(tree, at, analysis, warnings, error)
+         case ("Openclose")
+            call number_attribute(tree, at, "value", 0.0_wp, analysis%close_ratio, error)
+         case ("Opencriteria")
+            call number_attribute(tree, at, "value", 0.0_wp, analysis%open_ratio, error)
+         case ("NormSpringPen")
+            call number_attribute(tree, at, "value", 1.0e-30_wp, analysis%penetration_ratio, error)
+         case ("AngleOverlap")
+            call number_attribute(tree, at, "value", 0.0_wp, analysis%overlap_deg, error)
+         case ("ShearNormRatio")
+            call number_attribute(tree, at, "value", 1.0e-30_wp, analysis%stiffness_ratio, error)
          case ("Numtimesteps")
             call whole_attribute(tree, at, "timesteps", 1, analysis%max_steps, error)
          case ("Maxtimestep")
@@ -222,36 +242,6 @@ contains
          if (pass == 1) allocate (analysis%load(n))
       end do
    end subroutine read_loads
-
-   !> Read the constants of the scheme
-   pure subroutine read_constants(tree, at, analysis, error)
-      type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at  !! Place of AConstants
-      type(limerick_analysis_t), intent(inout) :: analysis
-      type(error_t), allocatable, intent(out) :: error
-      integer :: child
-
-      child = first_child(tree, at)
-      do while (child > 0 .and. .not. allocated(error))
-         associate (element => tree%element(child))
-            select case (element%name)
-            case ("Openclose")
-               call number_attribute(tree, child, "value", 0.0_wp, analysis%close_ratio, error)
-            case ("Opencriteria")
-               call number_attribute(tree, child, "value", 0.0_wp, analysis%open_ratio, error)
-            case ("NormSpringPen")
-               call number_attribute(tree, child, "value", 1.0e-30_wp, &
-                  & analysis%penetration_ratio, error)
-            case ("AngleOverlap")
-               call number_attribute(tree, child, "value", 0.0_wp, analysis%overlap_deg, error)
-            case ("ShearNormRatio")
-               call number_attribute(tree, child, "value", 1.0e-30_wp, &
-                  & analysis%stiffness_ratio, error)
-            end select
-         end associate
-         child = next_sibling(tree, child)
-      end do
-   end subroutine read_constants
 
    !> Whether all is there that an analysis needs
    pure subroutine check_complete(tree, part, analysis, warnings, error)

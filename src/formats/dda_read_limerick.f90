@@ -1,13 +1,20 @@
-!> Geometry and analysis files of the Limerick line, plain or DDAML, known by their first word
+!> Geometry and analysis files of the Limerick line, plain or in DDAML, the XML form, known by their
+!> first word
 module dda_read_limerick
+   use dda_ddaml_form, only : check_elements, find_part, geometry_form
+   use dda_ddaml_material, only : attribute_words, element_words
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
+   use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_line_model, only : entities_t, line_model_t
+   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
+      & new_line_model
    use dda_plain_files, only : read_plain_analysis, read_plain_geometry
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
+   use dda_word_list, only : check_number, largest_coordinate, take_material, take_number, &
+      & take_property, take_word_numbers, warn_of_rest, word_list_t
    use dda_xml_parser, only : parse_xml
-   use dda_xml_tree, only : xml_tree_t
+   use dda_xml_tree, only : attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
    private
 
@@ -37,15 +44,17 @@ module dda_read_limerick
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_ddaml_analysis
 
-      !> Read the geometry of a tree
-      pure module subroutine read_ddaml_geometry(tree, model, warnings, error)
-         type(xml_tree_t), intent(inout) :: tree
-         type(line_model_t), intent(out) :: model
-         type(warnings_t), intent(inout) :: warnings
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine read_ddaml_geometry
-
    end interface
+
+   !> What the type of an entity of a list says
+   type :: type_enum
+      integer :: none = 0               !! There is none
+      integer :: material = 1           !! Number of a material
+      integer :: material_or_first = 2  !! Likewise; the first material where it is left out
+   end type type_enum
+
+   !> Names of them
+   type(type_enum), parameter :: type_is = type_enum()
 
 contains
 
@@ -158,4 +167,162 @@ contains
       if (text(first:first) == "<") form_of = form%ddaml
       if (index(text(first:), "#!0xDDA-v1") == 1) form_of = form%extended
    end function form_of
+
+   !> Read the geometry of a tree
+   pure subroutine read_ddaml_geometry(tree, model, warnings, error)
+      type(xml_tree_t), intent(inout) :: tree
+      type(line_model_t), intent(out) :: model
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(out) :: error
+      type(entities_t) :: boundary
+      integer :: part, at, i
+
+      call find_part(tree, "Geometry", part, error)
+      if (.not. allocated(error)) call check_elements(tree, part, geometry_form, warnings, error)
+      if (allocated(error)) return
+      call new_line_model(model)
+      model%file = tree%file
+      call new_entities(boundary, 0)
+      at = first_child(tree, part)
+      do while (at > 0 .and. .not. allocated(error))
+         call read_list(tree, at, model, boundary, warnings, error)
+         at = next_sibling(tree, at)
+      end do
+      if (allocated(error)) return
+      ! boundary lines come first
+      model%n_boundary = boundary%n
+      do i = 1, model%line%n
+         call add_entity(boundary, model%line%place(:, i), model%line%material(i), &
+            & model%line%row(i))
+      end do
+      model%line = boundary
+   end subroutine read_ddaml_geometry
+
+   !> Read one child of Geometry
+   pure subroutine read_list(tree, at, model, boundary, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at  !! Place of the child
+      type(line_model_t), intent(inout) :: model
+      type(entities_t), intent(inout) :: boundary
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (element => tree%element(at))
+         select case (element%name)
+         case ("Edgenodedist")
+            call read_ratio(tree, at, model%edge_node_ratio, error)
+         case ("Jointlist")
+            call read_entities(tree, at, type_is%material, model%line, warnings, error)
+         case ("Boundlist")
+            call read_entities(tree, at, type_is%material_or_first, boundary, warnings, error)
+         case ("Matlinelist")
+            call read_entities(tree, at, type_is%material, model%material_line, warnings, error)
+         case ("Fixedpointlist")
+            call read_entities(tree, at, type_is%none, model%fixed, warnings, error)
+         case ("Loadpointlist")
+            call read_entities(tree, at, type_is%none, model%load, warnings, error)
+         case ("Measuredpointlist")
+            call read_entities(tree, at, type_is%none, model%measured, warnings, error)
+         case ("Holepointlist")
+            call read_entities(tree, at, type_is%none, model%hole, warnings, error)
+         case ("Seismicpointlist")
+            call read_entities(tree, at, type_is%none, model%seismic, warnings, error)
+            if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
+               & "seismic points have no effect", tree%file, element%row)
+         case ("Boltlist")
+            call read_bolts(tree, at, model, warnings, error)
+         end select
+      end associate
+   end subroutine read_list
+
+   !> Read Shi's e00
+   pure subroutine read_ratio(tree, at, ratio, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at         !! Place of the element
+      real(wp), intent(inout) :: ratio  !! The ratio
+      type(error_t), allocatable, intent(inout) :: error
+      type(word_list_t) :: words
+
+      call attribute_words(tree, at, "distance", words, error)
+      call take_number(words, "the edge-node distance", ratio, error)
+      call check_number(ratio >= 0.0_wp .and. ratio <= 0.5_wp, &
+         & "the edge-node distance must be from 0 to 0.5", ratio, tree%file, &
+         & tree%element(at)%row, error)
+   end subroutine read_ratio
+
+   !> Read the elements of a list
+   pure subroutine read_entities(tree, list, type, entities, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: list  !! Place of the list
+      integer, intent(in) :: type  !! What the type of its elements says
+      type(entities_t), intent(inout) :: entities
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(out) :: error
+      integer :: at
+
+      at = first_child(tree, list)
+      do while (at > 0 .and. .not. allocated(error))
+         call read_entity(tree, at, type, entities, warnings, error)
+         at = next_sibling(tree, at)
+      end do
+   end subroutine read_entities
+
+   !> Read bolts; what they are like may stand in attributes of ours, else the analysis file says it
+   pure subroutine read_bolts(tree, list, model, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: list
+      type(line_model_t), intent(inout) :: model
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: name(3) = [character(len=10) :: "stiffness", "strength", &
+         & "pretension"]
+      type(entities_t) :: bolt
+      type(word_list_t) :: words
+      real(wp) :: property(3)
+      integer :: at, k
+
+      call new_entities(bolt, 0)
+      at = first_child(tree, list)
+      do while (at > 0)
+         call read_entity(tree, at, type_is%none, bolt, warnings, error)
+         property = -1.0_wp
+         do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
+            call attribute_words(tree, at, trim(name(k)), words, error)
+            call take_property(words, "the "//trim(name(k))//" of a bolt", property(k), error)
+         end do
+         if (allocated(error)) return
+         call add_bolt(model, bolt%place(:, bolt%n), property, bolt%row(bolt%n))
+         at = next_sibling(tree, at)
+      end do
+   end subroutine read_bolts
+
+   !> Read one element of a list
+   pure subroutine read_entity(tree, at, type, entities, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at, type
+      type(entities_t), intent(inout) :: entities
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(inout) :: error
+      type(word_list_t) :: words
+      real(wp) :: place(4)
+      integer :: material, n
+
+      associate (name => tree%element(at)%name)
+         material = merge(0, 1, type == type_is%none)
+         if (type == type_is%material .or. type == type_is%material_or_first &
+            & .and. attribute_place(tree, at, "type") > 0) then
+            call attribute_words(tree, at, "type", words, error)
+            call take_material(words, "the type of "//name, material, error)
+         end if
+         n = merge(2, 4, name == "Point")
+         call element_words(tree, at, words)
+         call take_word_numbers(words, "a coordinate of "//name, largest_coordinate, place(:n), &
+            & error)
+         if (allocated(error)) return
+         if (n == 2) place(3:4) = place(1:2)
+         call warn_of_rest(words, "coordinates of "//name, warnings)
+         call add_entity(entities, place, material, tree%element(at)%row)
+      end associate
+   end subroutine read_entity
+
 end module dda_read_limerick

@@ -1,7 +1,6 @@
 !> The registry: what a deck says of the shape of an arch and of what lies on it
 module dda_arch_keys
    use dda_deck_key, only : key_kind, key_t
-   use dda_key_names, only : search_high, search_low
    use dda_kinds, only : wp
    implicit none
    private

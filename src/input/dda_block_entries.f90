@@ -1,12 +1,9 @@
 !> Bars, water, absorbing faces and stages of a file of blocks
 submodule (dda_read_blocks:dda_block_points) dda_block_entries
    use dda_bar, only : bar_t
-   use dda_block_lines, only : line_t, take_words
    use dda_boundary, only : absorbing_point_t, stage_change_t
-   use dda_deck_key, only : key_kind, key_t
    use dda_polygon, only : contains_point
    use dda_sort, only : sorted_order
-   use dda_text, only : read_number
    use dda_vector, only : area_moments, area_moments_t
    use dda_water, only : water_t
    implicit none

@@ -1,19 +1,15 @@
 !> Read the files that a deck names (lines, analysis, records of the ground in &ground or in a
 !> sweep), and check what it searches and sweeps, then every case, before anything is computed
 submodule (dda_read_deck) dda_deck_check
-   use dda_deck, only : deck_error, ground_record_t, key_error, parameter_name, place_of
+   use dda_deck, only : ground_record_t, key_error, parameter_name, place_of
    use dda_deck_check_case, only : check_case
-   use dda_deck_key, only : full_name, key_kind, key_t
-   use dda_deck_keys, only : deck_key
    use dda_deck_sweep, only : choose_cases, turn_to_case
-   use dda_deck_token, only : shown
-   use dda_key_names, only : arch_group, fill_group, fill_passive_share, fill_unit_weight, &
-      & ground_columns, ground_record, load_gravity, material_density, material_unit_weight, &
-      & output_max_cases, scene_analysis, tie_group, vehicle_axles
+   use dda_key_names, only : fill_group, fill_passive_share, fill_unit_weight, ground_columns, &
+      & ground_record, load_gravity, material_density, material_unit_weight, output_max_cases, &
+      & scene_analysis, tie_group, vehicle_axles
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
-   use dda_text, only : to_text
    implicit none
 
 contains

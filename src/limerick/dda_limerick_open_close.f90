@@ -23,25 +23,28 @@ contains
       integer :: pass, c
 
       settled = .false.
-      do pass = 1, max_passes
-         call add_contacts(model, contacts, spring, march, first_pass, equations)
-         call factorise(equations%matrix, equations%factor)
-         if (.not. equations%factor%usable) return
-         call substitute(equations%factor, equations%motion)
-         first_pass = .false.
-         march%passes = march%passes + 1
-         ! the very first solution of a run never counts as settled
-         settled = march%passes > 1
-         do c = 1, contacts%n
-            associate (contact => contacts%item(c))
-               call judge_contact(model, blocks, equations%motion, march, contact, spring(c))
-               if ((contact%state == limerick_state%open) &
-                  & .neqv. (contact%before == limerick_state%open)) settled = .false.
-            end associate
+      associate (equations => run%equations, contacts => run%contacts, march => run%march)
+         do pass = 1, max_passes
+            call add_contacts(model, contacts, run%spring, march, first_pass, equations)
+            call factorise(equations%matrix, equations%factor)
+            if (.not. equations%factor%usable) return
+            call substitute(equations%factor, equations%motion)
+            first_pass = .false.
+            march%passes = march%passes + 1
+            ! the very first solution of a run never counts as settled
+            settled = march%passes > 1
+            do c = 1, contacts%n
+               associate (contact => contacts%item(c))
+                  call judge_contact(model, run%blocks, equations%motion, march, contact, &
+                     & run%spring(c))
+                  if ((contact%state == limerick_state%open) &
+                     & .neqv. (contact%before == limerick_state%open)) settled = .false.
+               end associate
+            end do
+            march%used_penalty = march%penalty
+            if (settled) return
          end do
-         march%used_penalty = march%penalty
-         if (settled) return
-      end do
+      end associate
    end procedure open_and_close
 
    !> The state of one contact after a solution

@@ -3,11 +3,13 @@
 module dda_limerick_step
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t
+   use dda_limerick_assembly, only : assemble_limerick, bolt_elongation, couple_blocks, &
+      & limerick_equations_t, n_bolts
    use dda_limerick_contact, only : begin_contacts, contact_list_t, contact_spring_t, &
       & place_springs, transfer_contacts
    use dda_limerick_model, only : force_at, limerick_blocks_t, limerick_march_t, limerick_model_t, &
-      & limerick_state, next_record
+      & limerick_state, measure_blocks, next_record
+   use dda_material, only : elasticity_matrix
    implicit none
    private
 
@@ -51,19 +53,13 @@ module dda_limerick_step
    interface
 
       !> Solve and judge until no contact opens or closes
-      pure module subroutine open_and_close(model, blocks, contacts, spring, march, first_pass, &
-         & equations, settled)
+      pure module subroutine open_and_close(model, run, first_pass, settled)
          type(limerick_model_t), intent(in) :: model
-         type(limerick_blocks_t), intent(in) :: blocks
-         !> The contacts; their states are changed
-         type(contact_list_t), intent(inout) :: contacts
-         !> Their springs; a shear spring is set anew where a contact closes: (at least contacts%n)
-         type(contact_spring_t), intent(inout) :: spring(:)
-         type(limerick_march_t), intent(inout) :: march
+         !> The run; states of its contacts are changed, and the motion is set; a shear spring is
+         !> set anew where a contact closes
+         type(limerick_run_t), intent(inout) :: run
          !> Whether nothing was solved in this step yet; then it was
          logical, intent(inout) :: first_pass
-         !> The equations; the motion is set
-         type(limerick_equations_t), intent(inout) :: equations
          !> Whether no contact opened or closed in the last pass
          logical, intent(out) :: settled
       end subroutine open_and_close
@@ -111,43 +107,18 @@ module dda_limerick_step
          type(contact_list_t), intent(inout) :: list
       end subroutine find_limerick_contacts
 
-      !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
-      pure module subroutine move_vertices(model, blocks, motion, march, moved)
-         type(limerick_model_t), intent(in) :: model
-         type(limerick_blocks_t), intent(in) :: blocks
-         real(wp), intent(in) :: motion(:, :)            !! Motion of the blocks: (6, n_block)
-         type(limerick_march_t), intent(inout) :: march  !! The march; the displacement ratio is set
-         real(wp), intent(inout) :: moved(:, :)          !! The corners: (2, n_vertex) [m]
-      end subroutine move_vertices
-
-      !> What an accepted step leaves behind (Shi: df25)
-      pure module subroutine update(model, motion, blocks, march, moved)
-         type(limerick_model_t), intent(in) :: model
-         real(wp), intent(in) :: motion(:, :)
-         type(limerick_blocks_t), intent(inout) :: blocks
-         !> The march; time and steps are set
-         type(limerick_march_t), intent(inout) :: march
-         !> Corners at the end of the step; not set afterwards: (2, n_vertex) [m]
-         real(wp), allocatable, intent(inout) :: moved(:, :)
-      end subroutine update
-
    end interface
 
    !> What is left of the time step when contacts did not settle
    real(wp), parameter :: cut = 0.3_wp
-
    !> Growth of the time step from one step to the next, at most
    real(wp), parameter :: growth = 1.3_wp
-
    !> A motion beyond this multiple of what is allowed is tried again
    real(wp), parameter :: too_far = 3.0_wp
-
    !> A penetration beyond this multiple of its aim is tried again with a penalty ten times as large
    real(wp), parameter :: too_deep = 2.5_wp
-
    !> A record of a load that is nearer than this share of the step has been reached
    real(wp), parameter :: short = 1.0e-6_wp
-
    !> Least penalty over that of the step before
    real(wp), parameter :: relaxation = 1.0_wp/3.0_wp
 
@@ -168,22 +139,18 @@ contains
       do attempt = 1, max_attempts
          call assemble_limerick(model, run%blocks, run%march, run%equations)
          run%contacts%item(:run%contacts%n)%before = limerick_state%open
-         call open_and_close(model, run%blocks, run%contacts, run%spring, run%march, &
-            & first_pass, run%equations, settled)
+         call open_and_close(model, run, first_pass, settled)
          if (.not. solved(run%equations)) then
             call fatal_error(error, "the equations of a step have no usable solution")
             return
          end if
-         call move_vertices(model, run%blocks, run%equations%motion, run%march, run%moved)
+         call move_vertices(model, run)
          call judge_limerick_step(model, run%contacts, settled, run%march, accepted)
          if (accepted) exit
       end do
-      if (accepted) then
-         call update(model, run%equations%motion, run%blocks, run%march, run%moved)
-      else
-         call fatal_error(error, "no convergence at one step in the attempts that are "// &
-            & "allowed (Shi's program loops forever)")
-      end if
+      if (accepted) call update(model, run)
+      if (.not. accepted) call fatal_error(error, "no convergence at one step in the attempts "// &
+         & "that are allowed (Shi's program loops forever)")
    end subroutine advance_limerick
 
    !> Whether the equations gave a motion; one that is not finite is none
@@ -322,4 +289,110 @@ contains
             & opening/(2.0_wp*constants%max_displacement_ratio), relaxation)
       end associate
    end subroutine adapt_penalty
+
+   !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
+   pure subroutine move_vertices(model, run)
+      type(limerick_model_t), intent(in) :: model
+      type(limerick_run_t), intent(inout) :: run  !! The run; the displacement ratio is set
+      real(wp) :: farthest, step(2), turn(2)
+      integer :: b, v
+
+      farthest = 0.0_wp
+      associate (blocks => run%blocks, motion => run%equations%motion)
+         do b = 1, size(blocks%area)
+            turn = turning(model, motion(3, b))
+            do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
+               step = displacement(motion(:, b), turn, &
+                  & blocks%vertex(:, v) - blocks%centroid(:, b))
+               run%moved(:, v) = blocks%vertex(:, v) + step
+               farthest = max(farthest, step(1)**2 + step(2)**2)
+            end do
+         end do
+      end associate
+      run%march%displacement_ratio = sqrt(farthest) &
+         & /(run%march%half_size*model%constants%max_displacement_ratio)
+   end subroutine move_vertices
+
+   !> What a rotation does to an arm: along it and across it
+   pure function turning(model, angle) result(turn)
+      type(limerick_model_t), intent(in) :: model
+      real(wp), intent(in) :: angle  !! The rotation [rad]
+      real(wp) :: turn(2)            !! Parts of the arm's change along it and across it: (2)
+
+      turn = [0.0_wp, angle]
+      if (model%constants%exact_rotation) turn = [cos(angle) - 1.0_wp, sin(angle)]
+   end function turning
+
+   !> Displacement of a point of a block
+   pure function displacement(motion, turn, arm) result(step)
+      real(wp), intent(in) :: motion(6)  !! Unknowns of the block: (6)
+      real(wp), intent(in) :: turn(2)    !! What its rotation does to an arm along it and across it
+      real(wp), intent(in) :: arm(2)     !! Arm of the point: (2) [m]
+      real(wp) :: step(2)                !! The displacement: (2) [m]
+
+      associate (x => arm(1), y => arm(2))
+         step(1) = motion(1) + turn(1)*x - turn(2)*y + motion(4)*x + motion(6)*y/2.0_wp
+         step(2) = motion(2) + turn(2)*x + turn(1)*y + motion(5)*y + motion(6)*x/2.0_wp
+      end associate
+   end function displacement
+
+   !> What an accepted step leaves behind (Shi: df25)
+   pure subroutine update(model, run)
+      type(limerick_model_t), intent(in) :: model
+      type(limerick_run_t), intent(inout) :: run
+      real(wp), allocatable :: before(:, :)
+      real(wp) :: step(2)
+      integer :: b, i
+
+      associate (blocks => run%blocks, motion => run%equations%motion, march => run%march)
+         do i = 1, size(model%boundary%held)
+            step = point_step(blocks%fixed_point(:, i), model%boundary%held(i)%block)
+            blocks%fixed_point(:, i) = blocks%fixed_point(:, i) + step
+            blocks%fixed_drift(:, i) = blocks%fixed_drift(:, i) + step
+         end do
+         do i = 1, size(model%boundary%loaded)
+            blocks%load_point(:, i) = blocks%load_point(:, i) &
+               & + point_step(blocks%load_point(:, i), model%boundary%loaded(i)%block)
+         end do
+         do i = 1, size(model%boundary%measured)
+            blocks%measured_point(:, i) = blocks%measured_point(:, i) &
+               & + point_step(blocks%measured_point(:, i), model%boundary%measured(i)%block)
+         end do
+         do i = 1, n_bolts(model)
+            associate (bolt => model%boundary%bar(i))
+               blocks%bolt_force(i) = blocks%bolt_force(i) &
+                  & + bolt%stiffness*bolt_elongation(model, blocks, i, motion)
+               do b = 1, 2
+                  if (bolt%block(b) > 0) blocks%bolt_point(:, b, i) = blocks%bolt_point(:, b, i) &
+                     & + point_step(blocks%bolt_point(:, b, i), bolt%block(b))
+               end do
+            end associate
+         end do
+         do b = 1, size(blocks%area)
+            blocks%stress(:, b) = blocks%stress(:, b) + matmul(elasticity_matrix( &
+               & model%material(model%block_material(b))%material_t), motion(4:6, b))
+            blocks%velocity(:, b) = 2.0_wp/march%time_step*motion(:, b) - blocks%velocity(:, b)
+         end do
+         blocks%rotation = blocks%rotation + motion(3, :)
+         call move_alloc(blocks%vertex, before)
+         call move_alloc(run%moved, blocks%vertex)
+         call move_alloc(before, run%moved)
+         call measure_blocks(blocks)
+         march%time = march%time + march%time_step
+         march%steps = march%steps + 1
+      end associate
+
+   contains
+
+      !> Displacement of a point in the step
+      pure function point_step(point, block) result(step)
+         real(wp), intent(in) :: point(2)  !! The point at the beginning of the step: (2) [m]
+         integer, intent(in) :: block      !! Its block
+         real(wp) :: step(2)
+
+         step = displacement(run%equations%motion(:, block), turning(model, &
+            & run%equations%motion(3, block)), point - run%blocks%centroid(:, block))
+      end function point_step
+   end subroutine update
+
 end module dda_limerick_step

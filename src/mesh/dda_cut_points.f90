@@ -50,7 +50,7 @@ contains
       block_around = next_best
    end procedure block_around
 
-   !> Take out the blocks that hold hole points (Shi
+   !> Take out the blocks that hold hole points (Shi: dc11)
    module procedure remove_holes
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
@@ -98,61 +98,50 @@ contains
    module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
-      integer :: i, n
+      integer :: n
 
       boxes = block_boxes(cut)
       n = 0
       allocate (point(model%fixed%n + model%load%n + model%measured%n + 8))
-      do i = 1, model%fixed%n
-         call add_crossed(model%fixed%place(:, i), i, boxes, cut, point, n)
-         if (n > 0) then
-            if (point(n)%source == i) cycle
-         end if
-         call add_single(model, model%fixed, "fixed point", point_kind%fixed, i, boxes, cut, &
-            & point, n, error)
-         if (allocated(error)) return
-      end do
-      do i = 1, model%load%n
-         call add_single(model, model%load, "load point", point_kind%load, i, boxes, cut, point, &
-            & n, error)
-         if (allocated(error)) return
-      end do
-      do i = 1, model%measured%n
-         call add_single(model, model%measured, "measured point", point_kind%measured, i, boxes, &
-            & cut, point, n, error)
-         if (allocated(error)) return
-      end do
-      cut%point = point(:n)
+      call add_points(model, model%fixed, "fixed point", point_kind%fixed, boxes, cut, point, n, &
+         & error)
+      if (.not. allocated(error)) call add_points(model, model%load, "load point", &
+         & point_kind%load, boxes, cut, point, n, error)
+      if (.not. allocated(error)) call add_points(model, model%measured, "measured point", &
+         & point_kind%measured, boxes, cut, point, n, error)
+      if (.not. allocated(error)) cut%point = point(:n)
    end procedure place_points
 
-   !> A point in one block
-   pure subroutine add_single(model, entities, what, kind, i, boxes, cut, point, n, error)
+   !> Points of one kind in their blocks
+   pure subroutine add_points(model, entities, what, kind, boxes, cut, point, n, error)
       type(line_model_t), intent(in) :: model
       type(entities_t), intent(in) :: entities
-      !> What the point is called
+      !> What a point is called
       character(len=*), intent(in) :: what
       !> One of point_kind
       integer, intent(in) :: kind
-      !> Number of the point in its list
-      integer, intent(in) :: i
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
-      !> Receives the point
+      !> Receives the points
       type(block_point_t), allocatable, intent(inout) :: point(:)
       !> Number of points
       integer, intent(inout) :: n
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: place(2)
-      integer :: b
+      integer :: b, before, i
 
-      place = entities%place(1:2, i) - cut%scale%origin
-      b = block_around(cut, boxes, place)
-      if (b == 0) then
-         call no_block(error, what, model, entities, i)
-      else
+      do i = 1, entities%n
+         before = n
+         if (kind == point_kind%fixed) &
+            & call add_crossed(entities%place(:, i), i, boxes, cut, point, n)
+         if (n > before) cycle
+         place = entities%place(1:2, i) - cut%scale%origin
+         b = block_around(cut, boxes, place)
+         if (b == 0) call no_block(error, what, model, entities, i)
+         if (b == 0) return
          call append_point(point, n, block_point_t(kind, b, i, place))
-      end if
-   end subroutine add_single
+      end do
+   end subroutine add_points
 
    !> One fixed point for each edge that a fixed line crosses, a little inside the edge's block
    pure subroutine add_crossed(line, source, boxes, cut, point, n)
@@ -204,7 +193,7 @@ contains
       point = moments%centroid
    end function inside_point
 
-   !> Find the blocks of the bolts (Shi
+   !> Find the blocks of the bolts (Shi: dc14)
    module procedure place_bolts
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
@@ -277,7 +266,7 @@ contains
       character(len=*), intent(in) :: what  !! What the thing is called
       type(line_model_t), intent(in) :: model
       type(entities_t), intent(in) :: entities
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Number of the thing in its list
 
       call fatal_error(error, "expected a "//what//" inside a block, got one at (" &
          & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &

@@ -9,10 +9,9 @@ submodule (dda_deck_scene) dda_blocks_of_deck
    use dda_key_names, only : arch_lune_deg, fill_group, joint_cohesion, joint_friction_deg, &
       & joint_residual_deg, joint_slip_length, joint_tension, load_displacement_factor, &
       & load_gravity, load_water_rise, scene_kind, tie_group
-   use dda_kinds, only : pi
    use dda_line_scene, only : held_blocks
    use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
-   use dda_tie_bars, only : add_ties
+   use dda_shape_check, only : add_ties
    implicit none
 
 contains

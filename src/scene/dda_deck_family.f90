@@ -11,7 +11,6 @@ submodule (dda_deck_scene) dda_deck_family
    use dda_key_names, only : arch_half_angle_deg, arch_thickness_ratio, &
       & load_gravity_direction_deg, load_horizontal_coefficient, load_load_factor
    use dda_key_value, only : number_fits
-   use dda_kinds, only : degree
    use dda_live_loads, only : check_live_points
    use dda_scene, only : searched_load
    use dda_scene_plan, only : plan_scene

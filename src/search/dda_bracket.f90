@@ -3,7 +3,6 @@
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
 submodule (dda_critical:dda_find_critical) dda_bracket
-   use dda_friction_cone, only : joint_face_t
    implicit none
 
    !> Most decisions of a search

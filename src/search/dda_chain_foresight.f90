@@ -8,7 +8,6 @@ submodule (dda_critical:dda_collapse_trace) dda_chain_foresight
    use dda_chain_balance, only : carry_forces, rounding_of_forces, sum_loads
    use dda_chain_decision, only : doubtful
    use dda_chain_lack, only : faces_of, find_lack, lack_t
-   use dda_search, only : decision_t
    implicit none
 
    !> Most values that are looked at

@@ -5,13 +5,12 @@ submodule (dda_critical) dda_load_search
    use dda_error, only : error_t
    use dda_graph_decision, only : see_fall, slide_along
    use dda_joint_graph, only : breaks, joint_graph_t
-   use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
       & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_path_event, only : path_end
-   use dda_scene, only : scene_t, searched_load
+   use dda_scene, only : searched_load
    use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
    use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : verdict

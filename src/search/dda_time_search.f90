@@ -6,9 +6,7 @@
 submodule (dda_critical) dda_time_search
    use dda_decision, only : decide
    use dda_error, only : error_t
-   use dda_kinds, only : wp
-   use dda_scene, only : scene_t
-   use dda_search, only : decision_t, keep_decision
+   use dda_search, only : keep_decision
    use dda_verdict, only : verdict
    implicit none
 

@@ -13,7 +13,7 @@
 !>
 !> Equation (M5) of docs/method.md
 submodule (dda_settle_in_time) dda_contact_sweeps
-   use dda_contact_view, only : contact_view_t, move_blocks, see_joints
+   use dda_contact_view, only : move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
    use dda_small_systems, only : solved
    use dda_spring_products, only : relative_displacement

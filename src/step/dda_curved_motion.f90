@@ -8,7 +8,7 @@ submodule (dda_step) dda_curved_motion
    use dda_assembly, only : take_springs
    use dda_block_inertia, only : packed_velocity
    use dda_block_update, only : displaced_blocks
-   use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
+   use dda_contact_types, only : joint_place_t, place_joint, place_rows
    use dda_settle_in_time, only : settle_in_time
    use dda_spring_products, only : relative_displacement
    implicit none

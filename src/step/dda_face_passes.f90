@@ -5,8 +5,6 @@
 !> once. Near the answer that ends after one to three passes and leaves rounding; far from it, it
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
 submodule (dda_settle_in_time:dda_contact_interior) dda_face_passes
-   use dda_contact_view, only : contact_view_t
-   use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
    implicit none
 
    !> Compliance of a force that does not follow its opening, over that of the blocks

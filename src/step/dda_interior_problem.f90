@@ -3,7 +3,6 @@ submodule (dda_settle_in_time) dda_interior_problem
    use dda_block_factor, only : factorise, plan_factor, substitute
    use dda_block_matrix, only : set_pattern
    use dda_contact_types, only : unbounded
-   use dda_friction_cone, only : cone_kind
    implicit none
 
    !> Compliance of the springs over that of the blocks, and at the most over that of typical ones:

@@ -17,7 +17,7 @@ submodule (dda_step) dda_velocity
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_springs_t, place_rows
+   use dda_contact_types, only : place_rows
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_friction_cone, only : joint_face_t
    use dda_settle_in_time, only : settle_in_time

@@ -19,8 +19,8 @@ module couplet_heyman_critical
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_curves, only : embrace_difference, settle_cubic
    use couplet_heyman_equations, only : arc_excess, arm_excess, embrace_deficit, heyman_thickness, &
-      & heyman_thrust, springing_thrust, versine
-   use couplet_heyman_theories, only : limits_of, limits_t, theory, weight_arm, weight_flag
+      & heyman_thrust, limits_of, limits_t, springing_thrust, theory, versine, weight_arm, &
+      & weight_flag
    implicit none
    private
 

@@ -9,8 +9,7 @@
 module couplet_heyman_curves
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_equations, only : arc_excess, arm_excess, embrace_deficit, springing_thrust, &
-      & versine
-   use couplet_heyman_theories, only : unit_angle, unit_angle_tail, weight_arm, weight_flag
+      & unit_angle, unit_angle_tail, versine, weight_arm, weight_flag
    implicit none
    private
 

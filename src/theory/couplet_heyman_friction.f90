@@ -14,8 +14,8 @@ module couplet_heyman_friction
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_critical, only : critical_solution, is_embraced
-   use couplet_heyman_equations, only : arc_excess, arm_excess, embrace_deficit, versine
-   use couplet_heyman_theories, only : tangency_flag, weight_flag
+   use couplet_heyman_equations, only : arc_excess, arm_excess, embrace_deficit, tangency_flag, &
+      & versine, weight_flag
    implicit none
    private
 

@@ -7,7 +7,7 @@ module couplet_heyman_printed
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_critical, only : is_embraced
-   use couplet_heyman_theories, only : theory, weight_flag
+   use couplet_heyman_equations, only : theory, weight_flag
    implicit none
    private
 

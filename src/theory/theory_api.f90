@@ -3,7 +3,7 @@
 !> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants
 !> them. Each takes n elements at once. `fault` tells the first value outside the range of validity:
 !> the place of its argument in the call, from 1, and its element, from 1; both 0 when all is well,
-!> and only then are the results set. `which` is one of `theory` in couplet_heyman_theories.
+!> and only then are the results set. `which` is one of `theory` in couplet_heyman_equations.
 module theory_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_critical, only : critical_solution, is_embraced, near_limit_solution, &
@@ -11,9 +11,8 @@ module theory_api
    use couplet_heyman_curves, only : curve_slope, equilibrium_thickness, initial_thickness, &
       thrust_line
    use couplet_heyman_domain, only : blame, is_half_angle, is_joint, is_thickness
-   use couplet_heyman_equations, only : springing_thrust
+   use couplet_heyman_equations, only : limits_of, limits_t, springing_thrust, unit_angle
    use couplet_heyman_printed, only : printed_critical
-   use couplet_heyman_theories, only : limits_of, limits_t, unit_angle
    implicit none
    private
 

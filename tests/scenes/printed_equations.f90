@@ -3,8 +3,7 @@
 !> Symbols as in couplet_heyman_printed.
 module printed_equations
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_equations, only : arm_excess, heyman_thickness, thrust_through, versine
-   use couplet_heyman_theories, only : weight_arm, weight_flag
+   use couplet_heyman_equations, only : arm_excess, heyman_thickness, thrust_through, versine, weight_arm, weight_flag
    implicit none
    private
 
