@@ -4,7 +4,7 @@ module dda_error
    implicit none
    private
 
-   public :: error_t, fatal_error, require, error_line
+   public :: error_t, fatal_error, place_error, require, error_line
    public :: warning_t, warnings_t, add_warning, warning_line
 
    !> What went wrong and where; an allocated error_t means failure
@@ -47,6 +47,15 @@ contains
       if (present(file)) error%file = file
       if (present(line)) error%line = line
    end subroutine fatal_error
+
+   !> Say in which line an error is, if there is one that does not say so itself
+   pure subroutine place_error(error, line)
+      type(error_t), allocatable, intent(inout) :: error
+      integer, intent(in) :: line
+
+      if (.not. allocated(error)) return
+      if (error%line == 0) error%line = line
+   end subroutine place_error
 
    !> A contract at the border of a module: the sentence must be true
    pure subroutine require(condition, sentence, error)

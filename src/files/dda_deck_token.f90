@@ -128,7 +128,7 @@ contains
 
       if (scan%n == max_tokens) then
          call fatal_error(error, "expected at most "//to_text(max_tokens)// &
-            " groups, keys and values, got more; split the deck", line=scan%line)
+            " groups, keys and values, got more; split the deck")
          return
       end if
       ! the second half is room

@@ -30,8 +30,7 @@ contains
       if (allocated(error)) return
       bar%point = reshape(ends, [2, 2]) - spread(plan%origin, 2, 2)
       if (.not. norm2(bar%point(:, 1) - bar%point(:, 2)) > 0.0_wp) then
-         call fatal_error(error, "expected a bar with a length, got one between equal points", &
-            & line=bar%line)
+         call fatal_error(error, "expected a bar with a length, got one between equal points")
          return
       end if
       do side = 1, 2
@@ -43,7 +42,7 @@ contains
       if (bar%block(1) == bar%block(2)) then
          call fatal_error(error, "expected a bar between two blocks or a block and the ground, " &
             & //"got one with both ends in "//trim(merge("the ground", "one block ", &
-            & bar%block(1) == 0)), line=bar%line)
+            & bar%block(1) == 0)))
          return
       end if
       if (.not. allocated(plan%boundary%bar)) allocate (plan%boundary%bar(0))
@@ -75,10 +74,10 @@ contains
       bar%breaks = given(6)
       if (given(1) .eqv. given(2)) then
          call fatal_error(error, "expected either stiffness or ea, got "//trim(merge("both   ", &
-            & "neither", given(1))), line=line%number)
+            & "neither", given(1))))
       else if (bar%prestress > bar%strength) then
          call fatal_error(error, "expected a prestress of at most the strength, got " &
-            & //to_text(bar%prestress), line=line%number)
+            & //to_text(bar%prestress))
       end if
    end subroutine take_properties
 
@@ -98,22 +97,20 @@ contains
          call read_number(trim(entry%head%word(i)), place(n + 1), ok)
          if (.not. ok) exit
          if (.not. abs(place(n + 1)) <= 1.0e9_wp) then
-            call fatal_error(error, "expected places of at most 1e9, got " &
-               & //to_text(place(n + 1)), line=water%line)
+            call fatal_error(error, "expected places of at most 1e9, got "//to_text(place(n + 1)))
             return
          end if
          n = n + 1
       end do
       if (n < 4 .or. modulo(n, 2) == 1) then
          call fatal_error(error, "expected the coordinates of two points or more after water, " &
-            & //"got "//to_text(n)//" numbers", line=water%line)
+            & //"got "//to_text(n)//" numbers")
          return
       end if
       water%x = place(1:n:2)
       water%head = place(2:n:2)
       if (any(water%x(2:) <= water%x(:n/2 - 1))) then
-         call fatal_error(error, "expected points of the line of heads from left to right", &
-            & line=water%line)
+         call fatal_error(error, "expected points of the line of heads from left to right")
          return
       end if
       value = [water%unit_weight, water%factor]
@@ -124,7 +121,7 @@ contains
       water%time = entry%row(1, :entry%n_row)
       water%rise = entry%row(2, :entry%n_row)
       if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) then
-         call fatal_error(error, "expected increasing times from 0 [s]", line=water%line)
+         call fatal_error(error, "expected increasing times from 0 [s]")
          return
       end if
       ! one by one, for an array made of both would lose the memory of their points
@@ -155,7 +152,7 @@ contains
       call take_numbers(entry%head, i, ends, error)
       if (.not. allocated(error)) call take_words(entry%head, i, key, point%speed, given, error)
       if (.not. allocated(error) .and. all(given(:2))) call fatal_error(error, &
-         & "expected one direction, got both x and y", line=point%line)
+         & "expected one direction, got both x and y")
       if (allocated(error)) return
       if (any(given(:2))) point%along = given(:2)
       ends = ends - [plan%origin, plan%origin]
@@ -183,7 +180,7 @@ contains
          end do
       end do
       if (size(plan%boundary%absorbing) == n_before) call fatal_error(error, &
-         & "expected a line along faces of blocks, got one along none", line=point%line)
+         & "expected a line along faces of blocks, got one along none")
    end procedure take_absorbing
 
    !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below
@@ -197,17 +194,15 @@ contains
       time = 0.0_wp
       if (at == 0 .or. all(entry%head%word(2) /= ["block  ", "polygon"])) then
          call fatal_error(error, "expected 'block' and numbers or 'polygon', then 'at' and a " &
-            & //"time after '"//trim(entry%head%word(1))//"'", line=entry%head%number)
+            & //"time after '"//trim(entry%head%word(1))//"'")
       else
          call take_numbers(entry%head, at, time, error)
       end if
       if (allocated(error)) return
       if (at <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(at)))//"'", &
-            & line=entry%head%number)
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(at)))//"'")
       else if (time(1) < 0.0_wp) then
-         call fatal_error(error, "expected a time from 0 [s], got "//to_text(time(1)), &
-            & line=entry%head%number)
+         call fatal_error(error, "expected a time from 0 [s], got "//to_text(time(1)))
       else if (entry%head%word(2) == "polygon") then
          call blocks_inside(entry, plan, block, error)
       else
@@ -233,7 +228,7 @@ contains
       logical :: ok
 
       if (entry%n_row > 0) then
-         call fatal_error(error, "expected corners below 'polygon' only", line=entry%head%number)
+         call fatal_error(error, "expected corners below 'polygon' only")
          return
       end if
       allocate (block(entry%head%n - 4), source=0)
@@ -245,7 +240,7 @@ contains
       end do
       if (.not. ok) call fatal_error(error, "expected numbers of blocks from 1 to " &
          & //to_text(n_block)//" between 'block' and 'at', got '" &
-         & //shown(trim(entry%head%word(min(i, size(block)) + 2)))//"'", line=entry%head%number)
+         & //shown(trim(entry%head%word(min(i, size(block)) + 2)))//"'")
    end subroutine blocks_of
 
    !> The blocks whose centre of gravity lies in the polygon of an entry
@@ -261,7 +256,7 @@ contains
 
       if (entry%n_row < 3) then
          call fatal_error(error, "expected three corners x y or more below 'polygon', got " &
-            & //to_text(entry%n_row), line=entry%head%number)
+            & //to_text(entry%n_row))
          return
       end if
       corner = entry%row(:2, :entry%n_row) - spread(plan%origin, 2, entry%n_row)
@@ -271,7 +266,7 @@ contains
       end do
       block = pack([(b, b=1, size(inside))], inside)
       if (size(block) == 0) call fatal_error(error, "expected a polygon around the centre of a " &
-         & //"block, got one around none", line=entry%head%number)
+         & //"block, got one around none")
    end subroutine blocks_inside
 
    !> Put the changes in the order of their times, and check that each is one

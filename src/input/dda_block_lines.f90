@@ -100,9 +100,9 @@ contains
             call take_quoted(text, first, next, line, error)
          else
             next = first + scan(text(first:)//"!", " "//achar(9)//"!") - 1
-            if (next - first > word_size) call fatal_error(error, too_much(), line=number)
+            if (next - first > word_size) call fatal_error(error, too_much())
          end if
-         if (line%n == max_words) call fatal_error(error, too_much(), line=number)
+         if (line%n == max_words) call fatal_error(error, too_much())
          if (allocated(error)) return
          line%n = line%n + 1
          word(line%n) = lower_case(text(first:min(next - 1, first + word_size - 1)))
@@ -133,11 +133,9 @@ contains
       length = index(text(first + 1:), text(first:first)) - 1
       next = first + length + 2
       if (length < 0) then
-         call fatal_error(error, "expected a second quote, got none; close the name of the file", &
-            & line=line%number)
+         call fatal_error(error, "expected a second quote, got none; close the name of the file")
       else if (allocated(line%quoted)) then
-         call fatal_error(error, "expected one text in quotes, got two; remove one", &
-            & line=line%number)
+         call fatal_error(error, "expected one text in quotes, got two; remove one")
       else
          line%quoted = text(first + 1:first + length)
       end if
@@ -160,11 +158,11 @@ contains
          if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
          if (.not. ok) then
             call fatal_error(error, "expected "//to_text(size(number))//" numbers after '" &
-               & //shown(trim(line%word(i)))//"'", line=line%number)
+               & //shown(trim(line%word(i)))//"'")
          else if (abs(number(k)) > largest_number) then
             call fatal_error(error, "expected numbers of at most 1e30 in magnitude after '" &
                & //shown(trim(line%word(i)))//"', got "//to_text(number(k)) &
-               & //"; correct them or change the unit", line=line%number)
+               & //"; correct them or change the unit")
          end if
          if (allocated(error)) return
       end do
@@ -196,10 +194,10 @@ contains
          k = findloc(key%name == line%word(i), .true., dim=1)
          if (k == 0) then
             call fatal_error(error, "expected "//listed(key%name)//", got '" &
-               & //shown(trim(line%word(i)))//"'", line=line%number)
+               & //shown(trim(line%word(i)))//"'")
             return
          else if (given(k)) then
-            call fatal_error(error, trim(key(k)%name)//" is given twice", line=line%number)
+            call fatal_error(error, trim(key(k)%name)//" is given twice")
             return
          end if
          given(k) = .true.
@@ -208,7 +206,7 @@ contains
             if (allocated(error)) return
             if (all(in_range(key(k), own))) cycle
             call fatal_error(error, trim(key(k)%name)//" must be "//wanted(key(k))//", got " &
-               & //to_text(own(1)), line=line%number)
+               & //to_text(own(1)))
             return
          end associate
       end do
@@ -252,7 +250,7 @@ contains
       if (allocated(error)) then
          if (error%line > 0) return
          message = "record '"//shown(entry%head%quoted)//"': "//error%message
-         call fatal_error(error, message, line=entry%head%number)
+         call fatal_error(error, message)
          return
       end if
       entry%n_row = size(entry%row, 2)
@@ -279,13 +277,13 @@ contains
       i = first + 2
       associate (head => entry%head)
          if (entry%n_column /= 3) then
-            call fatal_error(error, "unknown word 'file'", line=head%number)
+            call fatal_error(error, "unknown word 'file'")
          else if (head%word(min(first + 1, size(head%word))) /= "'") then
             call fatal_error(error, "expected the name of a record in quotes after 'file', got " &
-               & //"none; write it as in file 'quake.csv'", line=head%number)
+               & //"none; write it as in file 'quake.csv'")
          else if (entry%n_row > 0) then
             call fatal_error(error, "expected a record or rows of time and components, got both; " &
-               & //"remove one of them", line=head%number)
+               & //"remove one of them")
          end if
          do while (i <= head%n .and. .not. allocated(error))
             if (head%word(i) == "columns" .and. .not. has_columns) then
@@ -294,7 +292,7 @@ contains
                if (n < 0) n = head%n - i
                if (n < 2 .or. n > 3) then
                   call fatal_error(error, "expected two or three columns, of time, x and y, " &
-                     & //"after 'columns'; 0 stands for none", line=head%number)
+                     & //"after 'columns'; 0 stands for none")
                   return
                end if
                column(:n) = head%word(i + 1:i + n)
@@ -305,7 +303,7 @@ contains
                scale = number(1)
             else
                call fatal_error(error, "expected columns or scale, once each, got '" &
-                  & //shown(trim(head%word(i)))//"'", line=head%number)
+                  & //shown(trim(head%word(i)))//"'")
             end if
          end do
       end associate

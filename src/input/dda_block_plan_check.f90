@@ -39,14 +39,14 @@ contains
          & call add_warning(warnings, "corners given twice are merged", file, line)
       if (size(vertex, 2) < 3) then
          call fatal_error(error, "expected three different corners or more of " &
-            & //next_name(growing)//", got fewer", line=line)
+            & //next_name(growing)//", got fewer")
          return
       end if
       call find_crossing(vertex, edge, point)
       if (edge(1) > 0) then
          write (where_to, "('(', es14.7, ', ', es14.7, ')')") point
          call fatal_error(error, next_name(growing)//" is no simple polygon: its edges " &
-            & //to_text(edge(1))//" and "//to_text(edge(2))//" meet at "//trim(where_to), line=line)
+            & //to_text(edge(1))//" and "//to_text(edge(2))//" meet at "//trim(where_to))
          return
       end if
       moments = area_moments(vertex)
@@ -54,7 +54,7 @@ contains
       perimeter = sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1))
       if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) then
          call fatal_error(error, "expected a block with an area, got "//next_name(growing) &
-            & //", thinner than 1e-8 of its length", line=line)
+            & //", thinner than 1e-8 of its length")
          return
       end if
       call put_block(growing, vertex, fixed, material, line)

@@ -6,7 +6,7 @@ submodule (dda_read_blocks) dda_block_points
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
    use dda_polygon, only : parts_inside
-   use dda_error, only : add_warning
+   use dda_error, only : add_warning, place_error
    implicit none
 
    !> Points nearer than this share of the block's size are one
@@ -72,6 +72,7 @@ contains
             & call watch%tell("reading points", real(i, wp)/real(size(later), wp))
          associate (entry => later(i))
             call take_record(entry, file, plan%record_marks, error)
+            call place_error(error, entry%head%number)
             if (allocated(error)) return
             select case (entry%head%word(1))
             case ("base_acceleration", "base_velocity", "base_displacement")
@@ -89,6 +90,7 @@ contains
             case default
                call take_point(entry, plan, site, file, warnings, error)
             end select
+            call place_error(error, entry%head%number)
             if (allocated(error)) return
             deallocate (entry%row)
          end associate
@@ -130,8 +132,7 @@ contains
       integer :: i
 
       if (allocated(plan%boundary%base_acceleration%time)) then
-         call fatal_error(error, "expected the motion of the ground once, got it a second time", &
-            & line=entry%head%number)
+         call fatal_error(error, "expected the motion of the ground once, got it a second time")
          return
       end if
       has_value = entry%head%n > 1
@@ -139,8 +140,7 @@ contains
       if (has_value) call take_numbers(entry%head, i, value, error)
       if (allocated(error)) return
       if (has_value .and. i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
-            & line=entry%head%number)
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'")
          return
       end if
       call read_history(entry, has_value, value, history, error)
@@ -152,7 +152,7 @@ contains
          plan%boundary%base_acceleration = history
       else if (size(history%time) < 2) then
          call fatal_error(error, "expected two rows of time and components or more below " &
-            & //trim(entry%head%word(1)), line=entry%head%number)
+            & //trim(entry%head%word(1)))
       else if (entry%head%word(1) == "base_velocity") then
          plan%boundary%base_acceleration = acceleration_of_velocity(history)
       else
@@ -195,8 +195,7 @@ contains
          end do
       end do
       if (site%n_held == n_before) call fatal_error(error, &
-         & "expected a line that crosses a block or runs along its edge, got one that does not", &
-         & line=entry%head%number)
+         & "expected a line that crosses a block or runs along its edge, got one that does not")
    end subroutine hold_line
 
    !> Take in a point of a block
@@ -231,8 +230,7 @@ contains
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
-            & line=entry%head%number)
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'")
       end if
       if (allocated(error)) return
       associate (boundary => plan%boundary)
@@ -274,8 +272,7 @@ contains
          if (ok) ok = block >= 1 .and. block <= size(plan%fixed)
          if (.not. ok) then
             call fatal_error(error, "expected the number of a block from 1 to " &
-               & //to_text(size(plan%fixed))//", got '"//shown(trim(entry%head%word(3)))//"'", &
-               & line=entry%head%number)
+               & //to_text(size(plan%fixed))//", got '"//shown(trim(entry%head%word(3)))//"'")
             return
          end if
          i = 3
@@ -288,10 +285,10 @@ contains
       if (block == 0) then
          block = block_at(plan, site, point)
          if (block == 0) call fatal_error(error, "expected a point of a block, got " &
-            & //shown_point//", which lies in none", line=entry%head%number)
+            & //shown_point//", which lies in none")
       else if (.not. holds_point(plan, site, block, point)) then
          call fatal_error(error, "expected a point of block "//to_text(block)//", got " &
-            & //shown_point//", which lies outside it", line=entry%head%number)
+            & //shown_point//", which lies outside it")
       end if
    end subroutine take_place
 
@@ -328,8 +325,7 @@ contains
       along = entry%head%word(i) == ["x", "y"]
       if (.not. any(along) .or. i < entry%head%n) call fatal_error(error, &
          & "expected x, y or nothing after the numbers, got '" &
-         & //shown(trim(entry%head%word(i)))//"'", &
-         & line=entry%head%number)
+         & //shown(trim(entry%head%word(i)))//"'")
    end subroutine take_directions
 
    !> A vector in time: one value behind the word, or rows of time and components below it
@@ -344,14 +340,13 @@ contains
       n = entry%n_row
       if (has_value .eqv. n > 0) then
          call fatal_error(error, "expected two components after the point or rows of time and " &
-            & //"components below it, got "//trim(merge("both   ", "neither", has_value)), &
-            & line=entry%head%number)
+            & //"components below it, got "//trim(merge("both   ", "neither", has_value)))
       else if (has_value) then
          allocate (history%time(1), source=0.0_wp)
          allocate (history%value(2, 1))
          history%value(:, 1) = value
       else if (any(entry%row(1, 2:n) <= entry%row(1, :n - 1))) then
-         call fatal_error(error, "expected increasing times [s]", line=entry%head%number)
+         call fatal_error(error, "expected increasing times [s]")
       else
          allocate (history%time, source=entry%row(1, :n))
          allocate (history%value, source=entry%row(2:3, :n))

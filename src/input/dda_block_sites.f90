@@ -241,7 +241,7 @@ contains
       if (plan%fixed(held%block) .and. allocated(held%path%value)) then
          if (any(abs(held%path%value) > 0.0_wp)) then
             call fatal_error(error, "block "//to_text(held%block) &
-               & //" is fixed and cannot have a prescribed displacement", line=held%line)
+               & //" is fixed and cannot have a prescribed displacement")
             return
          end if
       end if
@@ -249,7 +249,7 @@ contains
          & site%size_of(held%block), contradicts, telling)
       if (contradicts) then
          call fatal_error(error, "the prescribed displacement conflicts with the other fixed or " &
-            & //"prescribed points of the block", line=held%line)
+            & //"prescribed points of the block")
          return
       end if
       if (site%n_held == size(plan%boundary%held)) &

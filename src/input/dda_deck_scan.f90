@@ -1,6 +1,6 @@
 !> Namelist text into tokens with line numbers: the grammar of a deck, not its meaning
 module dda_deck_scan
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : error_t, fatal_error, place_error
    use dda_text, only : to_text, lower_case, read_integer
    use dda_deck_key, only : max_items
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown, &
@@ -34,6 +34,7 @@ contains
          else
             call scan_item(scan, error)
          end if
+         call place_error(error, scan%line)
          if (allocated(error)) return
       end do
       if (scan%open_group > 0) then
@@ -77,12 +78,11 @@ contains
       last = word_end(scan)
       if (scan%text(first:first) /= "&") then
          call fatal_error(error, "expected a group such as &arch, got text between groups: '"// &
-            shown(scan%text(first:max(first, last)))//"'; remove it or put '!' before it", &
-            line=scan%line)
+            shown(scan%text(first:max(first, last)))//"'; remove it or put '!' before it")
       else if (last == first .or. &
          verify(lower_case(scan%text(first + 1:last)), name_letters) > 0) then
          call fatal_error(error, "expected the name of a group after '&', got '"// &
-            shown(scan%text(first + 1:last))//"'; write one like &arch", line=scan%line)
+            shown(scan%text(first + 1:last))//"'; write one like &arch")
       else
          call add_token(scan, token_kind%group, first + 1, last, 1, error)
          scan%open_group = scan%n
@@ -105,8 +105,7 @@ contains
       case (",")
          call scan_comma(scan, error)
       case ("=")
-         call fatal_error(error, "expected a key before '=', got none; write key = value", &
-            line=scan%line)
+         call fatal_error(error, "expected a key before '=', got none; write key = value")
       case ("'", """")
          call scan_quoted(scan, 1, error)
       case default
@@ -183,8 +182,7 @@ contains
       last = min(last - 1, len(scan%text))
       call fatal_error(error, "expected a closing quote on the same line after at most "// &
          to_text(max_text)//" characters, got '"//shown(scan%text(first:last))// &
-         "'; close the quote", &
-         line=scan%line)
+         "'; close the quote")
    end subroutine scan_quoted
 
    !> Scan a word without quotes: a key if an equals sign follows, else a value
@@ -232,8 +230,7 @@ contains
       if (ok) ok = count >= 1 .and. count <= max_items
       if (ok) return
       call fatal_error(error, "expected a repeat count from 1 to "//to_text(max_items)// &
-         " before '*', got '"//shown(scan%text(first:first + star - 2))// &
-         "'; write it like 3*1.5", line=scan%line)
+         " before '*', got '"//shown(scan%text(first:first + star - 2))//"'; write it like 3*1.5")
    end subroutine repeat_count
 
    !> The error of a group without its slash

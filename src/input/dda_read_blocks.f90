@@ -7,7 +7,7 @@ module dda_read_blocks
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : joint_keys, material_keys
    use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error, warnings_t
+   use dda_error, only : error_t, fatal_error, place_error, warnings_t
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_text, only : read_integer, read_number, to_text
@@ -147,6 +147,7 @@ contains
          number = number + 1
          call split_line(text(start:finish), number, line, error)
          if (.not. allocated(error) .and. line%n > 0) call take_line(line, reading, warnings, error)
+         call place_error(error, number)
          start = finish + 2
          if (present(watch) .and. modulo(number, told_lines) == 0) &
             & call watch%tell("reading blocks", real(start, wp)/real(len(text), wp))
@@ -188,7 +189,7 @@ contains
          kind = findloc(entries%word == line%word(1), .true., dim=1)
          if (kind == 0) then
             call fatal_error(error, "expected a number or one of "//listed(entries%word) &
-               & //", got '"//shown(trim(line%word(1)))//"'", line=line%number)
+               & //", got '"//shown(trim(line%word(1)))//"'")
             return
          end if
          call close_entry(reading, warnings, error)
@@ -198,8 +199,7 @@ contains
       end if
       associate (entry => reading%entry)
          if (line%n /= entry%n_column) then
-            call fatal_error(error, row_wanted(entry)//", got "//to_text(line%n)//" words", &
-               & line=line%number)
+            call fatal_error(error, row_wanted(entry)//", got "//to_text(line%n)//" words")
             return
          end if
          call make_room(entry%row, entry%n_row + 1)
@@ -207,14 +207,13 @@ contains
          do i = 1, line%n
             call read_number(line%word(i)(:len_trim(line%word(i))), value, ok)
             if (.not. ok) then
-               call fatal_error(error, row_wanted(entry)//", got '" &
-                  & //shown(trim(line%word(i)))//"'", line=line%number)
+               call fatal_error(error, row_wanted(entry)//", got '"//shown(trim(line%word(i)))//"'")
                return
             else if (abs(value) > merge(largest_coordinate, largest_number, &
                & entry%n_column == 2)) then
                call fatal_error(error, row_wanted(entry)//" of at most "//trim(merge("1e15", &
                   & "1e30", entry%n_column == 2))//" in magnitude, got "//to_text(value) &
-                  & //"; correct it or change the unit", line=line%number)
+                  & //"; correct it or change the unit")
                return
             end if
             entry%row(i, entry%n_row) = value
@@ -257,6 +256,7 @@ contains
       case default
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
+      call place_error(error, reading%entry%head%number)
       reading%entry%n_row = 0
    end subroutine close_entry
 
@@ -300,11 +300,10 @@ contains
       if (.not. ok .or. material%number < 2 .or. material%number > most_materials) then
          call fatal_error(error, "expected the number of a material from 2 to " &
             & //to_text(most_materials)//" (1 is that of the deck), got '" &
-            & //shown(trim(line%word(2)))//"'", line=line%number)
+            & //shown(trim(line%word(2)))//"'")
          return
       else if (any(plan%materials%number == material%number)) then
-         call fatal_error(error, "material "//to_text(material%number)//" is given twice", &
-            & line=line%number)
+         call fatal_error(error, "material "//to_text(material%number)//" is given twice")
          return
       end if
       call take_words(line, 3, material_keys(:5), material%value, material%given, error)
@@ -326,14 +325,14 @@ contains
       end do
       if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > most_materials)) then
          call fatal_error(error, "expected the numbers of two materials from 1 to " &
-            & //to_text(most_materials)//" after joint", line=line%number)
+            & //to_text(most_materials)//" after joint")
          return
       end if
       call take_words(line, 4, joint_keys, law%value, law%given, error)
       if (allocated(error)) return
       if (law%given(1) .and. law%value(4) > law%value(1)) then
          call fatal_error(error, "residual_deg must be at most friction_deg, " &
-            & //to_text(law%value(1))//", got "//to_text(law%value(4)), line=line%number)
+            & //to_text(law%value(1))//", got "//to_text(law%value(4)))
       else
          law%line = line%number
          call add_law_plan(growing, law)

@@ -1,7 +1,7 @@
 !> Records of motion: files of numbers in columns, separated by commas or blanks, below a header
 module dda_read_record
    use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error
+   use dda_error, only : error_t, fatal_error, place_error
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_integer, read_number, to_text
@@ -70,22 +70,21 @@ contains
             else if (n == 0 .and. .not. begins_with_number(line)) then
                header = [start, finish]
             else
-               if (n == 0) call find_columns(text(header(1):header(2)), column, number, place, &
-                  & error)
-               if (allocated(error)) return
+               if (n == 0) call find_columns(text(header(1):header(2)), column, place, error)
+               if (allocated(error)) exit
                call make_room(row, n + 1)
                n = n + 1
-               call take_row(line, number, place, scale, row(:, n), error)
-               if (.not. allocated(error) .and. n > 1) &
-                  & call check_time(row(1, n - 1:n), number, error)
-               if (allocated(error)) return
+               call take_row(line, place, scale, row(:, n), error)
+               if (.not. allocated(error) .and. n > 1) call check_time(row(1, n - 1:n), error)
+               if (allocated(error)) exit
             end if
          end associate
          start = finish + 2
       end do
       row = row(:, :n)
-      if (n < 2) call fatal_error(error, "expected a record of at least two rows that begin " &
-         & //"with a number, got "//to_text(n), line=max(1, number))
+      if (n < 2 .and. .not. allocated(error)) call fatal_error(error, "expected a record of at " &
+         & //"least two rows that begin with a number, got "//to_text(n))
+      call place_error(error, max(1, number))
    end subroutine parse_record
 
    !> Whether a line says nothing
@@ -145,10 +144,9 @@ contains
    end function field_of
 
    !> Numbers of the columns; a name is looked for in the last line of the header
-   pure subroutine find_columns(header, column, line, place, error)
+   pure subroutine find_columns(header, column, place, error)
       character(len=*), intent(in) :: header  !! That line; empty if there is none
       character(len=*), intent(in) :: column(3)
-      integer, intent(in) :: line             !! Number of the line below it
       integer, intent(out) :: place(3)        !! Their numbers, 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k
@@ -164,8 +162,8 @@ contains
          place(i) = k
          if (k > 0) cycle
          call fatal_error(error, "expected column '"//shown(trim(column(i)))//"', a number from " &
-            & //"1 to "//to_text(most_columns)//" or a name in the header, got none; name "// &
-            & "another", line=line)
+            & //"1 to "//to_text(most_columns)//" or a name in the header, got none; " &
+            & //"name another")
          return
       end do
    end subroutine find_columns
@@ -186,9 +184,8 @@ contains
    end function n_fields
 
    !> Take the numbers of a row
-   pure subroutine take_row(line, number, place, scale, row, error)
+   pure subroutine take_row(line, place, scale, row, error)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number
       integer, intent(in) :: place(3)  !! Columns of time, x and y; 0 for none: (3)
       real(wp), intent(in) :: scale
       real(wp), intent(out) :: row(3)  !! Time and components: (3)
@@ -204,19 +201,17 @@ contains
          if (ok) ok = abs(row(i)) <= largest
          if (ok) cycle
          call fatal_error(error, "expected a number of at most 1e30 in column " &
-            & //to_text(place(i))//", got '"//shown(field_of(line, place(i)))//"'", line=number)
+            & //to_text(place(i))//", got '"//shown(field_of(line, place(i)))//"'")
          return
       end do
    end subroutine take_row
 
    !> Check that time goes on
-   pure subroutine check_time(time, line, error)
+   pure subroutine check_time(time, error)
       real(wp), intent(in) :: time(2)  !! Time of the row before and of this one: (2) [s]
-      integer, intent(in) :: line
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. time(2) > time(1)) call fatal_error(error, "expected a time after " &
-         & //to_text(time(1))//" s, got "//to_text(time(2))//"; sort the rows, each time once", &
-         & line=line)
+         & //to_text(time(1))//" s, got "//to_text(time(2))//"; sort the rows, each time once")
    end subroutine check_time
 end module dda_read_record
