@@ -12,7 +12,7 @@ module dda_contact_search
    use dda_block_system, only : block_system_t
    use dda_box_tree, only : box_pairs, box_tree_t, least_nearby, least_values, new_box_tree
    use dda_contact_types, only : joint_t
-   use dda_contacts, only : edge_pairs_t, joint_search_t
+   use dda_contacts, only : joint_search_t
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t, take_joints
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
@@ -22,8 +22,8 @@ module dda_contact_search
    implicit none
    private
 
-   public :: find_edge_pairs, remember_edge_pairs, new_joint_search, forget_pairs, look_around
-   public :: law_between, touching_joints, near_joints
+   public :: find_edge_pairs, new_joint_search, look_around, law_between, touching_joints
+   public :: near_joints
 
    !> Least and most margin over the size of a block
    real(wp), parameter :: least = 0.05_wp, most = 0.5_wp
@@ -40,10 +40,9 @@ module dda_contact_search
 contains
 
    !> Edges of different blocks whose boxes overlap, in the order of their blocks
-   pure subroutine find_edge_pairs(known, outline, equation, vertex, reach, pair)
-      type(edge_pairs_t), intent(in) :: known
-      !> How the corners follow one another
-      type(outline_t), intent(in) :: outline
+   pure subroutine find_edge_pairs(search, equation, vertex, reach, pair)
+      !> How the corners follow one another, and what is remembered
+      type(joint_search_t), intent(in) :: search
       !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
       integer, intent(in) :: equation(:)
       !> Where the corners are: (2, n_vertex) [m]
@@ -56,15 +55,15 @@ contains
       integer, allocatable :: near(:, :)
       integer :: i, n
 
-      call edge_boxes(outline, vertex, reach, low, high)
-      if (.not. covers(known, outline, vertex, reach)) then
-         call search_pairs(outline, equation, low, high, pair)
+      call edge_boxes(search%outline, vertex, reach, low, high)
+      if (.not. covers(search, vertex, reach)) then
+         call search_pairs(search%outline, equation, low, high, pair)
          return
       end if
-      allocate (near, mold=known%pair)
+      allocate (near, mold=search%near%pair)
       n = 0
-      do i = 1, size(known%pair, 2)
-         associate (a => known%pair(1, i), b => known%pair(2, i))
+      do i = 1, size(near, 2)
+         associate (a => search%near%pair(1, i), b => search%near%pair(2, i))
             if (low(1, b) > high(1, a) .or. low(2, b) > high(2, a)) cycle
             if (high(1, b) < low(1, a) .or. high(2, b) < low(2, a)) cycle
             n = n + 1
@@ -75,38 +74,39 @@ contains
       pair = near(:, :n)
    end subroutine find_edge_pairs
 
-   !> Remember what is near, unless what is remembered will do
-   pure subroutine remember_edge_pairs(outline, equation, area, vertex, reach, known)
-      type(outline_t), intent(in) :: outline
-      integer, intent(in) :: equation(:)
-      real(wp), intent(in) :: area(:)  !! Areas of the blocks: (n_block) [m2]
-      real(wp), intent(in) :: vertex(:, :), reach(:)
-      type(edge_pairs_t), intent(inout) :: known
-      real(wp) :: low(2, size(vertex, 2)), high(2, size(vertex, 2))
+   !> Look around for edges that may come near one another in this step and those that follow, and
+   !> remember them, unless what is remembered will do
+   pure subroutine look_around(search, system, reach)
+      type(joint_search_t), intent(inout) :: search
+      type(block_system_t), intent(in) :: system
+      !> Most that the corners of each block may move in this step: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      real(wp) :: low(2, size(system%moved, 2)), high(2, size(system%moved, 2))
 
-      if (covers(known, outline, vertex, reach)) return
-      known%vertex = vertex
-      known%reach = reach + merge(min(most*sqrt(area), max(least*sqrt(area), ahead*reach)), &
-         & 0.0_wp, equation > 0)
-      call edge_boxes(outline, vertex, known%reach, low, high)
-      call search_pairs(outline, equation, low, high, known%pair)
-   end subroutine remember_edge_pairs
+      if (covers(search, system%moved, reach)) return
+      associate (known => search%near, side => sqrt(system%area))
+         known%vertex = system%moved
+         known%reach = reach + merge(min(most*side, max(least*side, ahead*reach)), 0.0_wp, &
+            & system%equation > 0)
+         call edge_boxes(search%outline, known%vertex, known%reach, low, high)
+         call search_pairs(search%outline, system%equation, low, high, known%pair)
+      end associate
+   end subroutine look_around
 
    !> Whether all pairs that are near are among those that are remembered
-   pure logical function covers(known, outline, vertex, reach)
-      type(edge_pairs_t), intent(in) :: known
-      type(outline_t), intent(in) :: outline
+   pure logical function covers(search, vertex, reach)
+      type(joint_search_t), intent(in) :: search
       real(wp), intent(in) :: vertex(:, :), reach(:)
       real(wp) :: way
       integer :: v
 
-      covers = allocated(known%pair)
+      covers = allocated(search%near%pair)
       if (.not. covers) return
       do v = 1, size(vertex, 2)
-         way = maxval(abs(vertex(:, v) - known%vertex(:, v)))
-         associate (b => outline%block(v))
-            covers = (way + reach(b))*(1.0_wp + rounding) <= known%reach(b) &
-               & .or. .not. way > 0.0_wp .and. reach(b) <= known%reach(b)
+         way = maxval(abs(vertex(:, v) - search%near%vertex(:, v)))
+         associate (b => search%outline%block(v))
+            covers = (way + reach(b))*(1.0_wp + rounding) <= search%near%reach(b) &
+               & .or. .not. way > 0.0_wp .and. reach(b) <= search%near%reach(b)
          end associate
          if (.not. covers) return
       end do
@@ -167,13 +167,6 @@ contains
       law_between = material(1) + size(search%law, 1)*(material(2) - 1)
    end function law_between
 
-   !> Look everywhere again: blocks have come or gone
-   pure subroutine forget_pairs(search)
-      type(joint_search_t), intent(inout) :: search
-
-      search%near = edge_pairs_t()
-   end subroutine forget_pairs
-
    !> Joints of blocks that touch in the reference shape
    pure subroutine touching_joints(search, system, joint)
       type(joint_search_t), intent(in) :: search
@@ -217,17 +210,6 @@ contains
       end do
    end function least_beside
 
-   !> Look around for edges that may come near one another in this step and those that follow
-   pure subroutine look_around(search, system, reach)
-      type(joint_search_t), intent(inout) :: search
-      type(block_system_t), intent(in) :: system
-      !> Most that the corners of each block may move in this step: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
-
-      call remember_edge_pairs(search%outline, system%equation, system%area, system%moved, reach, &
-         & search%near)
-   end subroutine look_around
-
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
    pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
       type(joint_search_t), intent(in) :: search
@@ -248,17 +230,6 @@ contains
       near%closed = closed
       call find_joints(search, system, reach, near, joint)
    end subroutine near_joints
-
-   !> Drop the pairs of edges of blocks that are not there
-   pure subroutine drop_absent(search, block, pair)
-      type(joint_search_t), intent(in) :: search
-      integer, intent(in) :: block(:)                    !! Block of each edge: (n_vertex)
-      integer, allocatable, intent(inout) :: pair(:, :)  !! The pairs: (2, n_pair)
-      integer :: i
-
-      pair = pair(:, pack([(i, i=1, size(pair, 2))], &
-         & .not. (search%absent(block(pair(1, :))) .or. search%absent(block(pair(2, :))))))
-   end subroutine drop_absent
 
    !> Joints of all pairs of blocks whose edges come near one another
    pure subroutine find_joints(search, system, reach, near, joint, beside)
@@ -281,8 +252,11 @@ contains
       near%outline = search%outline
       call measure_edges(near%vertex, near%outline)
       near%first_vertex = system%first_vertex
-      call find_edge_pairs(search%near, search%outline, system%equation, near%vertex, reach, pair)
-      if (allocated(search%absent)) call drop_absent(search, near%outline%block, pair)
+      call find_edge_pairs(search, system%equation, near%vertex, reach, pair)
+      associate (owner => near%outline%block)
+         if (allocated(search%absent)) pair = pair(:, pack([(j, j=1, size(pair, 2))], &
+            & .not. (search%absent(owner(pair(1, :))) .or. search%absent(owner(pair(2, :))))))
+      end associate
       first = 1
       do while (first <= size(pair, 2))
          block = near%outline%block(pair(:, first))

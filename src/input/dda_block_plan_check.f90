@@ -213,13 +213,14 @@ contains
    !> Whether no two blocks overlap
    module procedure check_overlaps
       real(wp) :: size_of(size(plan%fixed)), point(2)
+      type(area_moments_t) :: moments
       integer, allocatable :: near(:)
       logical :: overlaps
       integer :: i, inside, j, k, n_near
 
       do i = 1, size(size_of)
-         size_of(i) = sqrt(polygon_area(plan%vertex(:, plan%first_vertex(i): &
-            & plan%first_vertex(i + 1) - 1)))
+         moments = area_moments(plan%vertex(:, plan%first_vertex(i):plan%first_vertex(i + 1) - 1))
+         size_of(i) = sqrt(moments%area)
       end do
       do i = 1, size(size_of)
          if (present(watch) .and. modulo(i, 1000) == 0) call watch%tell( &
@@ -261,15 +262,6 @@ contains
          return
       end do
    end subroutine check_digits
-
-   !> Area of a polygon [m2]
-   pure real(wp) function polygon_area(vertex)
-      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n) [m]
-      type(area_moments_t) :: moments
-
-      moments = area_moments(vertex)
-      polygon_area = moments%area
-   end function polygon_area
 
    !> Say which blocks overlap and where
    pure subroutine refuse_overlap(plan, block, inside, point, error)

@@ -8,7 +8,7 @@ module dda_block_system
    private
 
    public :: block_system_t, n_unknown, new_block_system
-   public :: begin_motion, forget_rest, move_system, set_initial_state
+   public :: begin_motion, forget_rest, move_system
 
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
@@ -141,19 +141,4 @@ contains
       call move_alloc(from%initial_stress, to%initial_stress)
    end subroutine move_large
 
-   !> Give a block velocity and stress to begin with
-   pure subroutine set_initial_state(system, block, velocity, stress)
-      !> The blocks, not yet moved
-      type(block_system_t), intent(inout) :: system
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Velocity of its centre and spin: (3) [m/s, m/s, rad/s]
-      real(wp), intent(in) :: velocity(3)
-      !> Stress sx, sy, txy: (3) [Pa]
-      real(wp), intent(in) :: stress(3)
-
-      system%velocity(:, block) = [velocity, 0.0_wp, 0.0_wp, 0.0_wp]
-      system%stress(:, block) = stress
-      system%initial_stress(:, block) = stress
-   end subroutine set_initial_state
 end module dda_block_system

@@ -1,7 +1,7 @@
 !> From blocks as a user gives them to a scene ready to run; water becomes forces on their corners
 module dda_block_scene
    use dda_block_input, only : block_plan_t, unsupported_block
-   use dda_block_system, only : forget_rest, new_block_system, set_initial_state
+   use dda_block_system, only : forget_rest, new_block_system
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_box_tree, only : box_tree_t, find_boxes, new_box_tree
    use dda_contact_search, only : new_joint_search
@@ -246,9 +246,9 @@ contains
             system%density(b) = material(plan%material(b))%density
             system%unit_weight(b) = unit_weight(plan%material(b))
          end do
-         do b = 1, size(plan%starts)
-            call set_initial_state(system, plan%starts(b), plan%start(:3, b), plan%start(4:, b))
-         end do
+         system%velocity(:3, plan%starts) = plan%start(:3, :)
+         system%stress(:, plan%starts) = plan%start(4:, :)
+         system%initial_stress(:, plan%starts) = plan%start(4:, :)
          call forget_rest(system)
          if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))
          scene%contacts%searched = .true.

@@ -82,10 +82,6 @@ module dda_critical
          type(proposal_t), intent(out) :: proposal
       end subroutine trace
 
-   end interface
-
-   interface
-
       !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
       !> for their bars, which the family makes anew at any value
       pure module subroutine shed(decision, keeps_joints)

@@ -7,8 +7,7 @@
 submodule (dda_decision) dda_stages
    use dda_block_system, only : begin_motion
    use dda_boundary, only : present_at, stage_times
-   use dda_contact_search, only : forget_pairs
-   use dda_contacts, only : begin_forces, keep_contacts
+   use dda_contacts, only : begin_forces, edge_pairs_t, keep_contacts
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : unloaded_state
    use dda_graph_decision, only : decide_graph
@@ -237,7 +236,7 @@ contains
       end do
       system%absent = .not. present
       contacts%search%absent = .not. present
-      call forget_pairs(contacts%search)
+      contacts%search%near = edge_pairs_t()
       do j = 1, size(kept)
          kept(j) = all(present(contacts%joint(j)%block))
       end do
