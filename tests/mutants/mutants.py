@@ -6,8 +6,9 @@ one object is compiled and its room linked again, and every program meets the fa
 else the build sees to it. The unit tests of the fault's room run first, then those of the other rooms, those whose
 tests name the module before the others. What survives these is judged several at a time: with all of them put in,
 the physics and what ctest counts as such run, then, if asked, all other tests; what fails is asked of each fault
-alone, until nothing fails of those that are left. A test that fails without a fault finds none. A process may
-take five times the processor time that it takes without a fault. The table is written whenever a fault is judged.
+alone, until nothing fails of those that are left. A test that fails without a fault finds none, and the next one is
+asked. A process may take five times the processor time that it takes without a fault. The table is written whenever
+a fault is judged.
 """
 
 from __future__ import annotations
@@ -270,11 +271,15 @@ def judge_together(faults: list[Fault], copy: Copy, level: str) -> Iterator[tupl
             failing = [check for check in copy.failing(level) if check not in excused] if compiles else []
         found, known = [], len(excused)
         for fault in left if failing else []:
-            with copy.faulty([fault]):
-                check = copy.first_failing([check for check in failing if check not in excused])
-            if check and check not in sound and copy.first_failing([check]):
+            check = None
+            for _ in failing:
+                with copy.faulty([fault]):
+                    check = copy.first_failing([check for check in failing if check not in excused])
+                if check is None or check in sound or not copy.first_failing([check]):
+                    break
                 excused.add(check)
-            elif check:
+                check = None
+            if check:
                 sound.add(check)
                 found.append(fault)
                 yield fault, ": ".join(check)
