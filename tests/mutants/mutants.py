@@ -34,7 +34,7 @@ from typing import Iterable, Iterator
 from faults import Fault, draw_faults
 
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
-         "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
+         "README.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "CHANGELOG.md")
 COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
 LEVELS = ("room", "unit", "physics", "suite")
 #: What ctest runs at the levels that are asked of several faults at once
@@ -64,6 +64,11 @@ class Copy:
         """Its build folder."""
         return self.root / "build"
 
+    @property
+    def limited(self) -> Path:
+        """The program in its build folder, for so many seconds of processor."""
+        return self.build / "limited" / "dda"
+
     def prepare(self, source: Path, flags: str) -> None:
         """Copy what differs from the source, and build it without a fault."""
         for part in PARTS:
@@ -84,9 +89,9 @@ class Copy:
                 self.objects.setdefault(entry["file"], []).append(entry)
         listed = subprocess.check_output(["ctest", "--test-dir", self.build, "--show-only=json-v1"], text=True)
         self.commands = {test["name"]: test["command"] for test in json.loads(listed)["tests"] if "command" in test}
-        limited = self.root / "dda"
-        limited.write_text(f'#!/bin/sh\nulimit -t {MOST_SECONDS}\nexec "{self.build}/bin/dda" "$@"\n')
-        limited.chmod(0o755)
+        self.limited.parent.mkdir(exist_ok=True)
+        self.limited.write_text(f'#!/bin/sh\nulimit -t {MOST_SECONDS}\nexec "{self.build}/bin/dda" "$@"\n')
+        self.limited.chmod(0o755)
 
     def make(self) -> bool:
         """Build all that tests run; whether it compiles."""
@@ -189,7 +194,7 @@ class Copy:
         by_runner = name in self.units or name == "physics"
         usual = self.usual.get(name, (600.0, 3600.0))
         limit = int(max(10.0, 5.0*usual[0])) if by_runner else 1500
-        environment = {**os.environ, "DDA": str(self.root / "dda"), "OMP_NUM_THREADS": "1",
+        environment = {**os.environ, "DDA": str(self.limited), "OMP_NUM_THREADS": "1",
                        "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python")}
         start, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
         process = subprocess.Popen(command, cwd=self.root / "tests", env=environment, text=True,
