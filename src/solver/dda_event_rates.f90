@@ -13,7 +13,7 @@ module dda_event_rates
    private
 
    public :: find_rates, new_rates, pivot_to_load, rates_t, undamp_rates
-   public :: rate_law_t, set_rate_law
+   public :: rate_law_t, set_rate_law, weak_force
 
    !> What a state leaves open
    type :: rate_law_t
@@ -53,6 +53,8 @@ module dda_event_rates
       real(wp), allocatable :: force(:, :)
       !> What corners and joints do: (3, n_joint)
       integer, allocatable :: face(:, :)
+      !> Rates of opening that may be none
+      real(wp) :: still = 0.0_wp
       !> Largest load, or force of a joint that is driven
       real(wp) :: drive = 0.0_wp
       !> Share of it that goes into damping: near 0 where forces balance the load, near 1 where
@@ -60,8 +62,17 @@ module dda_event_rates
       real(wp) :: unbalanced = 0.0_wp
    end type rates_t
 
-   !> Passes that change all wrong faces at once; what they do not find, pivots look for
-   integer, parameter :: max_pass = 6
+   !> A force below this part of a block's weight is none, a gap that it would close is none
+   real(wp), parameter :: weak_force = 1.0e-9_wp
+   !> Share of the largest rate of opening, or of one, that is rounding, and of the largest rate of
+   !> motion: in long rows most joints are beyond the reach of what acts at the ends
+   real(wp), parameter :: rounding = 1.0e-11_wp, lost = 1.0e-14_wp
+   !> Passes that change all wrong faces at once, and faces that are few: if no more are wrong after
+   !> so many passes, pivots look for what they are to do. More go on changing at once, as in long
+   !> rows, where what happens at the ends is handed on from joint to joint
+   integer, parameter :: few_passes = 6, few_wrong = 16
+   !> Passes at most
+   integer, parameter :: most_passes = 100
 
    interface
 
@@ -73,17 +84,19 @@ module dda_event_rates
       end subroutine set_rate_law
 
       !> What joints do with rates of opening
-      pure module subroutine follow_law(joints, law, opening, faces)
+      pure module subroutine follow_law(joints, law, opening, still, faces)
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
          real(wp), intent(in) :: opening(:, :)  !! Rates of opening 1, opening 2, slip: (3, n_joint)
-         integer, intent(out) :: faces(:, :)    !! What they do: (3, n_joint)
+         real(wp), intent(in) :: still          !! Rates of opening that may be none
+         integer, intent(inout) :: faces(:, :)  !! What they have done, and do: (3, n_joint)
       end subroutine follow_law
 
       !> The first bend of the law on a line of rates of opening: without a joint if there is none
-      pure type(break_t) module function next_break(joints, law, faces, opening, change)
+      pure type(break_t) module function next_break(joints, law, still, faces, opening, change)
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
+         real(wp), intent(in) :: still          !! Rates of opening that may be none
          integer, intent(in) :: faces(:, :)     !! What the joints do: (3, n_joint)
          real(wp), intent(in) :: opening(:, :)  !! Where the line begins: (3, n_joint)
          real(wp), intent(in) :: change(:, :)   !! Where it leads: (3, n_joint)
@@ -141,27 +154,43 @@ contains
       logical, intent(out) :: found
       type(rate_law_t) :: law
       real(wp) :: damped(size(load_rate, 1), size(load_rate, 2))
-      integer :: target(3, size(state%face, 2)), pass
+      integer :: target(3, size(state%face, 2)), seen(3, size(state%face, 2)), n_wrong, pass
 
       found = .false.
       call set_rate_law(joints, state, law)
       rates%face = state%face
-      do pass = 1, max_pass
+      seen = huge(seen)
+      do pass = 1, most_passes
          call solve_rates(joints, equations, load_rate, opening_rate, viscosity, rates)
          if (.not. equations%usable) return
-         call follow_law(joints, law, rates%opening, target)
-         found = all(target == rates%face)
-         if (found) exit
+         target = rates%face
+         call follow_law(joints, law, rates%opening, no_rate(rates%motion, rates%opening), target)
+         n_wrong = count(target /= rates%face)
+         found = n_wrong == 0
+         if (found .or. (pass >= few_passes .and. n_wrong <= few_wrong)) exit
+         ! faces that have been seen come again for ever
+         if (all(target == seen)) exit
+         if (iand(pass, pass - 1) == 0) seen = rates%face
          rates%face = target
       end do
       if (.not. found) call pivot_to_load(joints, equations, law, load_rate, opening_rate, &
          & rates%motion, rates%opening, rates%face, found)
+      rates%still = no_rate(rates%motion, rates%opening)
       call spring_forces(joints, rates%face, rates%opening, rates%force)
       damped = equations%damping*joints%graph%mass*rates%motion
       if (viscosity > 0.0_wp) call add_joint_forces(joints%graph, &
          & viscosity*rates%opening/joints%graph%compliance, damped)
       rates%unbalanced = maxval(abs(damped))/max(rates%drive, tiny(1.0_wp))
    end subroutine find_rates
+
+   !> Rates of opening that may be none, because rounding makes as much
+   pure real(wp) function no_rate(motion, opening)
+      real(wp), intent(in) :: motion(:, :)   !! Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in) :: opening(:, :)  !! How the joints open with it: (3, n_joint)
+
+      ! what moves freely does so by any multiple of what forces open
+      no_rate = max(rounding*min(1.0_wp, maxval(abs(opening))), lost*maxval(abs(motion)))
+   end function no_rate
 
    !> Give back what damping has taken from the rates of an assembly that does not move. What is
    !> soft takes many turns; what does not become less drives a motion, however small a share of the
@@ -242,17 +271,17 @@ contains
       real(wp), intent(inout) :: motion(:, :)
       !> How the joints open with it and with the drive: (3, n_joint)
       real(wp), intent(inout) :: opening(:, :)
-      !> What they do: (3, n_joint)
+      !> What they have done, and do: (3, n_joint)
       integer, intent(inout), contiguous :: faces(:, :)
       !> Whether the load was reached
       logical, intent(out) :: found
       type(break_t) :: break
       real(wp) :: ahead(size(load, 1), size(load, 2)), wide(3, size(opening, 2))
-      real(wp) :: rest(size(load, 1), size(load, 2)), sense
+      real(wp) :: rest(size(load, 1), size(load, 2)), sense, still
       integer :: pivot
 
       found = .false.
-      call follow_law(joints, law, opening, faces)
+      call follow_law(joints, law, opening, no_rate(motion, opening), faces)
       break%joint = 0
       do pivot = 1, equations%most_pivots
          call use_faces(equations, joints, faces, equations%damping, equations%viscosity)
@@ -261,15 +290,17 @@ contains
          call add_drive(joints, faces, drive, load, rest)
          call solve_equations(equations, joints, rest, ahead, wide)
          if (.not. equations%usable) return
+         wide = wide + drive
+         still = no_rate(ahead, wide)
          ahead = ahead - motion
-         wide = wide + drive - opening
+         wide = wide - opening
          sense = 1.0_wp
          if (break%joint > 0) then
             sense = break_rate(joints, break, faces, wide)
             if (.not. abs(sense) > 0.0_wp) return
             sense = merge(1.0_wp, -1.0_wp, sense > 0.0_wp .eqv. break%rises)
          end if
-         break = next_break(joints, law, faces, opening, sense*wide)
+         break = next_break(joints, law, still, faces, opening, sense*wide)
          if (sense > 0.0_wp .and. break%distance >= 1.0_wp) then
             motion = motion + ahead
             opening = opening + wide

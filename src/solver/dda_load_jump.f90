@@ -7,7 +7,7 @@ module dda_load_jump
    use dda_coulomb_equations, only : coulomb_equations_t
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
-   use dda_event_rates, only : find_rates, new_rates, rates_t
+   use dda_event_rates, only : find_rates, new_rates, rates_t, weak_force
    use dda_kinds, only : wp
    use dda_path_event, only : event_kind, event_t, hold_forces, move_on, next_event
    implicit none
@@ -51,6 +51,8 @@ module dda_load_jump
    real(wp), parameter :: driven = 0.01_wp
    !> That share is one over this
    integer, parameter :: brief = 10
+   !> Factorisations of a jump that has not converged and will not
+   integer, parameter :: most_of_jump = 10000
    !> Pivots after which rates are looked for with more damping
    integer, parameter :: few_pivots = 16
    !> An event no further off than this makes no way
@@ -71,6 +73,9 @@ module dda_load_jump
    real(wp), parameter :: wider = 10.0_wp
    !> What a motion may leave of a nudge
    real(wp), parameter :: nudge_left = 1.0e-6_wp
+   !> Share of what is left of the load that an event must lead beyond a joint's law to count, and
+   !> below which what is left at a block does not move it
+   real(wp), parameter :: minor_share = 1.0e-3_wp
    !> Rounding of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
    !> What need not be taken away of an imbalance
@@ -101,11 +106,14 @@ contains
       !> How the motion ends, one of motion_end
       integer, intent(out) :: end
       type(coulomb_state_t) :: moved, last
-      integer :: fall, last_end, most_pivots
+      integer :: fall, last_end, most_factorisations, most_pivots
       logical :: least
 
       most_pivots = equations%most_pivots
+      most_factorisations = equations%most_factorisations
       equations%most_pivots = few_pivots
+      equations%most_factorisations = min(most_factorisations, &
+         & equations%base%n_factorisation + most_of_jump)
       gained = merge(left, width, left < nudge)
       least = gained <= nudge
       call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
@@ -127,6 +135,7 @@ contains
       end if
       if (end == motion_end%balanced) state = moved
       equations%most_pivots = most_pivots
+      equations%most_factorisations = most_factorisations
    end subroutine nudge_to_balance
 
    !> Take away what the forces leave of the load, but for rounding
@@ -189,7 +198,9 @@ contains
    !> Move from event to event at a load that does not change. Where friction lets forces drop, only
    !> motion that is damped enough has rates: damping rises until it has, and falls again with every
    !> step that meets no event. It is that of joints, in proportion to their stiffness: parts of the
-   !> assembly that move as one are free while no joint snaps
+   !> assembly that move as one are free while no joint snaps. What is minor beside what is left of
+   !> the load is no event: far from what moves, joints at their limits change what they do by
+   !> rounding alone, and would for ever
    pure subroutine jump_to_balance(joints, equations, load, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -204,7 +215,7 @@ contains
       real(wp) :: viscosity, firm, still(3, size(state%slip))
       real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2)), far
       integer :: i, most, standstill
-      logical :: calm, found, pushed
+      logical :: calm, found, pushed, whole
 
       still = 0.0_wp
       start = state%motion
@@ -213,16 +224,18 @@ contains
       viscosity = 0.0_wp
       firm = first_firm
       calm = .false.
+      whole = .false.
       rates = new_rates(state)
       far = jump%far
       most = least_patience + patience*size(state%slip)
       do i = 1, most
          call imbalance(joints, load, state%force, rest)
          if (i > most/brief) far = driven*jump%far
-         call see_end(joints, equations, rest, start, state, far, jump, end)
+         call see_end(joints, equations, rest, start, state, far, whole, jump, end)
          if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
+         call leave_minor(rest)
          if (calm) viscosity = merge(calmer*viscosity, 0.0_wp, calmer*viscosity > weakest)
          call find_rates(joints, equations, state, rest, still, viscosity, rates, found)
          if (.not. found) then
@@ -236,19 +249,44 @@ contains
             call see_ray(joints, state, rest, rates, event, jump, end)
             if (event%kind == event_kind%none) return
          else
-            event = next_event(joints, state, rates, 1.0_wp)
-            if (event%kind == event_kind%none) &
-               & event = next_event(joints, state, rates, stride(joints, rest, rates))
+            event = next_turn(joints, state, rest, rates)
          end if
          ! forces that drop faster than this have no rates with less damping
          calm = event%kind == event_kind%none .and. rates%unbalanced < 1.0_wp/(1.0_wp - calmer)
-         pushed = .not. viscosity > 0.0_wp .and. rates%unbalanced > moves_unbalanced &
-            & .and. event%kind == event_kind%none
+         whole = event%kind == event_kind%none .and. .not. viscosity > 0.0_wp
+         pushed = whole .and. rates%unbalanced > moves_unbalanced
+         whole = whole .and. .not. pushed
          standstill = merge(standstill + 1, 0, event%distance < no_way)
          if (standstill > max_standstill) return
          call move_on(joints, rates, event, state)
       end do
    end subroutine jump_to_balance
+
+   !> The next event of a step that would bring balance, or of as many as its rates lead
+   pure type(event_t) function next_turn(joints, state, rest, rates) result(event)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (n_dof, n_block)
+      type(rates_t), intent(in) :: rates
+      real(wp) :: minor
+
+      minor = max(weak_force, minor_share*maxval(abs(rest)))
+      event = next_event(joints, state, rates, 1.0_wp, minor)
+      if (event%kind == event_kind%none) &
+         & event = next_event(joints, state, rates, stride(joints, rest, rates), minor)
+   end function next_turn
+
+   !> Leave out what is next to nothing of what forces leave of a load
+   pure subroutine leave_minor(rest)
+      real(wp), intent(inout) :: rest(:, :)  !! What forces leave: (n_dof, n_block)
+      real(wp) :: minor
+      integer :: b
+
+      minor = min(weak_force, minor_share*maxval(abs(rest)))
+      do b = 1, size(rest, 2)
+         if (maxval(abs(rest(:, b))) <= minor) rest(:, b) = 0.0_wp
+      end do
+   end subroutine leave_minor
 
    !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
    !> that they leave of the load are the same but for a factor; at least one
@@ -270,13 +308,15 @@ contains
 
    !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
    !> blocks have fallen by all that it went
-   pure subroutine see_end(joints, equations, rest, start, state, far, jump, end)
+   pure subroutine see_end(joints, equations, rest, start, state, far, whole, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: rest(:, :)
       real(wp), intent(in) :: start(:, :)  !! Motion where it began: (n_dof, n_block)
       type(coulomb_state_t), intent(in) :: state
       real(wp), intent(in) :: far          !! A motion beyond this is far
+      !> Whether the last step was to bring balance: then only forces that are none may be left
+      logical, intent(in) :: whole
       type(jump_t), intent(inout) :: jump
       integer, intent(out) :: end
       type(rates_t) :: rates
@@ -284,7 +324,8 @@ contains
       real(wp) :: still(3, size(state%slip))
       logical :: found
 
-      end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= jump%tolerance)
+      end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= &
+         & merge(max(jump%tolerance, weak_force), jump%tolerance, whole))
       if (.not. maxval(abs(state%motion - start)) > far) return
       if (end == motion_end%balanced) then
          ! balance so far away is that of a shape that nobody has drawn

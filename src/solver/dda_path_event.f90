@@ -3,7 +3,7 @@
 module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength
-   use dda_event_rates, only : rates_t
+   use dda_event_rates, only : rates_t, weak_force
    use dda_kinds, only : wp
    implicit none
    private
@@ -41,6 +41,14 @@ module dda_path_event
    !> Names of the ends of a path
    type(path_end_enum), parameter :: path_end = path_end_enum()
 
+   !> What an event must surpass to count
+   type :: least_t
+      real(wp) :: longest = 0.0_wp  !! Distance within which it counts
+      real(wp) :: slow = 0.0_wp     !! Rates of force up to this are none
+      real(wp) :: still = 0.0_wp    !! So are these where next to nothing is left of a force or gap
+      real(wp) :: minor = 0.0_wp    !! Force by which it must lead beyond zero at the longest
+   end type least_t
+
    !> A force that changes by less on the whole way, over a block's weight, does not change
    real(wp), parameter :: no_change = 1.0e-12_wp
    !> Share of the way to an event at which it has not happened
@@ -62,52 +70,62 @@ contains
    end subroutine hold_forces
 
    !> The next event, or none within a distance: its distance is the longest one if there is none
-   pure type(event_t) function next_event(joints, state, rates, longest) result(event)
+   pure type(event_t) function next_event(joints, state, rates, longest, minor) result(event)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state  !! Where the assembly is
       type(rates_t), intent(in) :: rates
       real(wp), intent(in) :: longest             !! Distance within which an event counts
-      real(wp) :: bond(3), bound(2), slow
+      !> Force by which an event must lead beyond zero at that distance to count; any if absent
+      real(wp), intent(in), optional :: minor
+      type(least_t) :: least
+      real(wp) :: bond(3), bound(2)
       integer :: i, j
 
       event%distance = longest
-      slow = no_change/max(longest, tiny(1.0_wp))
+      least = least_t(longest=longest, slow=no_change/max(longest, tiny(1.0_wp)))
+      if (present(minor)) least%minor = minor
       bond = 0.0_wp
       do j = 1, size(rates%face, 2)
          if (allocated(state%whole)) bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
-            if (rates%face(i, j) == face%closed) then
-               call meet(state%force(i, j) + bond(i), rates%force(i, j), slow, event_kind%opens, &
-                  & j, i, event)
-            else
-               call meet(state%gap(i, j), rates%opening(i, j), 0.0_wp, event_kind%closes, j, i, &
-                  & event)
-            end if
+            associate (c => joints%graph%compliance(i, j))
+               least%still = rates%still/c
+               if (rates%face(i, j) == face%closed) then
+                  call meet(state%force(i, j) + bond(i), rates%force(i, j), least, &
+                     & event_kind%opens, j, i, event)
+               else
+                  call meet(state%gap(i, j)/c, rates%opening(i, j)/c, least, event_kind%closes, j, &
+                     & i, event)
+               end if
+            end associate
          end do
          if (rates%face(3, j) /= face%stuck) cycle
          if (joints%shear_role(j) /= shear_role%frictional) cycle
+         least%still = rates%still/joints%graph%compliance(3, j)
          bound = joints%graph%friction(j) &
             & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
          bound(1) = bound(1) + bond(3)
-         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), slow, &
+         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), least, &
             & event_kind%slides, j, 0, event)
-         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), slow, &
+         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), least, &
             & event_kind%slides_back, j, 0, event)
       end do
    end function next_event
 
    !> Take an event that comes before the others: something positive falls to zero
-   pure subroutine meet(rest, rate, slow, kind, joint, corner, event)
-      real(wp), intent(in) :: rest   !! What falls
-      real(wp), intent(in) :: rate   !! Its rate
-      real(wp), intent(in) :: slow   !! How slow it does not fall
-      integer, intent(in) :: kind    !! What happens at zero
-      integer, intent(in) :: joint   !! Number of the joint
-      integer, intent(in) :: corner  !! Corner of the joint, or 0
+   pure subroutine meet(rest, rate, least, kind, joint, corner, event)
+      real(wp), intent(in) :: rest        !! What falls, as a force
+      real(wp), intent(in) :: rate        !! Its rate
+      type(least_t), intent(in) :: least  !! What it must surpass
+      integer, intent(in) :: kind         !! What happens at zero
+      integer, intent(in) :: joint        !! Number of the joint
+      integer, intent(in) :: corner       !! Corner of the joint, or 0
       type(event_t), intent(inout) :: event
 
-      if (.not. (rate < -slow .and. rest > 0.0_wp)) return
+      if (.not. (rate < -least%slow .and. rest > 0.0_wp)) return
+      if (rest <= weak_force .and. rate >= -least%still) return
+      if (least%minor > 0.0_wp .and. rest + least%longest*rate >= -least%minor) return
       if (-rest/rate < event%distance) event = event_t(-rest/rate, kind, joint, corner)
    end subroutine meet
 

@@ -9,13 +9,6 @@ submodule (dda_event_rates) dda_rate_law
    use dda_coulomb_law, only : face, shear_face, strength
    implicit none
 
-   !> A force below this part of a block's weight is none, a gap that it would close is none
-   real(wp), parameter :: weak_force = 1.0e-9_wp
-   !> What opens by less than this share of the largest rate, or of one, stays closed, and a joint
-   !> sticks unless it would slide by more: less is rounding, as in long rows where most joints are
-   !> beyond the reach of what acts at the ends
-   real(wp), parameter :: rounding = 1.0e-11_wp
-
 contains
 
    !> The law of a state
@@ -57,25 +50,29 @@ contains
 
    !> What joints do with rates of opening
    module procedure follow_law
-      real(wp) :: beyond(2), margin, still
-      integer :: i, j, k
+      real(wp) :: beyond(2), margin
+      integer :: before(3, size(faces, 2)), i, j, k
 
+      before = faces
       faces = law%given
-      ! what moves freely does so by any multiple of what forces open
-      still = rounding*min(1.0_wp, maxval(abs(opening)))
+      ! what is closed or sticks does so until it would do more than rounding makes, what is open or
+      ! slides until it would not
       do k = 1, size(law%loose)
          j = law%loose(k)
          do i = 1, 2
-            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) > still)
+            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, &
+               & opening(i, j) > merge(0.0_wp, still, before(i, j) == face%open))
          end do
          if (any(law%weak(:, j)) .and. .not. law%holds(j)) &
             & faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
          beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
          margin = still/joints%graph%compliance(3, j)
-         if (law%limit(1, j) .and. beyond(1) > margin) then
+         if (law%limit(1, j) .and. &
+            & beyond(1) > merge(0.0_wp, margin, before(3, j) == face%slides)) then
             faces(3, j) = face%slides
-         else if (law%limit(2, j) .and. beyond(2) > margin) then
+         else if (law%limit(2, j) .and. &
+            & beyond(2) > merge(0.0_wp, margin, before(3, j) == face%slides_back)) then
             faces(3, j) = face%slides_back
          end if
       end do
@@ -100,43 +97,51 @@ contains
 
    !> The first bend of the law on a line of rates of opening
    module procedure next_break
-      real(wp) :: beyond(2), rate(2)
-      integer :: i, j, k
-      logical :: slides
+      real(wp), dimension(4, size(law%loose)) :: far, rate, last
+      real(wp) :: beyond(2), sense
+      integer :: at(2), i, j, k
 
-      next_break%distance = huge(1.0_wp)
+      ! far: how far each is from where it changes; rate: how fast it comes there
+      far = 0.0_wp
+      rate = 0.0_wp
       do k = 1, size(law%loose)
          j = law%loose(k)
          do i = 1, 2
-            if (law%weak(i, j)) call meet(faces(i, j) == face%closed, -opening(i, j), &
-               & -change(i, j), j, i, next_break)
+            if (.not. law%weak(i, j)) cycle
+            sense = merge(1.0_wp, -1.0_wp, faces(i, j) == face%closed)
+            far(i, k) = -sense*opening(i, j)
+            rate(i, k) = sense*change(i, j)
          end do
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
-         beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
-         rate = beyond_limit(joints, j, faces(:2, j), change(:, j))
          do i = 1, 2
-            slides = faces(3, j) == merge(face%slides, face%slides_back, i == 1)
-            if (law%limit(i, j)) call meet(slides, beyond(i), rate(i), j, i + 2, next_break)
+            if (.not. law%limit(i, j)) cycle
+            sense = joints%graph%compliance(3, j)*merge(1.0_wp, -1.0_wp, &
+               & faces(3, j) == merge(face%slides, face%slides_back, i == 1))
+            beyond = sense*beyond_limit(joints, j, faces(:2, j), opening(:, j))
+            far(i + 2, k) = beyond(i)
+            beyond = -sense*beyond_limit(joints, j, faces(:2, j), change(:, j))
+            rate(i + 2, k) = beyond(i)
          end do
       end do
+      next_break%distance = huge(1.0_wp)
+      if (.not. any(rate > 0.0_wp)) return
+      ! what rounding makes may be left behind: of those in reach the fastest decides
+      last = huge(1.0_wp)
+      where (rate > 0.0_wp)
+         far = max(0.0_wp, far)/rate
+         last = far + still/rate
+      end where
+      at = maxloc(rate, rate > 0.0_wp .and. far <= minval(last))
+      associate (part => at(1), k => at(2))
+         j = law%loose(k)
+         next_break = break_t(far(part, k), j, part, rises=.true.)
+         if (part > 2) then
+            next_break%rises = faces(3, j) /= merge(face%slides, face%slides_back, part == 3)
+         else
+            next_break%rises = faces(part, j) /= face%closed
+         end if
+      end associate
    end procedure next_break
-
-   !> Take a bend that comes before the others: what is positive in one piece and negative in the
-   !> other falls or rises to zero
-   pure subroutine meet(positive, value, rate, joint, part, first)
-      logical, intent(in) :: positive  !! Whether it is the piece where the value is positive
-      real(wp), intent(in) :: value    !! The value; on the wrong side by rounding alone
-      real(wp), intent(in) :: rate     !! Its rate
-      integer, intent(in) :: joint     !! Number of the joint
-      integer, intent(in) :: part      !! Part of the joint
-      type(break_t), intent(inout) :: first
-      real(wp) :: distance
-
-      if (positive .eqv. rate >= 0.0_wp) return
-      if (.not. abs(rate) > 0.0_wp) return
-      distance = max(0.0_wp, -value/rate)
-      if (distance < first%distance) first = break_t(distance, joint, part, rate > 0.0_wp)
-   end subroutine meet
 
    !> How fast what decides a bend rises along a line
    module procedure break_rate

@@ -177,6 +177,17 @@ def test_the_middle_of_a_long_row_takes_no_part_in_what_its_ends_do(tmp_path: Pa
     assert int(row["steps"]) <= 5
 
 
+@pytest.mark.parametrize(("units", "courses", "push"), [(2, 4, 7 / 11), (200, 4, 7 / 11), (120, 5, 0.6)])
+def test_a_long_wall_falls_by_the_push_of_a_short_one(
+    tmp_path: Path, units: int, courses: int, push: float
+) -> None:
+    """An end of it falls, however long the rest: joints there that reach their limit together cost little."""
+    (row,) = run_wall(tmp_path, units, courses, 0.65, "&search parameter = 'horizontal_coefficient' /\n")
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(push, rel=1e-8)
+    assert int(row["factorisations"]) <= 900
+
+
 @pytest.mark.parametrize("blocks", [20, 200, 1000])
 def test_tall_columns_tip_by_their_width_over_their_height(tmp_path: Path, blocks: int) -> None:
     """However far they bend before: 1000 cubes on one another bend ten million times as far as 20."""
