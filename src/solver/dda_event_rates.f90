@@ -159,23 +159,27 @@ contains
       found = .false.
       call set_rate_law(joints, state, law)
       rates%face = state%face
-      seen = huge(seen)
       do pass = 1, most_passes
          call solve_rates(joints, equations, load_rate, opening_rate, viscosity, rates)
          if (.not. equations%usable) return
+         rates%still = no_rate(rates%motion, rates%opening)
          target = rates%face
-         call follow_law(joints, law, rates%opening, no_rate(rates%motion, rates%opening), target)
+         call follow_law(joints, law, rates%opening, rates%still, target)
          n_wrong = count(target /= rates%face)
          found = n_wrong == 0
          if (found .or. (pass >= few_passes .and. n_wrong <= few_wrong)) exit
          ! faces that have been seen come again for ever
-         if (all(target == seen)) exit
+         if (pass > 1) then
+            if (all(target == seen)) exit
+         end if
          if (iand(pass, pass - 1) == 0) seen = rates%face
          rates%face = target
       end do
-      if (.not. found) call pivot_to_load(joints, equations, law, load_rate, opening_rate, &
-         & rates%motion, rates%opening, rates%face, found)
-      rates%still = no_rate(rates%motion, rates%opening)
+      if (.not. found) then
+         call pivot_to_load(joints, equations, law, load_rate, opening_rate, rates%motion, &
+            & rates%opening, rates%face, found)
+         rates%still = no_rate(rates%motion, rates%opening)
+      end if
       call spring_forces(joints, rates%face, rates%opening, rates%force)
       damped = equations%damping*joints%graph%mass*rates%motion
       if (viscosity > 0.0_wp) call add_joint_forces(joints%graph, &
