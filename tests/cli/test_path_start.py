@@ -182,7 +182,8 @@ def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> Non
 def test_rings_that_creep_on_by_sticking_and_slipping_fall(tmp_path: Path, seed: int, value: float) -> None:
     """Each slip is followed by another one, equally far: thousands of them lead to what counts as far.
 
-    Jumps choose between branches there, and other rounding another one: the first falls at 0.61506 or 0.61523.
+    What a jump leaves of the load by rounding decides where later ones lead: the first has been seen to fall at
+    0.61506 and at 0.61523.
     """
     text = block_text(*make_pushed(seed))
     (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 1e4 /")
