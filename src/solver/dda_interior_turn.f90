@@ -237,7 +237,7 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
-      real(wp) :: dx(n_side, size(turn%dx, 2))
+      real(wp) :: change(n_side), dx(n_side, size(turn%dx, 2))
       real(wp) :: dv(3, 0:graph%n_block), dfactor, share, steps(2, n_share)
       integer :: i, j, best
 
@@ -245,13 +245,16 @@ contains
       dv = turn%dv
       dfactor = turn%dfactor
       do j = 1, size(dx, 2)
-         turn%dx(:, j) = dx(:, j) + change_of_x(j)
+         turn%dx(:, j) = dx(:, j) + change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), &
+            & turn%ds(:, j), turn%aim(:, j))*path%bounded(:, j) &
+            & *(1.0_wp - path%compliance*springs%stiffness(:, j))
       end do
       call find_balance(graph, path, point, springs, turn)
       ! the rates are not needed any more and make room for what s would change by
       do j = 1, size(dx, 2)
+         change = turn%dx(:, j) - dx(:, j)
          turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*turn%rate(:, j)
-         turn%rate(:, j) = turn%ds(:, j) + path%compliance*change_of_x(j) &
+         turn%rate(:, j) = turn%ds(:, j) + path%compliance*change &
             & + (1.0_wp - path%compliance*springs%stiffness(:, j))*turn%rate(:, j)
       end do
       steps = steps_of_shares(path, point, turn, dx)
@@ -269,17 +272,6 @@ contains
       turn%ds = turn%ds + share*(turn%rate - turn%ds)
       turn%dv = dv + share*(turn%dv - dv)
       turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
-
-   contains
-
-      !> Change of x at unchanged rates of a joint
-      pure function change_of_x(j) result(change)
-         integer, intent(in) :: j    !! Number of the joint
-         real(wp) :: change(n_side)  !! The change
-
-         change = change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), turn%ds(:, j), &
-            & turn%aim(:, j))*path%bounded(:, j)*(1.0_wp - path%compliance*springs%stiffness(:, j))
-      end function change_of_x
    end subroutine add_correction
 
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the

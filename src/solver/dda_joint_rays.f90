@@ -133,8 +133,12 @@ contains
       real(wp), intent(in) :: length      !! Unit of length [m]
       real(wp) :: row(3, 3, 2)            !! Opening 1, opening 2, slip by unit motion: (3, 3, 2)
 
-      row = graph%row(:3, :, :, j)
-      row(3, :, :) = row(3, :, :)/length
+      integer :: side
+
+      do side = 1, 2
+         row(1:2, :, side) = graph%row(1:2, :, side, j)
+         row(3, :, side) = (1.0_wp/length)*graph%row(3, :, side, j)
+      end do
       if (graph%block(1, j) /= graph%block(2, j)) return
       row(:, :, 1) = row(:, :, 1) + row(:, :, 2)
       row(:, :, 2) = 0.0_wp
@@ -157,7 +161,7 @@ contains
    pure subroutine ray_rates(graph, length, v, rate)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: length                   !! Unit of length [m]
-      real(wp), intent(in) :: v(:, 0:)                 !! Motion: (3, 0:n_block)
+      real(wp), intent(in), contiguous :: v(:, 0:)     !! Motion: (3, 0:n_block)
       real(wp), intent(out), contiguous :: rate(:, :)  !! Rates: (n_side, n_joint)
       real(wp) :: arm, opening(3), part(2), p(3), q(3)
       integer :: i, j, shape
@@ -186,25 +190,35 @@ contains
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in), contiguous :: x(:, :)
       !> Loads, to which theirs are added; what falls to 0 is lost: (3, 0:n_block)
-      real(wp), intent(inout) :: load(:, 0:)
-      real(wp) :: arm, f(3), p(3)
-      integer :: b, j, k, side
+      real(wp), intent(inout), contiguous :: load(:, 0:)
+      real(wp) :: arm, f(3)
+      integer :: b, j, side
 
       arm = 1.0_wp/length
       do j = 1, size(x, 2)
          f = joint_force(graph%kind(j), graph%friction(j), x(:, j))
          do side = 1, 2
             b = graph%block(side, j)
-            do k = 1, 3
-               p(k) = graph%row(k, 1, side, j)*f(1) + graph%row(k, 2, side, j)*f(2) &
-                  & + graph%row(k, 3, side, j)*f(3)
-            end do
-            load(1:2, b) = load(1:2, b) + p(1:2)
-            load(3, b) = load(3, b) + arm*p(3)
+            call add_rows(graph%n_dof, graph%row(1, 1, side, j), arm, f, load(:, b))
          end do
       end do
       load(:, 0) = 0.0_wp
    end subroutine add_ray_forces
+
+   !> Add what the forces of a joint do to one of its blocks
+   pure subroutine add_rows(n_dof, row, arm, f, load)
+      integer, intent(in) :: n_dof          !! Unknowns of a block
+      real(wp), intent(in) :: row(n_dof, 3) !! Opening 1, opening 2, slip by unit motion
+      real(wp), intent(in) :: arm           !! One over the unit of length [1/m]
+      real(wp), intent(in) :: f(3)          !! N1, N2, T
+      real(wp), intent(inout) :: load(3)    !! Load to which theirs is added
+      integer :: k
+
+      do k = 1, 2
+         load(k) = load(k) + (row(k, 1)*f(1) + row(k, 2)*f(2) + row(k, 3)*f(3))
+      end do
+      load(3) = load(3) + arm*(row(3, 1)*f(1) + row(3, 2)*f(2) + row(3, 3)*f(3))
+   end subroutine add_rows
 
    !> Forces of the joints from the factors of their rays
    pure subroutine forces_of_rays(graph, x, unit, force)

@@ -154,7 +154,7 @@ contains
    pure subroutine assemble(graph, springs)
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
-      real(wp) :: pushed(3, 3), row(3, 3, 2), spring(3, 3)
+      real(wp) :: pushed(3, 3, 2), row(3, 3, 2), spring(3, 3)
       integer :: j, side
 
       associate (number => springs%factor%panels%lower)
@@ -164,14 +164,14 @@ contains
             spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
             do side = 1, 2
                if (graph%block(side, j) == 0) cycle
-               pushed = matmul(row(:, :, side), spring)
-               call add_product(pushed, row(:, :, side), &
+               pushed(:, :, side) = matmul(row(:, :, side), spring)
+               call add_product(pushed(:, :, side), row(:, :, side), &
                   & number(springs%diagonal(graph%block(side, j))))
             end do
             if (springs%coupling(j) == 0) cycle
             side = merge(2, 1, springs%second_is_row(j) .neqv. springs%coupling(j) < 0)
-            pushed = matmul(row(:, :, side), spring)
-            call add_product(pushed, row(:, :, 3 - side), number(abs(springs%coupling(j))))
+            call add_product(pushed(:, :, side), row(:, :, 3 - side), &
+               & number(abs(springs%coupling(j))))
          end do
       end associate
    end subroutine assemble
