@@ -178,17 +178,16 @@ def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> Non
     assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
 
 
-@pytest.mark.parametrize(("seed", "value"), [(94436, 0.6150628), (96362, 0.5623422)])
+@pytest.mark.parametrize(("seed", "value"), [(94436, 0.6152328), (96362, 0.5623422)])
 def test_rings_that_creep_on_by_sticking_and_slipping_fall(tmp_path: Path, seed: int, value: float) -> None:
     """Each slip is followed by another one, equally far: thousands of them lead to what counts as far.
 
-    What a jump leaves of the load by rounding decides where later ones lead: the first has been seen to fall at
-    0.61506 and at 0.61523.
+    Jumps choose between branches there: with other thresholds of a jump the first falls at 0.6150628.
     """
     text = block_text(*make_pushed(seed))
     (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 1e4 /")
     assert found["verdict"] == "found"
-    assert float(found["critical"]) == pytest.approx(value, rel=5e-4)
+    assert float(found["critical"]) == pytest.approx(value, rel=1e-6)
     loads = ", ".join(repr(value * share) for share in (0.999, 1.001))
     decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
     assert [row["verdict"] for row in decided] == ["stable", "collapsed"]
