@@ -223,7 +223,7 @@ contains
       state = run%step%state
       ! what a speed leaves of a gap counts as in the longest step
       state%fineness = state%fineness*finer*run%step%dt/run%step%longest
-      state%unseen = 10.0_wp*state%unseen
+      state%unseen = 10.0_wp*run%step%longest/run%step%dt*state%unseen
       state%rates = .true.
       state%effort%in_vain = .false.
       state%force = state%force - impact%force_before

@@ -13,11 +13,11 @@ from dda_command import run_dda
 COURSES, LENGTH, HEIGHT, G = 10, 0.25, 0.125, 9.81
 
 
-def wall(columns: int) -> str:
+def wall(columns: int, courses: int = COURSES) -> str:
     """Bricks in running bond on a fixed floor, their joints all of one group."""
     end = columns * LENGTH
     text = block([(0.0, -HEIGHT), (end, -HEIGHT), (end, 0.0), (0.0, 0.0)], "fixed")
-    for course in range(COURSES):
+    for course in range(courses):
         heads = [column * LENGTH for column in range(columns + 1)]
         if course % 2:
             heads = [0.0, *(head + LENGTH / 2.0 for head in heads[:-1]), end]
@@ -27,13 +27,14 @@ def wall(columns: int) -> str:
     return text
 
 
-def run(folder: Path, blocks: str, friction_deg: float, duration: float) -> tuple[list[dict[str, str]], int]:
-    """Rows of the measured point and passes of a run in steps of 1 ms."""
+def run(folder: Path, blocks: str, friction_deg: float, duration: float,
+        time_step: float = 1e-3) -> tuple[list[dict[str, str]], int]:
+    """Rows of the measured point and passes of a run."""
     (folder / "x.blocks").write_text(blocks)
     (folder / "x.nml").write_text(
         f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
-        "&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, "
-        f"duration = {duration!r}, steps = 9999 /\n")
+        "&analysis mode = 'dynamic', geometry = 'current', "
+        f"time_step = {time_step!r}, duration = {duration!r}, steps = 9999 /\n")
     done = run_dda("run", "x.nml", "--quiet", cwd=folder)
     assert done.returncode == 0, done.stderr
     with (folder / "x" / "results.csv").open() as table:
@@ -51,6 +52,20 @@ def test_a_wall_that_has_settled_stands_still(tmp_path: Path, columns: int) -> N
     assert in_all == passes
     assert {(row["u"], row["v"]) for row in rows[50:]} == {(settled[-1]["u"], settled[-1]["v"])}
     assert float(rows[-1]["v"]) < 0.0
+
+
+@pytest.mark.parametrize("apart", [1e-6, 3e-6, 1e-5])
+def test_bricks_that_land_microseconds_apart_come_to_rest(tmp_path: Path, apart: float) -> None:
+    """The steps between two landings are short; a speed matters in them as little as in a long one."""
+    courses, fall = 25, 0.05
+    top = courses * HEIGHT
+    bricks = [(LENGTH * (2 * i + 0.25), top + fall + apart * i) for i in range(3)]
+    blocks = "".join(block([(x, y), (x + LENGTH / 2, y), (x + LENGTH / 2, y + HEIGHT), (x, y + HEIGHT)])
+                     for x, y in bricks) + f"measure {bricks[1][0] + 0.01!r} {bricks[1][1] + 0.01!r}\n"
+    rows, _ = run(tmp_path, wall(5, courses) + blocks, 35.0, 0.7, 2e-3)
+    assert float(rows[-1]["time"]) == pytest.approx(0.7)
+    assert float(rows[-1]["v"]) == pytest.approx(float(rows[-20]["v"]), abs=1e-9)
+    assert float(rows[-1]["v"]) == pytest.approx(-fall, rel=1e-3)
 
 
 def slope_with_block(rise: float) -> str:
