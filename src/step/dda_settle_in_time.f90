@@ -223,8 +223,8 @@ contains
          return
       end if
       ! glue hands on waves of strain, which are finer than what sweeps leave
-      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp)) then
-         call sweep_with_bars(equations, springs, state)
+      if (size(state%motion, 1) == 3 .or. .not. any(springs%shift > 0.0_wp)) then
+         call sweep_to_targets(target, equations, springs, state)
          if (state%settled .or. size(springs%stiffness) > most_joints) return
          if (state%effort%in_vain) return
       end if
@@ -279,6 +279,26 @@ contains
       are_glued = springs%cone%kind == cone_kind%no_slip &
          & .and. .not. (state%face%open(1) .and. state%face%open(2))
    end function are_glued
+
+   !> Sweep until held points are where they must be: their springs, stiff beside inertia, are parts
+   !> of the blocks' equations, and what these lack becomes their force
+   pure subroutine sweep_to_targets(target, equations, springs, state)
+      real(wp), intent(in) :: target(:)
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: change, scale
+      integer :: pass
+
+      do pass = 1, max_passes
+         call sweep_with_bars(equations, springs, state)
+         if (.not. state%settled) return
+         call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
+         scale = equations%force_scale + sum(abs(equations%fixed%force))
+         if (change <= fine*scale) return
+      end do
+      state%settled = change <= coarse*scale
+   end subroutine sweep_to_targets
 
    !> Sweep the contacts, and in a motion with them the bars
    pure subroutine sweep_with_bars(equations, springs, state)
