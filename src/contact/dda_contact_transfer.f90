@@ -29,6 +29,8 @@ module dda_contact_transfer
       real(wp) :: slip = 0.0_wp
       !> Stiffness of the springs [N/m per metre depth]
       real(wp) :: stiffness = 0.0_wp
+      !> Tension that it carries [N/m]
+      real(wp) :: tension = 0.0_wp
       !> Whether a contact of the next step has taken it over
       logical :: passed_on = .false.
    end type past_contact_t
@@ -136,6 +138,7 @@ contains
                list(n)%slip = slip_at(system, system%moved, joint%contact(k)) &
                   & - contacts%past_slip(j)
                list(n)%stiffness = contacts%springs%stiffness(j)
+               list(n)%tension = contacts%springs%shift(k, j)
                if (.not. contacts%remember) list(n)%slip = 0.0_wp
             end do
          end associate
@@ -353,7 +356,8 @@ contains
       end do
    end function same_contact
 
-   !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
+   !> The nearest contact of the same blocks that none has taken over and that carried a force, or
+   !> holds them together, or 0
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
@@ -371,7 +375,7 @@ contains
       do m = place_in(past_pair, pair), size(past)
          if (past_pair(m) /= pair) exit
          associate (old => past(order(m)))
-            if (old%passed_on .or. .not. old%force(1) > 0.0_wp) cycle
+            if (old%passed_on .or. .not. old%force(1) + old%tension > 0.0_wp) cycle
             there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
                & old%contact%vertex))
          end associate
