@@ -227,7 +227,7 @@ contains
       allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
       call see_openings(springs, view, p, x%motion, opening)
       where (p%follows) opening = opening + p%soft*(x%force - p%force_before)
-      p%size = sum(max(x%force(1:2, :), -opening(1:2, :)/p%unit(1:2, :), 0.0_wp), &
+      p%size = sum(max(abs(x%force(1:2, :)), -opening(1:2, :)/p%unit(1:2, :)), &
          & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
       p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
       call see_bounds(springs, p, x%force, x%slack)

@@ -13,6 +13,7 @@
 !>
 !> Equation (M5) of docs/method.md
 submodule (dda_settle_in_time) dda_contact_sweeps
+   use dda_contact_types, only : unbounded
    use dda_contact_view, only : move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
    use dda_small_systems, only : solved
@@ -179,19 +180,21 @@ contains
       type(sweeps_t), intent(inout) :: sweeps
       logical, intent(out) :: settled
       real(wp) :: enough(2)
-      logical :: hasty
+      logical :: glued, hasty
 
       enough = sweeps%enough
-      if (size(joint) <= few) then
+      glued = hands_on_waves(springs, joint)
+      if (size(joint) <= few .and. .not. glued) then
          call sweep_group(springs, joint, sweeps_for%rounding, enough, sweeps, settled)
          return
       end if
       if (size(joint) > many) enough(2) = max(enough(2), merge(look_at_speeds, look, state%rates) &
          & *state%unseen)
-      call sweep_group(springs, joint, sweeps_for%a_look, enough, sweeps, settled)
+      settled = .false.
+      if (.not. glued) call sweep_group(springs, joint, sweeps_for%a_look, enough, sweeps, settled)
       if (settled) return
       hasty = size(joint) > vast .and. .not. state%effort%patient
-      if (asks_faces(sweeps%view, springs, joint, state)) then
+      if (glued .or. asks_faces(sweeps%view, springs, joint, state)) then
          call keep_to_faces(equations, springs, sweeps%view, joint, size(joint) > many, hasty, &
             & state%fineness, state%force, sweeps%moved, sweeps%force, state%passes, settled)
          if (settled .or. hasty) call move_group(equations, springs, joint, sweeps)
@@ -230,6 +233,16 @@ contains
       if (state%effort%patient) purpose = sweeps_for%the_end
       call sweep_group(springs, joint, purpose, enough, sweeps, settled)
    end subroutine settle_by_springs
+
+   !> Whether joints hold blocks together that strain: these hand on waves, which are finer than what
+   !> sweeps leave
+   pure logical function hands_on_waves(springs, joint)
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: joint(:)
+
+      hands_on_waves = size(springs%row, 1) > 3 .and. any(springs%shift(:, joint) > 0.0_wp &
+         & .and. springs%shift(:, joint) < unbounded)
+   end function hands_on_waves
 
    !> Whether faces may tell the forces of a motion: those of a try of this step, or of a group that
    !> has more forces than its blocks can tell apart

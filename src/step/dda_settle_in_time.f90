@@ -222,12 +222,9 @@ contains
          call settle_forces(settings, target, opening, equations, springs, state)
          return
       end if
-      ! glue hands on waves of strain, which are finer than what sweeps leave
-      if (size(state%motion, 1) == 3 .or. .not. any(springs%shift > 0.0_wp)) then
-         call sweep_to_targets(target, equations, springs, state)
-         if (state%settled .or. size(springs%stiffness) > most_joints) return
-         if (state%effort%in_vain) return
-      end if
+      call sweep_to_targets(target, equations, springs, state)
+      if (state%settled .or. size(springs%stiffness) > most_joints) return
+      if (state%effort%in_vain) return
       call settle_bounds(settings, target, opening, equations, springs, state)
    end subroutine settle_in_time
 
