@@ -230,12 +230,15 @@ contains
       call move_group(equations, springs, joint, sweeps)
       if (settled) return
       purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)
-      if (state%effort%patient) purpose = sweeps_for%the_end
+      if (state%effort%patient) then
+         purpose = sweeps_for%the_end
+         enough(2) = state%unseen/coarsest
+      end if
       call sweep_group(springs, joint, purpose, enough, sweeps, settled)
    end subroutine settle_by_springs
 
-   !> Whether joints hold blocks together that strain: these hand on waves, which are finer than what
-   !> sweeps leave
+   !> Whether joints hold blocks together that strain: these hand on waves, finer than what sweeps
+   !> leave
    pure logical function hands_on_waves(springs, joint)
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: joint(:)

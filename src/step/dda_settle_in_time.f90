@@ -15,7 +15,7 @@ module dda_settle_in_time
    use dda_friction, only : accelerate, anderson_t, coulomb_bound
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : settings_t
    use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
@@ -218,10 +218,6 @@ contains
       real(wp) :: opening(3, size(springs%stiffness))
 
       opening = state%trial - state%force
-      if (settings%flow == flow_rule%associated) then
-         call settle_forces(settings, target, opening, equations, springs, state)
-         return
-      end if
       call sweep_to_targets(target, equations, springs, state)
       if (state%settled .or. size(springs%stiffness) > most_joints) return
       if (state%effort%in_vain) return

@@ -9,7 +9,8 @@ submodule (dda_step) dda_step_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
    implicit none
 
-   !> Opening against the law of contact that many blocks may leave, over twice the fall in a step
+   !> Opening against the law of contact that many blocks may leave, over what the speed of the
+   !> longest step's fall brings in a step: a speed matters in a short step as much as in a long one
    real(wp), parameter :: unseen = 1.0e-3_wp
 
 contains
@@ -90,7 +91,7 @@ contains
       if (in_time(run)) call stiffen_contacts(run)
       call begin_step(run)
       run%step%state%unseen = run%step%state%fineness*unseen*run%march%free_acceleration &
-         & *run%step%dt**2
+         & *run%march%longest*run%step%dt
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
          & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
       if (in_time(run)) call foresee_curves(run)

@@ -68,6 +68,28 @@ def test_bricks_that_land_microseconds_apart_come_to_rest(tmp_path: Path, apart:
     assert float(rows[-1]["v"]) == pytest.approx(-fall, rel=1e-3)
 
 
+@pytest.mark.parametrize("friction_deg", [10.0, 80.0])
+def test_a_brick_thrown_onto_a_wall_brings_in_its_own_energy_alone(tmp_path: Path, friction_deg: float) -> None:
+    """No step adds more to the energy than rounding, beside what moves and what falls in a step."""
+    courses, columns, step = 20, 9, 1e-3
+    low = courses * HEIGHT + 1e-3
+    brick = block([(0.5, low), (0.5 + LENGTH, low), (0.5 + LENGTH, low + HEIGHT), (0.5, low + HEIGHT)],
+                  "velocity 0.8 -1.0 4.0")
+    (tmp_path / "x.blocks").write_text(wall(columns, courses) + brick)
+    (tmp_path / "x.nml").write_text(
+        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
+        f"&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = {step!r}, duration = 0.1, "
+        "steps = 9999 /\n&output energy = .true. /\n")
+    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "x" / "energy.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    totals = [sum(float(row[name]) for name in ("kinetic", "elastic", "gravity")) for row in rows]
+    fall = 2240.0 * courses * columns * LENGTH * HEIGHT * (G * step) ** 2 / 2.0
+    motion = [fall + float(row["kinetic"]) for row in rows]
+    assert max((b - a) / m for a, b, m in zip(totals, totals[1:], motion)) < 2e-6
+
+
 def slope_with_block(rise: float) -> str:
     """A block on a plane that rises by so much in one."""
     across = (-rise, 1.0)
