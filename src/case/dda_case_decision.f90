@@ -99,18 +99,22 @@ contains
       if (this%family%load /= searched_load%none) call take_joints(this%scene, contacts)
       if (allocated(contacts%joint) .or. .not. this%family%deck%value(output_joints)%flag) return
       call build_once(this%family, this%critical%stands, this%standing)
-      contacts%joint = this%standing%contacts%joint
-      call place_all_joints(this%standing%system, contacts)
+      associate (begun => this%standing%contacts)
+         call place_all_joints(this%standing%system, begun)
+         allocate (contacts%joint, source=begun%joint)
+         if (.not. allocated(contacts%place)) allocate (contacts%place, source=begun%place)
+      end associate
    end subroutine place_standing
 
-   !> Take the joints of a scene that needs them no more
+   !> Take the joints of a scene that needs them no more, and where they are
    pure subroutine take_joints(from, to)
       type(scene_t), intent(inout) :: from
       type(contacts_t), intent(inout) :: to
 
       if (allocated(to%joint) .or. .not. allocated(from%contacts%joint)) return
+      call place_all_joints(from%system, from%contacts)
       call move_alloc(from%contacts%joint, to%joint)
-      call place_all_joints(from%system, to)
+      if (.not. allocated(to%place)) call move_alloc(from%contacts%place, to%place)
    end subroutine take_joints
 
    !> What the album of the case is to hold

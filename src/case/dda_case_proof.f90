@@ -5,6 +5,7 @@
 !> proof of this kind, and none is told.
 submodule (dda_compute_case) dda_case_proof
    use dda_bar_joints, only : bar_joint
+   use dda_contacts, only : place_all_joints
    use dda_error, only : error_t
    use dda_joint_graph, only : keep_joints
    use dda_key_names, only : output_thrust_bar, output_thrust_joint
@@ -102,6 +103,7 @@ contains
          call build_once(family, critical%stands, stands)
          if (.not. allocated(stands%contacts%joint)) return
          if (.not. has_limit_analysis(stands%settings, stands%contacts)) return
+         call place_all_joints(stands%system, stands%contacts)
          call scene_graph(stands%settings, stands%system, stands%contacts, graph)
          call prove_state(stands, graph, verdict%stable, proof)
          proof%force_at = critical%stands
@@ -110,6 +112,7 @@ contains
       call build_once(family, critical%falls, falls)
       if (.not. allocated(falls%contacts%joint)) return
       if (.not. has_limit_analysis(falls%settings, falls%contacts)) return
+      call place_all_joints(falls%system, falls%contacts)
       call scene_graph(falls%settings, falls%system, falls%contacts, graph)
       call prove_state(falls, graph, verdict%collapsed, other)
       if (.not. allocated(other%velocity)) return

@@ -36,13 +36,14 @@ contains
       real(wp) :: t(2, 6)
       real(wp) :: arm(2), strain(3), unstrained(2, 6)
 
+      t = displacement_matrix(place, centre)
+      if (.not. any(abs(motion(4:6)) > 0.0_wp)) return
       strain = turned_tensor(motion(4:6), -motion(3), 2.0_wp)
       strain(3) = strain(3)/2.0_wp
       arm = place - centre
       arm = [(1.0_wp + strain(2))*arm(1) - strain(3)*arm(2), &
          & (1.0_wp + strain(1))*arm(2) - strain(3)*arm(1)] &
          & /((1.0_wp + strain(1))*(1.0_wp + strain(2)) - strain(3)**2)
-      t = displacement_matrix(place, centre)
       unstrained = displacement_matrix(arm, [0.0_wp, 0.0_wp])
       t(:, 4:6) = unstrained(:, 4:6)
    end function tangent_matrix
