@@ -3,19 +3,19 @@ module dda_case_table
    use dda_case, only : searched_name
    use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, source_of
    use dda_deck_sweep, only : n_cases, swept_texts
-   use dda_screen, only : print_line, screen_t, screen_width
+   use dda_process, only : error_is_terminal
+   use dda_screen, only : end_watch, print_line, progress_t, report_progress, screen_t, screen_width
    use dda_text, only : to_text
    use dda_write_results, only : result_row_t
    implicit none
    private
 
-   public :: case_table_t, new_case_table, may_print, add_case, end_case_table
+   public :: case_table_t, new_case_table, add_case, end_case_table
 
-   !> Lines of a case that wait for those of an earlier one
-   type :: waiting_t
-      integer :: number = 0                   !! Number of the case
-      character(len=:), allocatable :: lines  !! Its lines, parted by line ends
-   end type waiting_t
+   !> Lines of a case, parted by line ends; unallocated where nothing of it is to be printed
+   type :: lines_t
+      character(len=:), allocatable :: text  !! The lines
+   end type lines_t
 
    !> What a column shows; of two that do not fit beside one another the one with the smaller number
    !> stays
@@ -47,6 +47,8 @@ module dda_case_table
       private
       !> Where it goes
       type(screen_t) :: screen
+      !> How far the cases are
+      type(progress_t) :: progress
       !> Widest line that it may have
       integer :: width = 0
       !> Its columns
@@ -57,12 +59,10 @@ module dda_case_table
       logical :: all_cases = .true.
       !> Cases that are not computed yet: (n)
       logical, allocatable :: awaited(:)
-      !> The first case that may still be printed
+      !> The first case that is not printed yet
       integer :: next = 1
-      !> What waits, by the number of the case: the first n_waiting of these
-      type(waiting_t), allocatable :: waiting(:)
-      !> How many wait
-      integer :: n_waiting = 0
+      !> What waits for the lines of an earlier case, by the number of the case: (n)
+      type(lines_t), allocatable :: waiting(:)
    end type case_table_t
 
    !> Most cases that are printed one by one
@@ -114,10 +114,15 @@ contains
       type(case_table_t), intent(out) :: table
 
       table%screen = screen
+      table%progress%shown = error_is_terminal()
+      table%progress%total = count(chosen)
+      call system_clock(table%progress%start)
       table%width = screen_width(screen)
       table%all_cases = n_cases(deck) <= max_rows
+      table%progress%patience = 0.0_wp
+      if (table%all_cases) table%progress%interval = 0.0_wp
       allocate (table%awaited, source=chosen)
-      allocate (table%waiting(8))
+      allocate (table%waiting(size(chosen)))
       allocate (table%column(0))
       call choose_columns(deck, table%column)
       call fit_columns(table%width, table%column)
@@ -168,42 +173,31 @@ contains
       end do
    end function longest
 
-   !> Whether a computed case may make lines be printed
-   pure logical function may_print(table, row)
-      type(case_table_t), intent(in) :: table
-      type(result_row_t), intent(in) :: row
-
-      may_print = table%all_cases .or. table%n_waiting > 0 .or. row%verdict == "undecided"
-   end function may_print
-
    !> Take a computed case; its lines are printed when all before it are computed
    subroutine add_case(table, deck, row, remark)
       type(case_table_t), intent(inout) :: table
       type(deck_t), intent(in) :: deck
       type(result_row_t), intent(in) :: row
       character(len=*), intent(in) :: remark  !! What the user should know beside the row
-      integer :: printed
 
       table%awaited(row%number) = .false.
       if (table%all_cases .or. row%verdict == "undecided") &
-         & call let_wait(table, row%number, row_lines(table, deck, row, remark))
+         & table%waiting(row%number)%text = row_lines(table, deck, row, remark)
       do while (table%next <= size(table%awaited))
          if (table%awaited(table%next)) exit
-         table%next = table%next + 1
+         call print_next(table)
       end do
-      printed = 0
-      do while (printed < table%n_waiting)
-         if (table%waiting(printed + 1)%number >= table%next) exit
-         printed = printed + 1
-      end do
-      call print_waiting(table, printed)
+      call report_progress(table%progress)
    end subroutine add_case
 
    !> Print what still waits, if the run ends before its cases
    subroutine end_case_table(table)
       type(case_table_t), intent(inout) :: table
 
-      call print_waiting(table, table%n_waiting)
+      call end_watch(table%progress)
+      do while (table%next <= size(table%waiting))
+         call print_next(table)
+      end do
    end subroutine end_case_table
 
    !> Lines of a case, parted by line ends
@@ -225,60 +219,26 @@ contains
       if (remark /= "") lines = lines//new_line("a")//wrapped(remark, table%width)
    end function row_lines
 
-   !> Put the lines of a case among those that wait
-   pure subroutine let_wait(table, number, lines)
+   !> Print the next case, below the head of the table, and go on to the one after it
+   subroutine print_next(table)
       type(case_table_t), intent(inout) :: table
-      integer, intent(in) :: number          !! Number of the case
-      character(len=*), intent(in) :: lines  !! Its lines
-      type(waiting_t), allocatable :: longer(:)
-      integer :: i
-
-      if (table%n_waiting == size(table%waiting)) then
-         allocate (longer(2*table%n_waiting))
-         do i = 1, table%n_waiting
-            call move_waiting(table%waiting(i), longer(i))
-         end do
-         call move_alloc(longer, table%waiting)
-      end if
-      do i = table%n_waiting, 1, -1
-         if (table%waiting(i)%number < number) exit
-         call move_waiting(table%waiting(i), table%waiting(i + 1))
-      end do
-      table%waiting(i + 1)%number = number
-      table%waiting(i + 1)%lines = lines
-      table%n_waiting = table%n_waiting + 1
-   end subroutine let_wait
-
-   !> Move what waits without copying its text
-   pure subroutine move_waiting(from, to)
-      type(waiting_t), intent(inout) :: from, to
-
-      to%number = from%number
-      call move_alloc(from%lines, to%lines)
-   end subroutine move_waiting
-
-   !> Print the first of what waits
-   subroutine print_waiting(table, printed)
-      type(case_table_t), intent(inout) :: table
-      integer, intent(in) :: printed  !! How many cases
       character(len=:), allocatable :: head
       integer :: i
 
-      if (printed == 0) return
-      if (.not. table%begun) then
-         head = ""
-         do i = 1, size(table%column)
-            head = head//padded(table%column(i), trim(table%column(i)%title))
-         end do
-         call print_line(table%screen, head(:min(len_trim(head), table%width)))
-         table%begun = .true.
-      end if
-      do i = 1, printed
-         call print_line(table%screen, table%waiting(i)%lines)
-      end do
-      do i = printed + 1, table%n_waiting
-         call move_waiting(table%waiting(i), table%waiting(i - printed))
-      end do
-      table%n_waiting = table%n_waiting - printed
-   end subroutine print_waiting
+      associate (lines => table%waiting(table%next))
+         table%next = table%next + 1
+         if (.not. allocated(lines%text)) return
+         call end_watch(table%progress)
+         if (.not. table%begun) then
+            head = ""
+            do i = 1, size(table%column)
+               head = head//padded(table%column(i), trim(table%column(i)%title))
+            end do
+            call print_line(table%screen, head(:min(len_trim(head), table%width)))
+            table%begun = .true.
+         end if
+         call print_line(table%screen, lines%text)
+         deallocate (lines%text)
+      end associate
+   end subroutine print_next
 end module dda_case_table

@@ -14,8 +14,7 @@ submodule (dda_verbs) dda_run
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene
-   use dda_screen, only : clear_progress, end_watch, print_line, print_warnings, progress_t, &
-      & terminal_watch_t
+   use dda_screen, only : end_watch, print_line, print_warnings, terminal_watch_t
    use dda_table_file, only : remove_file
    use dda_text, only : to_text
    implicit none
@@ -66,8 +65,7 @@ submodule (dda_verbs) dda_run
       !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
       !> written down in the same turn in which the next ones are prepared: one wait for other
       !> threads
-      module subroutine run_cases(command, name, deck, chosen, next, tables, progress, shown, &
-         & count, error)
+      module subroutine run_cases(command, name, deck, chosen, next, tables, shown, count, error)
          type(command_t), intent(in) :: command
          !> Name of the deck
          character(len=*), intent(in) :: name
@@ -78,7 +76,6 @@ submodule (dda_verbs) dda_run
          !> The last case that was begun by any thread
          integer, intent(inout) :: next
          type(result_tables_t), intent(inout) :: tables
-         type(progress_t), intent(inout) :: progress
          type(case_table_t), intent(inout) :: shown
          !> Cases decided, undecided, written: (3)
          integer, intent(inout) :: count(3)
@@ -131,7 +128,6 @@ contains
       integer, intent(out) :: status  !! Exit status of this deck
       type(result_tables_t) :: tables
       type(finished_t) :: finished
-      type(progress_t) :: progress
       type(case_table_t) :: shown
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
@@ -142,18 +138,13 @@ contains
       call choose_cases(command%cases, total, chosen, error)
       call name_tables(deck, folder_of(command, name), tables)
       call begin_tables(command, name, deck, total, tables, finished, error)
-      progress%shown = error_is_terminal()
-      if (command%quiet) progress%shown = .false.
       chosen = chosen .and. .not. finished%case
-      progress%total = size(pack(chosen, chosen))
-      call system_clock(progress%start)
       call new_case_table(command%screen, deck, chosen, shown)
       next = 0
       !$omp parallel num_threads(min(command%jobs, total, max_jobs)) default(none) &
-      !$omp shared(deck, name, command, tables, progress, shown, count, error, chosen, next)
-      call run_cases(command, name, deck, chosen, next, tables, progress, shown, count, error)
+      !$omp shared(deck, name, command, tables, shown, count, error, chosen, next)
+      call run_cases(command, name, deck, chosen, next, tables, shown, count, error)
       !$omp end parallel
-      call clear_progress(progress)
       call end_case_table(shown)
       call close_tables(tables, error)
       count = count + [finished%count, sum(finished%count)]

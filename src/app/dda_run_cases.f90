@@ -2,12 +2,11 @@
 submodule (dda_verbs:dda_run) dda_run_cases
    use dda_case, only : case_t, prepare_case
    use dda_case_rows, only : tell_case
-   use dda_case_table, only : add_case, may_print
+   use dda_case_table, only : add_case
    use dda_compute_case, only : compute_case
    use dda_deck_sweep, only : turn_to_case
    use dda_key_names, only : output_restart
    use dda_kinds, only : wp
-   use dda_screen, only : report_progress
    use dda_force_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : swept_fields, table, write_case, write_waiting
@@ -49,7 +48,7 @@ contains
          !$omp critical (texts)
          do i = 1, n
             if (.not. allocated(error)) call write_down(command, name, deck, number(i), &
-               & batch(i), tables, progress, shown, count, error)
+               & batch(i), tables, shown, count, error)
          end do
          if (n > 0) call write_waiting(tables, error)
          n = 0
@@ -119,14 +118,13 @@ contains
    end subroutine prepare
 
    !> Write a computed case down
-   subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, error)
+   subroutine write_down(command, name, deck, number, this, tables, shown, count, error)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       type(result_tables_t), intent(inout) :: tables
-      type(progress_t), intent(inout) :: progress
       type(case_table_t), intent(inout) :: shown
       integer, intent(inout) :: count(3)
       type(error_t), allocatable, intent(inout) :: error
@@ -151,11 +149,7 @@ contains
       count(3) = count(3) + 1
       count(merge(2, 1, row%verdict == "undecided")) = &
          & count(merge(2, 1, row%verdict == "undecided")) + 1
-      if (.not. command%quiet) then
-         if (may_print(shown, row)) call clear_progress(progress)
-         call add_case(shown, deck, row, remark)
-      end if
-      call report_progress(progress)
+      if (.not. command%quiet) call add_case(shown, deck, row, remark)
    end subroutine write_down
 
    !> Write what proves the verdict of a case

@@ -14,7 +14,7 @@ module dda_screen
 
    public :: screen_t, open_screen, print_line, print_text, print_warnings, &
       & close_screen, screen_width
-   public :: progress_t, report_progress, clear_progress, terminal_watch_t, end_watch
+   public :: progress_t, report_progress, terminal_watch_t, end_watch
 
    !> Where lines for the user go
    type :: screen_t
@@ -29,25 +29,6 @@ module dda_screen
 
    !> Width of a line on the screen
    integer, parameter :: width = 60
-   !> Of so many cases each one is reported, of more they are in intervals
-   integer, parameter :: few = 100
-   !> A task is reported once it has taken so long, then in intervals [s]
-   real(wp), parameter :: patience = 0.5_wp, interval = 0.2_wp
-
-   !> What was told so far
-   type :: progress_t
-      !> Whether anything is told
-      logical :: shown = .false.
-      !> Number of cases
-      integer :: total = 0
-      !> Cases done
-      integer :: done = 0
-      !> Clock at the beginning, and when the line was written
-      integer(int64) :: start = 0, last = 0
-      !> Whether it stands on the screen
-      logical :: told = .false.
-   end type progress_t
-
    !> Tells of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t
       !> Whether anything is told
@@ -56,12 +37,18 @@ module dda_screen
       logical :: told = .false.
       !> Clock at the beginning, and when the line was written
       integer(int64) :: start = 0, last = 0
-      !> The task that was told of
-      character(len=width) :: task = ""
+      !> A task is reported once it has taken so long, then in intervals [s]
+      real(wp) :: patience = 0.5_wp, interval = 0.2_wp
    contains
       !> Tell of a task
       procedure :: tell => tell_of_task
    end type terminal_watch_t
+
+   !> Tells how many cases of a deck are done
+   type, extends(terminal_watch_t) :: progress_t
+      integer :: total = 0  !! Number of cases
+      integer :: done = 0   !! Cases done
+   end type progress_t
 
 contains
 
@@ -159,10 +146,9 @@ contains
       if (.not. watch%shown) return
       call system_clock(now, rate)
       if (watch%start == 0) watch%start = now
-      if (real(now - watch%start, wp) < patience*real(rate, wp)) return
-      if (watch%task == task .and. real(now - watch%last, wp) < interval*real(rate, wp)) return
+      if (real(now - watch%start, wp) < watch%patience*real(rate, wp)) return
+      if (real(now - watch%last, wp) < watch%interval*real(rate, wp)) return
       watch%last = now
-      watch%task = task
       watch%told = .true.
       line = task
       if (share >= 0.0_wp) line = task//": "//to_text(int(100.0_wp*share))//" %"
@@ -174,16 +160,11 @@ contains
    subroutine end_watch(watch)
       class(terminal_watch_t), intent(inout) :: watch
 
-      if (watch%told) call wipe_line()
-      watch%told = .false.
-      watch%start = 0
-   end subroutine end_watch
-
-   !> Wipe the line on the screen
-   subroutine wipe_line()
+      if (.not. watch%told) return
       write (error_unit, "(a)", advance="no") achar(13)//repeat(" ", width)//achar(13)
       flush (error_unit)
-   end subroutine wipe_line
+      watch%told = .false.
+   end subroutine end_watch
 
    !> Count one case and tell how many are done and how long the others will take
    subroutine report_progress(progress)
@@ -194,22 +175,9 @@ contains
       progress%done = progress%done + 1
       if (.not. progress%shown .or. progress%done == progress%total) return
       call system_clock(now, rate)
-      if (progress%total > few .and. real(now - progress%last, wp) < interval*real(rate, wp)) return
-      progress%last = now
-      progress%told = .true.
       left = real(now - progress%start, wp)/real(rate, wp) &
          & *real(progress%total - progress%done, wp)/real(progress%done, wp)
-      write (error_unit, "(a)", advance="no") achar(13)//"case "//to_text(progress%done)//" of " &
-         & //to_text(progress%total)//", about "//to_text(ceiling(left))//" s left"
-      flush (error_unit)
+      call progress%tell("case "//to_text(progress%done)//" of "//to_text(progress%total) &
+         & //", about "//to_text(ceiling(left))//" s left", -1.0_wp)
    end subroutine report_progress
-
-   !> Wipe the line
-   subroutine clear_progress(progress)
-      type(progress_t), intent(inout) :: progress
-
-      if (.not. progress%told) return
-      call wipe_line()
-      progress%told = .false.
-   end subroutine clear_progress
 end module dda_screen
