@@ -11,6 +11,7 @@ module dda_growth
       module procedure room_for_integers
       module procedure room_for_logicals
       module procedure room_for_columns
+      module procedure room_for_slices
    end interface make_room
 
 contains
@@ -62,4 +63,16 @@ contains
       longer(:, :size(array, 2)) = array
       call move_alloc(longer, array)
    end subroutine room_for_columns
+
+   !> Room for slices of numbers
+   pure subroutine room_for_slices(array, n)
+      real(wp), allocatable, intent(inout) :: array(:, :, :)  !! The slices, allocated
+      integer, intent(in) :: n
+      real(wp), allocatable :: longer(:, :, :)
+
+      if (n <= size(array, 3)) return
+      allocate (longer(size(array, 1), size(array, 2), next_room(size(array, 3), n)))
+      longer(:, :, :size(array, 3)) = array
+      call move_alloc(longer, array)
+   end subroutine room_for_slices
 end module dda_growth

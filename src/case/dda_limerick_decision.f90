@@ -119,15 +119,11 @@ contains
    pure subroutine keep_ways(outcome, album)
       type(limerick_outcome_t), intent(in) :: outcome
       type(album_t), intent(inout) :: album
-      integer :: i, n
 
       if (size(album%point) == 0) return
-      n = outcome%steps + 1
-      album%n_track = n
-      allocate (album%when(2, n))
-      album%when(1, :) = [(real(i, wp), i=0, outcome%steps)]
-      album%when(2, :) = outcome%time(:n)
-      album%track = outcome%track(:, :, :n)
+      album%n_track = outcome%steps + 1
+      album%when = outcome%when(:, :album%n_track)
+      album%track = outcome%track(:, :, :album%n_track)
    end subroutine keep_ways
 
    !> Corners of the scene's blocks at the end of a run

@@ -2,6 +2,7 @@
 module dda_limerick_run
    use dda_block_system, only : n_unknown
    use dda_error, only : error_t
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_model_t, limerick_state, loads_end, new_blocks, new_march
    use dda_limerick_step, only : advance_limerick, limerick_run_t
@@ -41,8 +42,9 @@ module dda_limerick_run
       integer :: steps = 0
       !> Passes of the open-close loop, each with one factorisation
       integer :: passes = 0
-      !> Time at the end of each step, with the beginning, the first steps + 1 of them [s]
-      real(wp), allocatable :: time(:)
+      !> Step and time at the end of each step, with the beginning, the first steps + 1 of them:
+      !> (2, :) [-, s]
+      real(wp), allocatable :: when(:, :)
       !> Where the first of the measured points are then: (2, n_point, :) [m]
       real(wp), allocatable :: track(:, :, :)
       !> Largest displacement when rest was judged before [m]
@@ -99,7 +101,7 @@ contains
       type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
 
-      allocate (outcome%time(64), outcome%track(2, n_track, 64))
+      allocate (outcome%track(2, n_track, 0))
       call turn_gravity_on(model, run, error)
       if (allocated(error)) outcome%reason = "turning gravity on: "//error%message
       call keep_track(run, outcome)
@@ -236,21 +238,14 @@ contains
    pure subroutine keep_track(run, outcome)
       type(limerick_run_t), intent(in) :: run
       type(limerick_outcome_t), intent(inout) :: outcome
-      real(wp), allocatable :: time(:), track(:, :, :)
-      integer :: n, n_track
+      integer :: n
 
       n = run%march%steps
-      n_track = size(outcome%track, 2)
-      if (n_track == 0) return
-      if (n == size(outcome%time)) then
-         allocate (time(2*n), track(2, n_track, 2*n))
-         time(:n) = outcome%time
-         track(:, :, :n) = outcome%track
-         call move_alloc(time, outcome%time)
-         call move_alloc(track, outcome%track)
-      end if
-      outcome%time(n + 1) = run%march%time
-      outcome%track(:, :, n + 1) = run%blocks%measured_point(:, :n_track)
+      if (size(outcome%track, 2) == 0) return
+      call make_room(outcome%when, n + 1)
+      call make_room(outcome%track, n + 1)
+      outcome%when(:, n + 1) = [real(n, wp), run%march%time]
+      outcome%track(:, :, n + 1) = run%blocks%measured_point(:, :size(outcome%track, 2))
    end subroutine keep_track
 
    !> Largest distance of a vertex from where it began [m]

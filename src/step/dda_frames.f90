@@ -8,6 +8,7 @@ module dda_frames
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_friction_cone, only : joint_face_t
    use dda_energy, only : audit_t
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_step_context, only : run_t
    implicit none
@@ -203,7 +204,14 @@ contains
 
       if (.not. allocated(album%point)) return
       n = album%n_track
-      call make_room_for_track(n + 1, album)
+      if (.not. allocated(album%track)) then
+         allocate (album%track(2, size(album%point), 0), album%speed(2, size(album%point), 0))
+         if (allocated(album%support)) allocate (album%reaction(3, size(album%support, 2), 0))
+      end if
+      call make_room(album%when, n + 1)
+      call make_room(album%track, n + 1)
+      call make_room(album%speed, n + 1)
+      if (allocated(album%reaction)) call make_room(album%reaction, n + 1)
       album%n_track = n + 1
       if (allocated(album%reaction_now)) album%reaction(:, :, n + 1) = album%reaction_now
       album%when(:, n + 1) = [real(step, wp), time]
@@ -239,31 +247,4 @@ contains
          end if
       end associate
    end function speed_of
-
-   !> Room for the ways of points and the reactions of so many steps
-   pure subroutine make_room_for_track(n, album)
-      integer, intent(in) :: n  !! Number of steps
-      type(album_t), intent(inout) :: album
-      real(wp), allocatable :: when(:, :), track(:, :, :), speed(:, :, :), reaction(:, :, :)
-      integer :: before, room
-
-      before = 0
-      if (allocated(album%when)) before = size(album%when, 2)
-      if (n <= before) return
-      room = max(64, 2*before)
-      allocate (when(2, room), source=0.0_wp)
-      allocate (track(2, size(album%point), room), speed(2, size(album%point), room), source=0.0_wp)
-      if (allocated(album%support)) &
-         & allocate (reaction(3, size(album%support, 2), room), source=0.0_wp)
-      if (before > 0) then
-         when(:, :before) = album%when
-         track(:, :, :before) = album%track
-         speed(:, :, :before) = album%speed
-         if (allocated(reaction)) reaction(:, :, :before) = album%reaction
-      end if
-      call move_alloc(when, album%when)
-      call move_alloc(track, album%track)
-      call move_alloc(speed, album%speed)
-      call move_alloc(reaction, album%reaction)
-   end subroutine make_room_for_track
 end module dda_frames
