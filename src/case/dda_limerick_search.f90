@@ -1,10 +1,7 @@
 !> Critical value under Shi's scheme: a bracket of two runs, halved
 submodule (dda_compute_case) dda_limerick_search
-   use dda_deck_keys, only : deck_key
-   use dda_deck_scene, only : deck_family_t
-   use dda_deck, only : put_number
+   use dda_deck_scene, only : deck_family_t, put_value
    use dda_error, only : error_t
-   use dda_key_value, only : number_fits
    use dda_scene_plan, only : plan_scene
    use dda_search, only : critical_t, keep_decision, search_t
    use dda_verdict, only : verdict
@@ -64,33 +61,18 @@ contains
       type(deck_family_t), intent(in) :: family
       type(critical_t), intent(in) :: critical
       type(album_t), intent(inout) :: album
+      type(error_t), allocatable :: error
       type(decision_t) :: decision
       type(deck_t) :: deck
       type(scene_t) :: scene
-      logical :: fits
 
       if (.not. (allocated(critical%fallen) .or. allocated(critical%standing))) return
       call put_value(family, merge(critical%falls, critical%stands, allocated(critical%fallen)), &
-         & deck, scene, fits)
-      if (fits) call decide_limerick(deck, scene, decision, album)
+         & deck, error)
+      if (allocated(error)) return
+      call deck_scene(deck, plan_scene(deck), scene)
+      call decide_limerick(deck, scene, decision, album)
    end subroutine repeat_with_pictures
-
-   !> Deck and scene of a value of the searched parameter, if it can have it
-   pure subroutine put_value(family, value, deck, scene, fits)
-      type(deck_family_t), intent(in) :: family
-      real(wp), intent(in) :: value
-      type(deck_t), intent(out) :: deck
-      type(scene_t), intent(out) :: scene
-      logical, intent(out) :: fits  !! Whether it can
-      type(error_t), allocatable :: error
-
-      fits = number_fits(deck_key(family%parameter%key), value)
-      if (.not. fits) return
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      fits = .not. allocated(error)
-      if (fits) call deck_scene(deck, plan_scene(deck), scene)
-   end subroutine put_value
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)
@@ -130,18 +112,19 @@ contains
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! One of verdict
       type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
       type(deck_t) :: deck
       type(scene_t) :: scene
-      logical :: fits
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      call put_value(family, value, deck, scene, fits)
-      if (.not. fits) then
-         critical%reason = "the searched parameter cannot have this value"
+      call put_value(family, value, deck, error)
+      if (allocated(error)) then
+         critical%reason = error%message
          critical%undecided_at = value
          return
       end if
+      call deck_scene(deck, plan_scene(deck), scene)
       allocate (decision)
       call decide_limerick(deck, scene, decision)
       associate (outcome => decision%outcome)

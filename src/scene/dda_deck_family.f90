@@ -49,6 +49,17 @@ contains
       call arch_chain(family%numbers, family%rays, value, chain)
    end procedure link_arch
 
+   !> The deck of one value of the parameter
+   module procedure put_value
+      if (number_fits(deck_key(family%parameter%key), value)) then
+         deck = family%deck
+         call put_number(deck, family%parameter, value, &
+            & deck%value(family%parameter%key)%place, error)
+      else
+         call fatal_error(error, "the searched parameter cannot have this value")
+      end if
+   end procedure put_value
+
    !> Make the scene of one value of the parameter
    module procedure build_deck_scene
       type(deck_t) :: deck
@@ -56,18 +67,12 @@ contains
       type(form_problem_t) :: problem
       type(scene_plan_t) :: plan
 
-      if (.not. number_fits(deck_key(family%parameter%key), value)) then
-         call fatal_error(error, "the searched parameter cannot have this value")
-         return
-      end if
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      call put_value(family, value, deck, error)
       if (allocated(error)) return
       if (source_of(deck) == "shape") call shape_assembly(deck, assembly, problem)
-      if (len_trim(problem%text) > 0) then
-         call fatal_error(error, "the searched parameter makes no arch of this value")
-         return
-      end if
+      if (len_trim(problem%text) > 0) call fatal_error(error, &
+         & "the searched parameter makes no arch of this value")
+      if (allocated(error)) return
       plan = family%plan
       if (.not. family%chains) plan = plan_scene(deck)
       call deck_scene(deck, plan, scene)

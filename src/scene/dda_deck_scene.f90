@@ -20,7 +20,7 @@ module dda_deck_scene
    implicit none
    private
 
-   public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family
+   public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family, put_value
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -67,6 +67,14 @@ module dda_deck_scene
          !> Whether the scenes are chains, and one has this value
          logical, intent(out) :: linked
       end subroutine link_arch
+
+      !> The deck of one value of the parameter
+      pure module subroutine put_value(family, value, deck, error)
+         class(deck_family_t), intent(in) :: family
+         real(wp), intent(in) :: value  !! The value
+         type(deck_t), intent(out) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine put_value
 
       !> Make the scene of one value of the parameter
       pure module subroutine build_deck_scene(family, value, scene, error)
