@@ -54,7 +54,7 @@ contains
       integer(int64) :: bytes(2, size(whole))
       real(wp) :: told(2)
       integer :: i, number
-      logical :: found, ok(2)
+      logical :: ok(2)
 
       bytes = 0
       do i = 1, size(tables%at)
@@ -64,10 +64,8 @@ contains
       layout = layout_of(tables%at(table%sizes)%header)
       call open_lines(tables%at(table%sizes)%file, lines)
       do
-         call next_line(lines, line, found)
-         if (.not. found) exit
-         number = case_of(layout, line, size(whole))
-         if (number == 0) cycle
+         call next_row(layout, size(whole), lines, line, number)
+         if (number == 0) exit
          do i = 1, 2
             call read_number(field(line, i + 1), told(i), ok(i))
          end do
@@ -85,15 +83,12 @@ contains
       type(layout_t) :: layout
       character(len=:), allocatable :: line
       integer :: number
-      logical :: found
 
       layout = layout_of(this%header)
       call open_lines(this%file, lines)
       do
-         call next_line(lines, line, found)
-         if (.not. found) exit
-         number = case_of(layout, line, size(bytes, 2))
-         if (number == 0) cycle
+         call next_row(layout, size(bytes, 2), lines, line, number)
+         if (number == 0) exit
          if (layout%seconds > 0) then
             line = without_field(line, layout%seconds)
          else
@@ -114,16 +109,13 @@ contains
       type(layout_t) :: layout
       character(len=:), allocatable :: line
       integer :: number, outcome, verdict
-      logical :: found
 
       layout = layout_of(this%header)
       verdict = field_number(this%header, "verdict")
       call open_lines(this%file, lines, length)
       do
-         call next_line(lines, line, found)
-         if (.not. found) exit
-         number = case_of(layout, line, size(whole))
-         if (number == 0) cycle
+         call next_row(layout, size(whole), lines, line, number)
+         if (number == 0) exit
          if (finished%case(number) .or. .not. whole(number)) cycle
          finished%case(number) = .true.
          outcome = merge(2, 1, field(line, verdict) == "undecided")
@@ -157,7 +149,6 @@ contains
       type(layout_t) :: layout
       logical, allocatable :: wanted(:)
       integer :: number
-      logical :: found
 
       call open_part(this%file, this%header, this%open, error)
       if (allocated(error)) return
@@ -165,10 +156,8 @@ contains
       layout = layout_of(this%header)
       call open_lines(this%file, lines)
       do
-         call next_line(lines, line, found)
-         if (.not. found) exit
-         number = case_of(layout, line, size(finished))
-         if (number == 0) cycle
+         call next_row(layout, size(finished), lines, line, number)
+         if (number == 0) exit
          if (wanted(number)) call keep_line(this%open, line)
          if (once) wanted(number) = .false.
       end do
@@ -186,6 +175,23 @@ contains
       layout%seconds = field_number(header, "seconds")
       layout%unknowns = field_number(header, "unknowns")
    end function layout_of
+
+   !> The next whole row of a table, and its case; 0 at the end of the table
+   subroutine next_row(layout, total, lines, line, number)
+      type(layout_t), intent(in) :: layout
+      integer, intent(in) :: total  !! Number of cases
+      type(table_lines_t), intent(inout) :: lines
+      character(len=:), allocatable, intent(out) :: line  !! The row
+      integer, intent(out) :: number                      !! Its case
+      logical :: found
+
+      do
+         number = 0
+         call next_line(lines, line, found)
+         if (found) number = case_of(layout, line, total)
+         if (number > 0 .or. .not. found) exit
+      end do
+   end subroutine next_row
 
    !> Case that a line belongs to; 0 for one that is no whole row of the table
    pure integer function case_of(layout, line, total)
