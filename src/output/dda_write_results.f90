@@ -268,7 +268,7 @@ contains
          & //trim(row%mode)//","//trim(row%geometry)//","//trim(row%verdict)//"," &
          & //number_fields([row%critical, row%critical_low, row%critical_high])//"," &
          & //trim(row%collapses_at)//","//number_fields([row%exact, row%relative_error])//"," &
-         & //trim(row%collapse_mode)//","//number_text(row%sliding_share)//"," &
+         & //trim(row%collapse_mode)//","//number_fields([row%sliding_share])//"," &
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
@@ -276,7 +276,7 @@ contains
          & //number_fields([row%exact_low, row%exact_high, row%imbalance, row%law_violation, &
          & row%mechanism_power, row%safety_thickness, row%thrust_min, row%thrust_max, &
          & row%path_time, row%worst_position])
-      if (row%tells_condition) line = line//","//number_text(row%condition)
+      if (row%tells_condition) line = line//","//number_fields([row%condition])
    end function results_line
 
    !> One row of joints.csv
@@ -284,14 +284,14 @@ contains
       type(joint_row_t), intent(in) :: row
       character(len=:), allocatable :: line
 
-      line = to_text(row%number)//","//to_text(row%joint)//","//number_text(row%angle_deg)//"," &
+      line = to_text(row%number)//","//to_text(row%joint)//"," &
+         & //number_fields([row%angle_deg])//"," &
          & //fields([row%intrados, row%extrados, row%normal_force, row%shear_force])//"," &
-         & //number_text(row%eccentricity_ratio)//","//to_text(row%opening_intrados)//"," &
-         & //number_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)//"," &
-         & //to_text(row%block(1))//","//to_text(row%block(2))//"," &
-         & //fields([row%point, row%force])//"," &
-         & //trim(row%mechanism)//","//number_text(row%slides(1))//"," &
-         & //number_text(row%slides(2))
+         & //number_fields([row%eccentricity_ratio])//","//to_text(row%opening_intrados)//"," &
+         & //number_fields([row%opening_extrados])//","//to_text(row%slip)//","//trim(row%state) &
+         & //","//to_text(row%block(1))//","//to_text(row%block(2))//"," &
+         & //fields([row%point, row%force])//","//trim(row%mechanism)//"," &
+         & //number_fields(row%slides)
    end function joint_line
 
    !> Numbers as texts with commas between them, nothing for what is unknown
@@ -312,15 +312,6 @@ contains
       end do
       text = buffer(:n - 1)
    end function number_fields
-
-   !> A number as text, nothing if it is unknown
-   pure function number_text(number) result(text)
-      type(number_t), intent(in) :: number
-      character(len=:), allocatable :: text
-
-      text = ""
-      if (number%known) text = to_text(number%value)
-   end function number_text
 
    !> Angles joined by semicolons, without the last digits that only rounding makes
    pure function joined(angles) result(text)
