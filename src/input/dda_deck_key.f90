@@ -25,7 +25,6 @@ module dda_deck_key
       integer :: flag = 5     !! .true. or .false.
       integer :: numbers = 6  !! A list of real numbers
       integer :: texts = 7    !! A list of words
-      integer :: later = 8    !! Known, but refused: a later version of the program reads it
    end type key_kind_enum
 
    !> The kinds of value by name
@@ -53,8 +52,6 @@ module dda_deck_key
       real(wp) :: below = huge(1.0_wp)
       !> Words that are allowed, separated by blanks
       character(len=72) :: words = ""
-      !> Words that a later version of the program allows, separated by blanks
-      character(len=40) :: later = ""
       !> Whether &sweep may name the key; &search may, if it is also a real number
       logical :: varies = .true.
       !> Whether its name alone means it where groups share the name
@@ -328,13 +325,12 @@ contains
    pure function key_help(key, lf) result(text)
       type(key_t), intent(in) :: key
       character(len=*), intent(in) :: lf     !! End of a line
-      character(len=:), allocatable :: text  !! Two or three lines
+      character(len=:), allocatable :: text  !! Three lines
       character(len=*), parameter :: indent = "      "
 
       text = "   "//trim(key%name)
       if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
       if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
-      text = text//lf//indent//trim(key%meaning)//lf
-      if (key%kind /= key_kind%later) text = text//indent//wanted(key)//lf
+      text = text//lf//indent//trim(key%meaning)//lf//indent//wanted(key)//lf
    end function key_help
 end module dda_deck_key

@@ -140,9 +140,6 @@ contains
       else if (key == 0) then
          problem = "unknown key '"//shown(name)//"' in &"//group//": " &
             & //near_key(name, group, keys, topic)
-      else if (keys(key)%kind == key_kind%later) then
-         problem = full_name(keys(key))//" is not yet there. It will be: " &
-            & //trim(keys(key)%meaning)//" Remove it"
       end if
    end subroutine find_key
 

@@ -1,7 +1,7 @@
 !> Values of the keys of a registry: their defaults, and what numbers and texts they take
 module dda_key_value
-   use dda_deck_key, only : full_name, in_range, key_kind, key_t, near_word, or_leave_out, &
-      & quoted_words, wanted, word_length
+   use dda_deck_key, only : full_name, in_range, key_kind, key_t, near_word, or_leave_out, wanted, &
+      & word_length
    use dda_deck_token, only : shown
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_number, to_text
@@ -144,15 +144,12 @@ contains
       select case (key%kind)
       case (key_kind%word)
          fits = has_word(key%words, text)
-         if (has_word(key%later, text)) problem = full_name(key)//" = "// &
-            quoted_words(lower_case(trim(text)))//" is not yet there: this version takes "// &
-            quoted_words(key%words)
       case (key_kind%flag)
          call read_flag(text, flag, fits)
       case default
          fits = key%kind == key_kind%text
       end select
-      if (.not. fits .and. len(problem) == 0) problem = full_name(key)//" must be "// &
+      if (.not. fits) problem = full_name(key)//" must be "// &
          wanted(key)//", got '"//shown(trim(text))//"'"//near_word(key, text)
    end function text_problem
 

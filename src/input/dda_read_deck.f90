@@ -5,11 +5,11 @@ module dda_read_deck
    use dda_deck_check_loads, only : check_block_file
    use dda_deck_key, only : full_name, key_kind, key_t, near_group
    use dda_deck_keys, only : deck_group, deck_key, group_index
-   use dda_deck_scan, only : scan_deck, scan_values
+   use dda_deck_scan, only : scan_values
    use dda_deck_sweep, only : add_sweep, few_cases, n_cases
-   use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
+   use dda_deck_token, only : deck_scan_t, shown
    use dda_error, only : error_t
-   use dda_key_entry, only : find_key, read_entry, read_value
+   use dda_key_entry, only : find_key, key_group_t, read_groups, read_value
    use dda_key_names, only : analysis_mode, analysis_restart, arch_group, output_blocks, &
       & output_joints, output_proof, output_reactions, scene_geometry, scene_kind, search_group, &
       & search_parameter, sweep_group
@@ -120,16 +120,14 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=*), intent(in), optional :: cases  !! As of read_deck
       logical, intent(in), optional :: tight           !! As of read_deck
-      type(deck_scan_t) :: scan
+      type(key_group_t), allocatable :: group(:)
       character(len=:), allocatable :: checked, problem
       integer :: i
 
       call new_deck(deck, file)
-      call scan_deck(text, scan, error)
-      if (allocated(error)) error%file = file
-      i = 1
-      do while (i <= scan%n .and. .not. allocated(error))
-         call read_group(scan, i, deck, error)
+      call read_groups(text, file, deck_group, deck_key, topic, group, error)
+      do i = 1, size(group)
+         if (.not. allocated(error)) call take_group(group(i), deck, error)
       end do
       do i = 1, size(settings)
          if (allocated(error)) return
@@ -163,39 +161,25 @@ contains
       end associate
    end subroutine choose_tables
 
-   !> Read one group
-   pure subroutine read_group(scan, i, deck, error)
-      type(deck_scan_t), intent(in) :: scan
-      integer, intent(inout) :: i  !! Token of the group; then the token after the group
+   !> Take the values of one group
+   pure subroutine take_group(group, deck, error)
+      type(key_group_t), intent(in) :: group
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: name, problem
       type(deck_place_t) :: place
-      integer :: g, line
+      integer :: g
 
-      name = token_text(scan, i)
-      place%line = scan%token(i)%line
-      g = group_index(name)
-      if (g == 0) then
-         call deck_error(error, "unknown group &"//shown(name)//": " &
-            & //near_group(name, deck_group, topic), deck, place)
-         return
-      else if (deck%group(g)%line > 0 .and. g /= sweep_group) then
-         call deck_error(error, "group &"//name//" is repeated: the first is in line "// &
-            to_text(deck%group(g)%line)//"; join the two", deck, place)
-         return
-      end if
+      place%line = group%row
+      g = group_index(group%name)
+      if (deck%group(g)%line > 0 .and. g /= sweep_group) call deck_error(error, "group &" &
+         & //trim(group%name)//" is repeated: the first is in line "//to_text(deck%group(g)%line) &
+         & //"; join the two", deck, place)
+      if (allocated(error)) return
       deck%group(g) = place
-      i = i + 1
-      do while (scan%token(i)%kind /= token_kind%close)
-         call read_entry(scan, i, name, deck_key, topic, deck%value, problem, line)
-         if (len(problem) > 0) call deck_error(error, problem, deck, deck_place_t(line))
-         if (allocated(error)) return
-      end do
-      i = i + 1
+      deck%value(lbound(group%value, 1):ubound(group%value, 1)) = group%value
       if (g == arch_group) call follow_joints(deck)
       if (g == sweep_group) call add_sweep(deck, place, error)
-   end subroutine read_group
+   end subroutine take_group
 
    !> Put the value of a --set into the deck
    pure subroutine apply_setting(setting, place, deck, error)
