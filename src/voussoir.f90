@@ -51,11 +51,10 @@ contains
 
       remark = ""
       allocate (joint(0))
-      if (number < 1 .or. number > n_cases(deck)) then
-         call fatal_error(error, "number of the case: expected 1 to "//to_text(n_cases(deck)) &
-            & //", got "//to_text(number))
-         return
-      end if
+      if (number < 1 .or. number > n_cases(deck)) call fatal_error(error, &
+         & "number of the case: expected 1 to "//to_text(n_cases(deck))//", got " &
+         & //to_text(number))
+      if (allocated(error)) return
       allocate (case_of_deck)
       call turn_to_case(deck, number, case_of_deck, error)
       if (.not. allocated(error)) call cut_lines(case_of_deck, error)

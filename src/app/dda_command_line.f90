@@ -61,11 +61,10 @@ contains
       allocate (argument(command_argument_count()), length(command_argument_count()))
       do i = 1, size(argument)
          call get_command_argument(i, argument(i), length(i))
-         if (length(i) > longest) then
-            call fatal_error(error, "expected an argument of at most "//to_text(longest) &
-               & //" characters, got one of "//to_text(length(i))//"; shorten it", "dda", i)
-            return
-         end if
+         if (length(i) > longest) call fatal_error(error, "expected an argument of at most " &
+            & //to_text(longest)//" characters, got one of "//to_text(length(i))//"; shorten it", &
+            & "dda", i)
+         if (allocated(error)) return
       end do
       call parse_command(argument, length, command, error)
    end subroutine read_command
@@ -231,11 +230,9 @@ contains
          command%record = .true.
          return
       case ("--out", "--set", "--jobs", "--cases")
-         if (i == size(argument)) then
-            call fatal_error(error, trim(argument(i))//" needs a value, got none; 'dda help " &
-               & //trim(command%verb)//"' shows it")
-            return
-         end if
+         if (i == size(argument)) call fatal_error(error, trim(argument(i)) &
+            & //" needs a value, got none; 'dda help "//trim(command%verb)//"' shows it")
+         if (allocated(error)) return
       case default
          call fatal_error(error, "unknown option "//shown(trim(argument(i)))// &
             & near_one(trim(argument(i)), options)//"; 'dda help "//trim(command%verb)// &

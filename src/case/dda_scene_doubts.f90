@@ -127,11 +127,10 @@ contains
       integer :: number
 
       place = factor_place(deck, load_displacement_factor)
-      if (place%line > 0 .and. .not. leads_points(deck)) then
-         call deck_error(error, "load%displacement_factor needs a prescribed displacement, got "// &
-            & "none; add a displacement line to a file of blocks", deck, place)
-         return
-      end if
+      if (place%line > 0 .and. .not. leads_points(deck)) call deck_error(error, &
+         & "load%displacement_factor needs a prescribed displacement, got " &
+         & //"none; add a displacement line to a file of blocks", deck, place)
+      if (allocated(error)) return
       place = factor_place(deck, load_load_factor)
       points = has_group(deck, live_group) .or. has_group(deck, vehicle_group)
       if (place%line == 0 .and. .not. points) return

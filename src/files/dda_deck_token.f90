@@ -126,11 +126,9 @@ contains
       integer, intent(in) :: count                      !! Repeat count
       type(error_t), allocatable, intent(out) :: error  !! Too many tokens
 
-      if (scan%n == max_tokens) then
-         call fatal_error(error, "expected at most "//to_text(max_tokens)// &
-            " groups, keys and values, got more; split the deck")
-         return
-      end if
+      if (scan%n == max_tokens) call fatal_error(error, "expected at most "//to_text(max_tokens) &
+         & //" groups, keys and values, got more; split the deck")
+      if (allocated(error)) return
       ! the second half is room
       if (scan%n == size(scan%token)) scan%token = [scan%token, scan%token]
       scan%n = scan%n + 1

@@ -53,10 +53,9 @@ contains
       call check_name(file, error)
       if (allocated(error)) return
       handle = c_fopen(file//c_null_char, "rb"//c_null_char)
-      if (.not. c_associated(handle)) then
-         call fatal_error(error, "the file cannot be read; check its permissions")
-         return
-      end if
+      if (.not. c_associated(handle)) call fatal_error(error, &
+         & "the file cannot be read; check its permissions")
+      if (allocated(error)) return
       call read_to_end(handle, bytes)
       failed = c_ferror(handle)
       if (failed /= 0) then

@@ -123,11 +123,9 @@ contains
 
       value = 0.0_wp
       if (allocated(error)) return
-      if (words%next > words%n) then
-         call fatal_error(error, "expected "//what//", got the end of the text; add it", &
-            & words%file, this_row(words))
-         return
-      end if
+      if (words%next > words%n) call fatal_error(error, "expected "//what &
+         & //", got the end of the text; add it", words%file, this_row(words))
+      if (allocated(error)) return
       call read_number(words%text(words%start(words%next):words%finish(words%next)), value, ok)
       if (.not. ok) call fatal_error(error, "expected "//what//", got " &
          & //quoted(this_word(words))//"; write a number, with a point for decimals", words%file, &

@@ -216,12 +216,10 @@ contains
       call take_whole(words, "the attribute numpoints", 1, most_records, n, error)
       if (allocated(error)) return
       call element_words(tree, at, words, also_blank=";")
-      if (words%n /= 3*n) then
-         call element_error(tree, at, "expected "//to_text(n)//" records of 3 numbers in " &
-            & //"Loadpoint, got "//to_text(words%n)//" numbers; correct numpoints or the records", &
-            & error)
-         return
-      end if
+      if (words%n /= 3*n) call element_error(tree, at, "expected "//to_text(n) &
+         & //" records of 3 numbers in Loadpoint, got "//to_text(words%n) &
+         & //" numbers; correct numpoints or the records", error)
+      if (allocated(error)) return
       allocate (history%record(3, n))
       do i = 1, n
          row = this_row(words)

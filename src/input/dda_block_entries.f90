@@ -29,22 +29,20 @@ contains
          & norm2(ends(3:4) - ends(1:2)), bar, error)
       if (allocated(error)) return
       bar%point = reshape(ends, [2, 2]) - spread(plan%origin, 2, 2)
-      if (.not. norm2(bar%point(:, 1) - bar%point(:, 2)) > 0.0_wp) then
-         call fatal_error(error, "expected a bar with a length, got one between equal points")
-         return
-      end if
+      if (.not. norm2(bar%point(:, 1) - bar%point(:, 2)) > 0.0_wp) call fatal_error(error, &
+         & "expected a bar with a length, got one between equal points")
+      if (allocated(error)) return
       do side = 1, 2
          bar%block(side) = block_at(plan, site, bar%point(:, side))
          if (bar%block(side) == 0) call add_warning(warnings, "the end of the bar at (" &
             & //to_text(ends(2*side - 1))//", "//to_text(ends(2*side)) &
             & //") lies in no block: the ground holds it", file, bar%line)
       end do
-      if (bar%block(1) == bar%block(2)) then
-         call fatal_error(error, "expected a bar between two blocks or a block and the ground, " &
-            & //"got one with both ends in "//trim(merge("the ground", "one block ", &
-            & bar%block(1) == 0)))
-         return
-      end if
+      if (bar%block(1) == bar%block(2)) call fatal_error(error, &
+         & "expected a bar between two blocks or a block and the ground, " &
+         & //"got one with both ends in "//trim(merge("the ground", "one block ", &
+         & bar%block(1) == 0)))
+      if (allocated(error)) return
       if (.not. allocated(plan%boundary%bar)) allocate (plan%boundary%bar(0))
       plan%boundary%bar = [plan%boundary%bar, bar]
    end procedure take_bar
@@ -96,23 +94,20 @@ contains
       do i = 2, entry%head%n
          call read_number(trim(entry%head%word(i)), place(n + 1), ok)
          if (.not. ok) exit
-         if (.not. abs(place(n + 1)) <= 1.0e9_wp) then
-            call fatal_error(error, "expected places of at most 1e9, got "//to_text(place(n + 1)))
-            return
-         end if
+         if (.not. abs(place(n + 1)) <= 1.0e9_wp) call fatal_error(error, &
+            & "expected places of at most 1e9, got "//to_text(place(n + 1)))
+         if (allocated(error)) return
          n = n + 1
       end do
-      if (n < 4 .or. modulo(n, 2) == 1) then
-         call fatal_error(error, "expected the coordinates of two points or more after water, " &
-            & //"got "//to_text(n)//" numbers")
-         return
-      end if
+      if (n < 4 .or. modulo(n, 2) == 1) call fatal_error(error, &
+         & "expected the coordinates of two points or more after water, got "//to_text(n) &
+         & //" numbers")
+      if (allocated(error)) return
       water%x = place(1:n:2)
       water%head = place(2:n:2)
-      if (any(water%x(2:) <= water%x(:n/2 - 1))) then
-         call fatal_error(error, "expected points of the line of heads from left to right")
-         return
-      end if
+      if (any(water%x(2:) <= water%x(:n/2 - 1))) call fatal_error(error, &
+         & "expected points of the line of heads from left to right")
+      if (allocated(error)) return
       value = [water%unit_weight, water%factor]
       call take_words(entry%head, n + 2, key, value, given, error)
       if (allocated(error)) return
@@ -120,10 +115,9 @@ contains
       water%factor = value(2)
       water%time = entry%row(1, :entry%n_row)
       water%rise = entry%row(2, :entry%n_row)
-      if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) then
-         call fatal_error(error, "expected increasing times from 0 [s]")
-         return
-      end if
+      if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) &
+         & call fatal_error(error, "expected increasing times from 0 [s]")
+      if (allocated(error)) return
       ! one by one, for an array made of both would lose the memory of their points
       allocate (longer(size(plan%water) + 1))
       do i = 1, size(plan%water)
@@ -227,10 +221,8 @@ contains
       integer :: i
       logical :: ok
 
-      if (entry%n_row > 0) then
-         call fatal_error(error, "expected corners below 'polygon' only")
-         return
-      end if
+      if (entry%n_row > 0) call fatal_error(error, "expected corners below 'polygon' only")
+      if (allocated(error)) return
       allocate (block(entry%head%n - 4), source=0)
       ok = size(block) > 0
       do i = 1, size(block)
@@ -254,11 +246,9 @@ contains
       logical :: inside(size(plan%fixed))
       integer :: b
 
-      if (entry%n_row < 3) then
-         call fatal_error(error, "expected three corners x y or more below 'polygon', got " &
-            & //to_text(entry%n_row))
-         return
-      end if
+      if (entry%n_row < 3) call fatal_error(error, &
+         & "expected three corners x y or more below 'polygon', got "//to_text(entry%n_row))
+      if (allocated(error)) return
       corner = entry%row(:2, :entry%n_row) - spread(plan%origin, 2, entry%n_row)
       do b = 1, size(inside)
          moments = area_moments(plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))

@@ -290,11 +290,10 @@ contains
                has_columns = .true.
                n = findloc(head%word(i + 1:head%n) == "scale", .true., dim=1) - 1
                if (n < 0) n = head%n - i
-               if (n < 2 .or. n > 3) then
-                  call fatal_error(error, "expected two or three columns, of time, x and y, " &
-                     & //"after 'columns'; 0 stands for none")
-                  return
-               end if
+               if (n < 2 .or. n > 3) call fatal_error(error, &
+                  & "expected two or three columns, of time, x and y, " &
+                  & //"after 'columns'; 0 stands for none")
+               if (allocated(error)) return
                column(:n) = head%word(i + 1:i + n)
                i = i + n + 1
             else if (head%word(i) == "scale" .and. .not. has_scale) then

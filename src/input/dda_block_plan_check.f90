@@ -37,11 +37,9 @@ contains
       call merge_corners(corner, same_corner*extent, vertex)
       if (size(vertex, 2) < size(corner, 2)) &
          & call add_warning(warnings, "corners given twice are merged", file, line)
-      if (size(vertex, 2) < 3) then
-         call fatal_error(error, "expected three different corners or more of " &
-            & //next_name(growing)//", got fewer")
-         return
-      end if
+      if (size(vertex, 2) < 3) call fatal_error(error, &
+         & "expected three different corners or more of "//next_name(growing)//", got fewer")
+      if (allocated(error)) return
       call find_crossing(vertex, edge, point)
       if (edge(1) > 0) then
          write (where_to, "('(', es14.7, ', ', es14.7, ')')") point
@@ -52,11 +50,10 @@ contains
       moments = area_moments(vertex)
       if (moments%area < 0.0_wp) vertex = vertex(:, size(vertex, 2):1:-1)
       perimeter = sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1))
-      if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) then
-         call fatal_error(error, "expected a block with an area, got "//next_name(growing) &
-            & //", thinner than 1e-8 of its length")
-         return
-      end if
+      if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) call fatal_error(error, &
+         & "expected a block with an area, got "//next_name(growing) &
+         & //", thinner than 1e-8 of its length")
+      if (allocated(error)) return
       call put_block(growing, vertex, fixed, material, line)
    end procedure add_plan_block
 
@@ -144,10 +141,9 @@ contains
    module procedure check_plan
       real(wp) :: extent(2), point(2)
 
-      if (size(plan%fixed) == 0) then
-         call fatal_error(error, "expected at least one block, got none", line=1)
-         return
-      end if
+      if (size(plan%fixed) == 0) call fatal_error(error, "expected at least one block, got none", &
+         & line=1)
+      if (allocated(error)) return
       call check_materials(plan, file, warnings, error)
       if (.not. allocated(error)) call check_laws(plan, error)
       if (allocated(error)) return

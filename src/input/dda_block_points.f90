@@ -131,18 +131,16 @@ contains
       logical :: has_value
       integer :: i
 
-      if (allocated(plan%boundary%base_acceleration%time)) then
-         call fatal_error(error, "expected the motion of the ground once, got it a second time")
-         return
-      end if
+      if (allocated(plan%boundary%base_acceleration%time)) call fatal_error(error, &
+         & "expected the motion of the ground once, got it a second time")
+      if (allocated(error)) return
       has_value = entry%head%n > 1
       i = 1
       if (has_value) call take_numbers(entry%head, i, value, error)
       if (allocated(error)) return
-      if (has_value .and. i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'")
-         return
-      end if
+      if (has_value .and. i <= entry%head%n) call fatal_error(error, "unknown word '" &
+         & //shown(trim(entry%head%word(i)))//"'")
+      if (allocated(error)) return
       call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
       plan%ground_line = entry%head%number
@@ -270,11 +268,9 @@ contains
       if (entry%head%word(2) == "block") then
          call read_integer(trim(entry%head%word(3)), block, ok)
          if (ok) ok = block >= 1 .and. block <= size(plan%fixed)
-         if (.not. ok) then
-            call fatal_error(error, "expected the number of a block from 1 to " &
-               & //to_text(size(plan%fixed))//", got '"//shown(trim(entry%head%word(3)))//"'")
-            return
-         end if
+         if (.not. ok) call fatal_error(error, "expected the number of a block from 1 to " &
+            & //to_text(size(plan%fixed))//", got '"//shown(trim(entry%head%word(3)))//"'")
+         if (allocated(error)) return
          i = 3
       end if
       call take_numbers(entry%head, i, point, error)

@@ -239,19 +239,16 @@ contains
       logical :: contradicts, telling
 
       if (plan%fixed(held%block) .and. allocated(held%path%value)) then
-         if (any(abs(held%path%value) > 0.0_wp)) then
-            call fatal_error(error, "block "//to_text(held%block) &
-               & //" is fixed and cannot have a prescribed displacement")
-            return
-         end if
+         if (any(abs(held%path%value) > 0.0_wp)) call fatal_error(error, "block " &
+            & //to_text(held%block)//" is fixed and cannot have a prescribed displacement")
+         if (allocated(error)) return
       end if
       call compare_paths(plan%boundary%held, held_before(site, held%block), held, &
          & site%size_of(held%block), contradicts, telling)
-      if (contradicts) then
-         call fatal_error(error, "the prescribed displacement conflicts with the other fixed or " &
-            & //"prescribed points of the block")
-         return
-      end if
+      if (contradicts) call fatal_error(error, &
+         & "the prescribed displacement conflicts with the other fixed or " &
+         & //"prescribed points of the block")
+      if (allocated(error)) return
       if (site%n_held == size(plan%boundary%held)) &
          & call close_held(2*site%n_held + 8, plan%boundary%held)
       site%n_held = site%n_held + 1

@@ -321,13 +321,11 @@ contains
       integer :: number, n
 
       n = n_cases(deck)
-      if (n > nint(deck%value(output_max_cases)%number)) then
-         call deck_error(error, "expected at most " &
-            & //to_text(nint(deck%value(output_max_cases)%number))//" cases, got "//to_text(n) &
-            & //" or more; raise output%max_cases if they are meant", deck, &
-            & deck%sweeps(size(deck%sweeps))%place)
-         return
-      end if
+      if (n > nint(deck%value(output_max_cases)%number)) call deck_error(error, &
+         & "expected at most "//to_text(nint(deck%value(output_max_cases)%number))//" cases, got " &
+         & //to_text(n)//" or more; raise output%max_cases if they are meant", deck, &
+         & deck%sweeps(size(deck%sweeps))%place)
+      if (allocated(error)) return
       call choose_cases(cases, n, chosen, error)
       if (allocated(error)) return
       do number = 1, n

@@ -67,12 +67,10 @@ contains
       mode = deck%value(analysis_mode)%text
       kind = trim(source_of(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
-      if (len(problem) > 0) then
-         call key_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
-            kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem// &
-            "; 'dda help models' lists them", deck, analysis_geometry)
-         return
-      end if
+      if (len(problem) > 0) call key_error(error, "expected a geometry that mode = '"//mode &
+         & //"' of scene%kind = '"//kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem &
+         & //"; 'dda help models' lists them", deck, analysis_geometry)
+      if (allocated(error)) return
       if (deck%searched%key == 0) return
       problem = search_problem(deck_key(deck%searched%key), kind, mode)
       if (mode == "limerick" .and. keeps_velocities(deck)) &

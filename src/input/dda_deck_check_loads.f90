@@ -129,12 +129,10 @@ contains
       measured = 0
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
       point = nint(deck%value(analysis_collapse_point)%number)
-      if (point > measured) then
-         call key_error(error, "analysis%collapse_point needs a measured point, "// &
-            & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
-            & deck, analysis_collapse_point)
-         return
-      end if
+      if (point > measured) call key_error(error, &
+         & "analysis%collapse_point needs a measured point, from 1 to "//to_text(measured) &
+         & //", got "//to_text(point)//"; add 'measure' lines", deck, analysis_collapse_point)
+      if (allocated(error)) return
       call check_wear(deck, error)
       if (allocated(error)) return
       gives = deck%value(ground_pulse)%given .or. allocated(deck%ground_record)

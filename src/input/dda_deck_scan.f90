@@ -60,11 +60,10 @@ contains
          if (allocated(error)) return
       end do
       do i = 1, scan%n
-         if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) then
-            call fatal_error(error, "expected values, got '"//shown(text)// &
-               "'; write one value, or several separated by commas")
-            return
-         end if
+         if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) &
+            & call fatal_error(error, "expected values, got '"//shown(text) &
+            & //"'; write one value, or several separated by commas")
+         if (allocated(error)) return
       end do
    end subroutine scan_values
 

@@ -39,22 +39,17 @@ contains
       integer :: i
 
       sweep%place = place
-      if (size(deck%sweeps) == max_sweeps) then
-         call deck_error(error, "expected at most "//to_text(max_sweeps)//" &sweep groups, got "// &
-            "one more; split the deck", &
-            deck, place)
-         return
-      end if
-      if (.not. deck%value(sweep_parameter)%given) then
-         call deck_error(error, "expected sweep%parameter, the name of a key, got none; "// &
-            "give it, such as parameter = 'voussoirs'", deck, place)
-         return
-      end if
+      if (size(deck%sweeps) == max_sweeps) call deck_error(error, "expected at most " &
+         & //to_text(max_sweeps)//" &sweep groups, got one more; split the deck", deck, place)
+      if (allocated(error)) return
+      if (.not. deck%value(sweep_parameter)%given) call deck_error(error, &
+         & "expected sweep%parameter, the name of a key, got none; " &
+         & //"give it, such as parameter = 'voussoirs'", deck, place)
+      if (allocated(error)) return
       call find_parameter(deck%value(sweep_parameter)%text, sweep%parameter, problem)
-      if (len(problem) > 0) then
-         call key_error(error, "sweep%parameter: "//problem, deck, sweep_parameter)
-         return
-      end if
+      if (len(problem) > 0) call key_error(error, "sweep%parameter: "//problem, deck, &
+         & sweep_parameter)
+      if (allocated(error)) return
       sweep%name = parameter_name(sweep%parameter)
       sweep%linked = deck%value(sweep_linked)%flag
       call take_values(deck, sweep, error)
@@ -300,12 +295,10 @@ contains
          comma = index(text(first:)//",", ",")
          call read_range(text(first:first + comma - 2), low, high, ok)
          if (ok) ok = low >= 1 .and. low <= high .and. high <= total
-         if (.not. ok) then
-            call fatal_error(error, "expected cases from 1 to "//to_text(total)// &
-               & ", got '"//shown(text(first:first + comma - 2))//"'; write them like 1-4,7", &
-               & "--cases", 1)
-            return
-         end if
+         if (.not. ok) call fatal_error(error, "expected cases from 1 to "//to_text(total) &
+            & //", got '"//shown(text(first:first + comma - 2))//"'; write them like 1-4,7", &
+            & "--cases", 1)
+         if (allocated(error)) return
          chosen(low:high) = .true.
          first = first + comma
       end do

@@ -187,21 +187,18 @@ contains
 
       if (scan(line%word(1)(1:1), "0123456789+-.") == 0) then
          kind = findloc(entries%word == line%word(1), .true., dim=1)
-         if (kind == 0) then
-            call fatal_error(error, "expected a number or one of "//listed(entries%word) &
-               & //", got '"//shown(trim(line%word(1)))//"'")
-            return
-         end if
+         if (kind == 0) call fatal_error(error, "expected a number or one of " &
+            & //listed(entries%word)//", got '"//shown(trim(line%word(1)))//"'")
+         if (allocated(error)) return
          call close_entry(reading, warnings, error)
          reading%entry%head = line
          reading%entry%n_column = entries(kind)%n_column
          return
       end if
       associate (entry => reading%entry)
-         if (line%n /= entry%n_column) then
-            call fatal_error(error, row_wanted(entry)//", got "//to_text(line%n)//" words")
-            return
-         end if
+         if (line%n /= entry%n_column) call fatal_error(error, row_wanted(entry)//", got " &
+            & //to_text(line%n)//" words")
+         if (allocated(error)) return
          call make_room(entry%row, entry%n_row + 1)
          entry%n_row = entry%n_row + 1
          do i = 1, line%n
@@ -323,11 +320,10 @@ contains
       do i = 1, 2
          call read_integer(trim(line%word(i + 1)), law%material(i), ok(i))
       end do
-      if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > most_materials)) then
-         call fatal_error(error, "expected the numbers of two materials from 1 to " &
-            & //to_text(most_materials)//" after joint")
-         return
-      end if
+      if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > most_materials)) &
+         & call fatal_error(error, "expected the numbers of two materials from 1 to " &
+         & //to_text(most_materials)//" after joint")
+      if (allocated(error)) return
       call take_words(line, 4, joint_keys, law%value, law%given, error)
       if (allocated(error)) return
       if (law%given(1) .and. law%value(4) > law%value(1)) then

@@ -208,11 +208,10 @@ contains
 
       i = findloc(group%name == "outline", .true., dim=1)
       s = findloc(group%name == "slope", .true., dim=1)
-      if (i == 0) then
-         call group_error(group(1), "expected an &outline in the file, got none; add one " &
-            & //"with left, right, bottom and top, or with x and y", error)
-         return
-      end if
+      if (i == 0) call group_error(group(1), &
+         & "expected an &outline in the file, got none; add one " &
+         & //"with left, right, bottom and top, or with x and y", error)
+      if (allocated(error)) return
       associate (outline => group(i))
          map%outline_material = nint(outline%value(outline_material)%number)
          associate (side => outline%value(outline_left:outline_top))
@@ -239,11 +238,9 @@ contains
          if (allocated(error)) return
          do s = 1, size(outline%value(outline_fixed)%texts)
             side = lower_case(trim(outline%value(outline_fixed)%texts(s)))
-            if (all(sides /= side)) then
-               call group_error(outline, "fixed must be 'left', 'right' or 'bottom', got '" &
-                  & //side//"'", error)
-               return
-            end if
+            if (all(sides /= side)) call group_error(outline, &
+               & "fixed must be 'left', 'right' or 'bottom', got '"//side//"'", error)
+            if (allocated(error)) return
             map%held_side = map%held_side .or. sides == side
          end do
          ! a line so near to the side crosses all blocks along it: corners nearer than twice as much
@@ -284,12 +281,10 @@ contains
          return
       end if
       n = size(point, 2)
-      if (any(point(1, 2:) < point(1, :n - 1)) .or. point(1, 1) < left &
-         & .or. point(1, n) > right) then
-         call group_error(group, "expected points from left to right between the outline's " &
-            & //"sides, got others", error)
-         return
-      end if
+      if (any(point(1, 2:) < point(1, :n - 1)) .or. point(1, 1) < left .or. point(1, n) > right) &
+         & call group_error(group, "expected points from left to right between the outline's " &
+         & //"sides, got others", error)
+      if (allocated(error)) return
       surface = reshape([left, point(2, 1), point, right, point(2, n)], [2, n + 2])
       if (point(1, n) >= right) surface = surface(:, :n + 1)
       if (point(1, 1) <= left) surface = surface(:, 2:)
@@ -308,12 +303,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       associate (x => group%value(x_key)%numbers, y => group%value(y_key)%numbers)
-         if (size(x) /= size(y) .or. size(x) < least) then
-            call group_error(group, "expected "//trim(map_key(x_key)%name)//" and " &
-               & //trim(map_key(y_key)%name)//" of one length from "//to_text(least)//", got " &
-               & //to_text(size(x))//" and "//to_text(size(y))//" numbers", error)
-            return
-         end if
+         if (size(x) /= size(y) .or. size(x) < least) call group_error(group, "expected " &
+            & //trim(map_key(x_key)%name)//" and "//trim(map_key(y_key)%name) &
+            & //" of one length from "//to_text(least)//", got "//to_text(size(x))//" and " &
+            & //to_text(size(y))//" numbers", error)
+         if (allocated(error)) return
          point = transpose(reshape([x, y], [size(x), 2]))
       end associate
    end subroutine take_points
@@ -343,11 +337,9 @@ contains
       integer :: edge(2)
 
       moments = area_moments(corner)
-      if (.not. moments%area > 0.0_wp) then
-         call group_error(group, "expected an outline with an area, got one of " &
-            & //to_text(moments%area)//" m2", error)
-         return
-      end if
+      if (.not. moments%area > 0.0_wp) call group_error(group, &
+         & "expected an outline with an area, got one of "//to_text(moments%area)//" m2", error)
+      if (allocated(error)) return
       call find_crossing(corner, edge, crossing)
       if (edge(1) > 0) call group_error(group, "expected an outline whose edges do not " &
          & //"meet, got edges "//to_text(edge(1))//" and "//to_text(edge(2))//" that do at (" &
@@ -382,11 +374,10 @@ contains
       case ("arch")
          opening%corner = arched_opening(at, width, wall, rise, n)
       case ("horseshoe")
-         if (wall <= 0.0_wp .or. wall >= 0.99_wp*width) then
-            call group_error(group, "expected a horseshoe with a wall above 0 and below the " &
-               & //"width, got "//to_text(wall), error)
-            return
-         end if
+         if (wall <= 0.0_wp .or. wall >= 0.99_wp*width) call group_error(group, &
+            & "expected a horseshoe with a wall above 0 and below the width, got " &
+            & //to_text(wall), error)
+         if (allocated(error)) return
          opening%corner = horseshoe(at, 0.5_wp*width, wall, n)
       case default
          call take_polygon(group, opening_corner_x, opening_corner_y, opening%corner, error)

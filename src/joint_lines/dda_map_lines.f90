@@ -167,11 +167,10 @@ contains
       centre = 0.5_wp*(minval(map%outline, 2) + maxval(map%outline, 2))
       radius = 0.5_wp*norm2(maxval(map%outline, 2) - minval(map%outline, 2))
       associate (set => map%set(i))
-         if (joint_count(set, norm2(centre - set%anchor) + radius) > real(most_traces, wp)) then
-            call fatal_error(error, "expected a set of at most "//to_text(most_traces) &
-               & //" traces, got one with more; make the spacing larger", map%file, set%row)
-            return
-         end if
+         if (joint_count(set, norm2(centre - set%anchor) + radius) > real(most_traces, wp)) &
+            & call fatal_error(error, "expected a set of at most "//to_text(most_traces) &
+            & //" traces, got one with more; make the spacing larger", map%file, set%row)
+         if (allocated(error)) return
          call set_traces(set, centre, radius, trace, n)
          if (allocated(set%region)) call clip_line(trace, n, set%region, .true.)
          call clip_to_rock(map, trace, n)
@@ -247,11 +246,10 @@ contains
             along = [cos(angle), sin(angle)]
             head = ray_exit(corner, centre, along) + bolts%reach(2)*along
             tip = head + bolts%reach(1)*along
-            if (.not. contains_point(map%outline, tip)) then
-               call fatal_error(error, "expected bolts inside the outline, got one that ends at (" &
-                  & //to_text(tip(1))//", "//to_text(tip(2))//")", map%file, bolts%row)
-               return
-            end if
+            if (.not. contains_point(map%outline, tip)) call fatal_error(error, &
+               & "expected bolts inside the outline, got one that ends at ("//to_text(tip(1)) &
+               & //", "//to_text(tip(2))//")", map%file, bolts%row)
+            if (allocated(error)) return
             call add_bolt(model, [head, tip], bolts%property, bolts%row)
          end do
       end associate

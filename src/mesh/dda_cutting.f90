@@ -152,11 +152,9 @@ contains
       integer :: i, crossing(2)
 
       if (model%line%n > 0) cut%scale = cut_scale(model)
-      if (.not. cut%scale%size > 0.0_wp) then
-         call fatal_error(error, "expected at least one line with a length, got none; add it", &
-            & model%file, 1)
-         return
-      end if
+      if (.not. cut%scale%size > 0.0_wp) call fatal_error(error, &
+         & "expected at least one line with a length, got none; add it", model%file, 1)
+      if (allocated(error)) return
       allocate (line, source=model%line%place(:, :model%line%n))
       do i = 1, 4
          line(i, :) = line(i, :) - cut%scale%origin(2 - mod(i, 2))
@@ -169,13 +167,12 @@ contains
       call join_crossings(line, model%n_boundary, cut%scale, crossings, network, cut%remarks)
       call cut_trees(network, cut%remarks)
       call drop_crossing_edges(network, cut%scale, cut%remarks, crossing)
-      if (all(crossing > 0)) then
-         call fatal_error(error, "expected boundary lines that do not cross between their nodes, " &
-            & //"got lines "//to_text(crossing(1))//" and "//to_text(crossing(2)) &
-            & //", which do; make the edge-node distance smaller", model%file, &
-            & model%line%row(crossing(2)))
-         return
-      end if
+      if (all(crossing > 0)) call fatal_error(error, &
+         & "expected boundary lines that do not cross between their nodes, got lines " &
+         & //to_text(crossing(1))//" and "//to_text(crossing(2)) &
+         & //", which do; make the edge-node distance smaller", model%file, &
+         & model%line%row(crossing(2)))
+      if (allocated(error)) return
       call drop_close_edges(network, cut%scale, cut%remarks)
       call cut_trees(network, cut%remarks)
    end subroutine make_network

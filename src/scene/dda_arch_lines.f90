@@ -51,12 +51,11 @@ contains
       do side = 1, 2
          corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
       end do
-      if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
-         call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
-            & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
-            & deck%value(arch_abutment_size)%place)
-         return
-      end if
+      if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) &
+         & call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
+         & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
+         & deck%value(arch_abutment_size)%place)
+      if (allocated(error)) return
       call new_line_model(model)
       model%file = deck%file
       do b = 1, n

@@ -331,16 +331,14 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! What it cannot do
       integer :: b, i
 
-      if (allocated(plan%boundary%base_acceleration%time)) then
-         call fatal_error(error, "mode = 'limerick' knows no motion of the ground; remove it or " &
-            & //"choose mode = 'dynamic'", file, plan%ground_line)
-         return
-      end if
-      if (allocated(plan%boundary%absorbing)) then
-         call fatal_error(error, "mode = 'limerick' knows no absorbing faces; remove this line " &
-            & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
-         return
-      end if
+      if (allocated(plan%boundary%base_acceleration%time)) call fatal_error(error, &
+         & "mode = 'limerick' knows no motion of the ground; remove it or " &
+         & //"choose mode = 'dynamic'", file, plan%ground_line)
+      if (allocated(error)) return
+      if (allocated(plan%boundary%absorbing)) call fatal_error(error, &
+         & "mode = 'limerick' knows no absorbing faces; remove this line " &
+         & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
+      if (allocated(error)) return
       do i = 1, size(plan%starts)
          if (dynamic .or. .not. any(abs(plan%start(:3, i)) > 0.0_wp)) cycle
          b = plan%starts(i)

@@ -139,12 +139,10 @@ contains
       if (has_group(deck, vehicle_group) .and. .not. deck%value(vehicle_worst)%flag) then
          ! a function's result in an expression is not freed in all its parts
          axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
-         if (size(axle) == 0) then
-            call key_error(error, "&vehicle needs an axle above a block that moves, got "// &
-               & "none at position "//to_text(deck%value(vehicle_position)%number)//"; move it", &
-               & deck, vehicle_position)
-            return
-         end if
+         if (size(axle) == 0) call key_error(error, &
+            & "&vehicle needs an axle above a block that moves, got none at position " &
+            & //to_text(deck%value(vehicle_position)%number)//"; move it", deck, vehicle_position)
+         if (allocated(error)) return
       end if
       if (.not. has_group(deck, live_group)) return
       call live_lists(deck, scene%origin, point, force)

@@ -210,11 +210,10 @@ contains
       integer :: key, n
 
       n = size(deck%value(tie_x1)%numbers)
-      if (n == 0) then
-         call deck_error(error, "&tie needs x1, y1, x2 and y2, the ends of each tie, got none; "// &
-            & "give them", deck, deck%group(tie_group))
-         return
-      end if
+      if (n == 0) call deck_error(error, &
+         & "&tie needs x1, y1, x2 and y2, the ends of each tie, got none; give them", deck, &
+         & deck%group(tie_group))
+      if (allocated(error)) return
       do key = tie_y1, tie_prestress
          if (key > tie_ea .and. .not. deck%value(key)%given) cycle
          if (size(deck%value(key)%numbers) == n) cycle
@@ -223,12 +222,11 @@ contains
             & //"; give one per tie", deck, key)
          return
       end do
-      if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) then
-         call key_error(error, "&tie needs an arch that keeps its shape, but the search "// &
-            & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
-            & search_parameter)
-         return
-      end if
+      if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) &
+         & call key_error(error, "&tie needs an arch that keeps its shape, but the search " &
+         & //"changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
+         & search_parameter)
+      if (allocated(error)) return
       call check_ends(deck, error)
    end subroutine check_ties
 

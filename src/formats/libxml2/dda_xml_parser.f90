@@ -195,10 +195,9 @@ contains
       kept = text(first:)//c_null_char
       document = read_memory(c_loc(kept(1:1)), len(kept, c_int) - 1, c_null_ptr, c_null_ptr, &
          & options)
-      if (.not. c_associated(document)) then
-         call report_error(file, count_of(achar(10), text(:first - 1)), error)
-         return
-      end if
+      if (.not. c_associated(document)) call report_error(file, count_of(achar(10), &
+         & text(:first - 1)), error)
+      if (allocated(error)) return
       reader = reader_of(document)
       do while (read_node(reader) == 1)
          call take_node(reader, builder)
