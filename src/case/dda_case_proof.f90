@@ -57,7 +57,7 @@ contains
 
       if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-      call prove_state(scene, graph, decision%outcome%verdict, proof)
+      call prove_state(scene, graph, decision%outcome%verdict, decision%limit, proof)
       if (decision%outcome%verdict /= verdict%stable) return
       thrust_bar = nint(deck%value(output_thrust_bar)%number)
       thrust_joint = nint(deck%value(output_thrust_joint)%number)
@@ -105,7 +105,7 @@ contains
          if (.not. has_limit_analysis(stands%settings, stands%contacts)) return
          call place_all_joints(stands%system, stands%contacts)
          call scene_graph(stands%settings, stands%system, stands%contacts, graph)
-         call prove_state(stands, graph, verdict%stable, proof)
+         call prove_state(stands, graph, verdict%stable, critical%standing%limit, proof)
          proof%force_at = critical%stands
       end if
       if (.not. allocated(critical%fallen)) return
@@ -114,7 +114,7 @@ contains
       if (.not. has_limit_analysis(falls%settings, falls%contacts)) return
       call place_all_joints(falls%system, falls%contacts)
       call scene_graph(falls%settings, falls%system, falls%contacts, graph)
-      call prove_state(falls, graph, verdict%collapsed, other)
+      call prove_state(falls, graph, verdict%collapsed, critical%fallen%limit, other)
       if (.not. allocated(other%velocity)) return
       proof%law_violation = max(proof%law_violation, other%law_violation)
       proof%power = other%power
@@ -168,17 +168,24 @@ contains
    end subroutine find_bar_range
 
    !> Forces that carry the load of a scene, or a mechanism that it drives
-   pure subroutine prove_state(scene, graph, wanted, proof)
+   pure subroutine prove_state(scene, graph, wanted, known, proof)
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      integer, intent(in) :: wanted  !! The verdict that is to be proven: stable or collapsed
+      !> The verdict that is to be proven: stable or collapsed
+      integer, intent(in) :: wanted
+      !> What limit analysis has said when it was found; unallocated if it was not asked
+      type(load_decision_t), allocatable, intent(in) :: known
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
       integer :: b
 
       load = full_loads(scene%settings, scene, graph)
-      call decide_load(graph, load, decision)
+      if (allocated(known)) then
+         decision = known
+      else
+         call decide_load(graph, load, decision)
+      end if
       proof%scene = scene
       ! beside what acts on blocks, without nodes of bars and carriers of bounded forces
       b = maxval(scene%system%equation)

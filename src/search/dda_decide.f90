@@ -82,6 +82,7 @@ contains
          decision%outcome%reason = proof%reason
       end if
       call begin_motion(decision%system)
+      call move_alloc(proof%limit, decision%limit)
       associate (outcome => decision%outcome)
          outcome%steps = outcome%steps + proof%n_event + 1
          outcome%jumps = outcome%jumps + proof%n_jump

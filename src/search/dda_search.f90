@@ -3,6 +3,7 @@ module dda_search
    use dda_block_system, only : block_system_t
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
+   use dda_limit_decision, only : load_decision_t
    use dda_scene, only : link_t, scene_t
    use dda_verdict, only : outcome_t, verdict
    implicit none
@@ -104,6 +105,8 @@ module dda_search
       integer :: flow = 1
       !> Whether the joint graph has told how it falls
       logical :: by_graph = .false.
+      !> What limit analysis says of the full load, where it was asked on the way
+      type(load_decision_t), allocatable :: limit
       !> Whether outcome and contacts are those of the left half of a row, up to its plane of
       !> symmetry
       logical :: halved = .false.

@@ -56,15 +56,14 @@ contains
       logical :: dead_alone, on_way
 
       call scene_graph(settings, system, contacts, graph)
-      if (breaks(graph)) then
-         call follow_breaking(settings, system, graph, verdict)
-         return
-      end if
+      if (breaks(graph)) call follow_breaking(settings, system, graph, verdict)
+      if (breaks(graph)) return
       allocate (load(3, graph%n_block))
       stations = stations_of(settings, system, graph, present(start))
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
+      if (.not. (on_way .or. bare .or. present(start))) allocate (verdict%limit, source=decision)
       if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
@@ -96,6 +95,7 @@ contains
          path%reason = no_start
       end if
       path%no_start = path%no_start .and. verdict%end == path_end%reached
+      call move_alloc(verdict%limit, path%limit)
       verdict = path
    end subroutine decide_graph
 

@@ -9,6 +9,7 @@ module dda_scene_graph
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : breaks, joint_graph_t, joint_kind, rubs
    use dda_kinds, only : wp
+   use dda_limit_decision, only : load_decision_t
    use dda_material, only : breaks_at_once, loses_strength
    use dda_settings, only : flow_rule, settings_t
    use dda_submatrices, only : mass_matrix
@@ -32,6 +33,8 @@ module dda_scene_graph
    type :: graph_verdict_t
       !> One of path_end
       integer :: end = 0
+      !> What limit analysis says of the full load, where it was asked of that alone
+      type(load_decision_t), allocatable :: limit
       !> Why it is undecided; unallocated otherwise
       character(len=:), allocatable :: reason
       !> Flow rule that it was found under, one of flow_rule
