@@ -95,19 +95,15 @@ contains
       file = file_beside(deck, deck%value(scene_geometry)%text)
       allocate (deck%lines)
       call read_geometry(file, deck%lines, deck%warnings, error)
-      if (allocated(error)) then
-         call name_key(deck, scene_geometry, error)
-         return
-      end if
+      call name_key(deck, scene_geometry, error)
+      if (allocated(error)) return
       call add_file_mark(file_mark(file), deck)
       if (.not. deck%value(scene_analysis)%given) return
       file = file_beside(deck, deck%value(scene_analysis)%text)
       allocate (deck%file_analysis)
       call read_analysis(file, deck%file_analysis, deck%warnings, error)
-      if (allocated(error)) then
-         call name_key(deck, scene_analysis, error)
-         return
-      end if
+      call name_key(deck, scene_analysis, error)
+      if (allocated(error)) return
       call add_file_mark(file_mark(file), deck)
       call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
    end procedure read_lines
@@ -116,6 +112,7 @@ contains
    module procedure name_key
       character(len=:), allocatable :: message
 
+      if (.not. allocated(error)) return
       if (error%line > 0) return
       message = full_name(deck_key(key))//" = '"//deck%value(key)%text//"': "//error%message
       call deck_error(error, message, deck, deck%value(key)%place)

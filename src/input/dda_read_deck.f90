@@ -93,10 +93,8 @@ contains
       if (deck%value(scene_kind)%text /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
-      if (allocated(error)) then
-         call name_key(deck, scene_geometry, error)
-         return
-      end if
+      call name_key(deck, scene_geometry, error)
+      if (allocated(error)) return
       call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
       call add_file_mark(text_mark(text), deck)
       if (allocated(deck%plan%record_marks)) call add_file_mark(deck%plan%record_marks, deck)
