@@ -15,7 +15,7 @@ submodule (dda_compute_case) dda_case_decision
    use dda_mechanism, only : follow_collapse
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
-   use dda_scene, only : searched_load
+   use dda_scene, only : move_scene, searched_load
    use dda_settings, only : settings_t
    use dda_verdict, only : outcome_t, verdict
    implicit none
@@ -73,6 +73,8 @@ contains
          & > 0, this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
+      if (wanted .and. allocated(this%critical%scene)) &
+         & call move_scene(this%critical%scene, this%scene)
       if (wanted) call build_once(this%family, value, this%scene)
       if (collapsed) call follow_collapse(this%scene, decision, this%album)
    end procedure see_collapse

@@ -96,7 +96,7 @@ contains
       type(proof_t) :: other
 
       if (allocated(critical%limit_force)) then
-         call prove_limit(family, critical, proof)
+         call prove_limit(family, critical, falls, proof)
          return
       end if
       if (allocated(critical%standing)) then
@@ -201,16 +201,18 @@ contains
    end subroutine prove_state
 
    !> The two proofs of the limit of a load coefficient
-   pure subroutine prove_limit(family, critical, proof)
+   pure subroutine prove_limit(family, critical, falls, proof)
       class(family_t), intent(in) :: family
       type(critical_t), intent(in) :: critical
+      type(scene_t), intent(in) :: falls  !! The scene of another value, if there is one
       type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph
       type(error_t), allocatable :: error
       real(wp), allocatable :: live(:, :), load(:, :)
       real(wp) :: violation, power
 
-      call family%build(critical%limit(1), proof%scene, error)
+      proof%scene = falls
+      call family%turn(critical%limit(1), proof%scene, error)
       if (allocated(error)) return
       call scene_graph(proof%scene%settings, proof%scene%system, proof%scene%contacts, graph)
       allocate (load, source=full_loads(proof%scene%settings, proof%scene, graph))

@@ -12,7 +12,7 @@ module dda_compute_case
    use dda_joint_graph, only : joint_graph_t
    use dda_key_names, only : arch_thickness_ratio, output_frames, vehicle_worst
    use dda_kinds, only : wp
-   use dda_scene, only : build_once, scene_t
+   use dda_scene, only : build_once, move_scene, scene_t
    use dda_search, only : decision_t
    implicit none
    private
@@ -149,6 +149,7 @@ contains
       if (allocated(this%critical%fallen)) &
          & call see_collapse(this, this%critical%falls, this%critical%fallen)
       call see_standing(this)
+      if (allocated(this%critical%scene)) deallocate (this%critical%scene)
       if (nint(this%family%deck%value(output_frames)%number) > 0) call take_pictures(this)
    end subroutine search_critical
 
@@ -158,6 +159,7 @@ contains
 
       if (this%family%decides_chains .or. allocated(this%critical%fallen) &
          & .or. .not. allocated(this%critical%standing)) return
+      if (allocated(this%critical%scene)) call move_scene(this%critical%scene, this%standing)
       call build_once(this%family, this%critical%stands, this%standing)
       this%scene = this%standing
    end subroutine see_standing

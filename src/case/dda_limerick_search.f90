@@ -67,6 +67,7 @@ contains
       type(scene_t) :: scene
 
       if (.not. (allocated(critical%fallen) .or. allocated(critical%standing))) return
+      deck = family%deck
       call put_value(family, merge(critical%falls, critical%stands, allocated(critical%fallen)), &
          & deck, error)
       if (allocated(error)) return
@@ -118,6 +119,7 @@ contains
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
+      deck = family%deck
       call put_value(family, value, deck, error)
       if (allocated(error)) then
          critical%reason = error%message

@@ -26,7 +26,7 @@ module dda_arch_scene
 
    public :: arch_scene, arch_numbers, joint_angles_deg, half_joints_deg, exact_thickness
    public :: search_start, arch_resolution, chain_resolution
-   public :: joint_law, material_of, settings_of, unit_weight
+   public :: joint_law, material_of, set_loads, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -189,11 +189,7 @@ contains
       settings%max_displacement_ratio = deck%value(analysis_max_displacement_ratio)%number
       settings%verdict_flow = merge(flow_rule%associated, flow_rule%coulomb, &
          & deck%value(analysis_flow)%text == "associated")
-      settings%tilt = degree*modulo(deck%value(load_gravity_direction_deg)%number + 270.0_wp, &
-         & 360.0_wp) - pi
-      settings%push = deck%value(load_horizontal_coefficient)%number
-      settings%live_push = deck%value(load_live_horizontal)%flag
-      settings%load_factor = deck%value(load_load_factor)%number
+      call set_loads(deck, settings)
       rise = min(1.0_wp, half_angle**2/2.0_wp)
       settings%rest_tolerance = 1.0e-3_wp*rise*deck%value(search_tolerance)%number
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
@@ -201,6 +197,18 @@ contains
       noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
+
+   !> Set the load coefficients
+   pure subroutine set_loads(deck, settings)
+      type(deck_t), intent(in) :: deck
+      type(settings_t), intent(inout) :: settings
+
+      settings%tilt = degree*modulo(deck%value(load_gravity_direction_deg)%number + 270.0_wp, &
+         & 360.0_wp) - pi
+      settings%push = deck%value(load_horizontal_coefficient)%number
+      settings%live_push = deck%value(load_live_horizontal)%flag
+      settings%load_factor = deck%value(load_load_factor)%number
+   end subroutine set_loads
 
    !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
    !> weight of a voussoir wrong by eps over the thickness ratio

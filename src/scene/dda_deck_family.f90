@@ -3,8 +3,8 @@ submodule (dda_deck_scene) dda_deck_family
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_chain, only : arch_chain
    use dda_arch_form, only : form_problem_t
-   use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, settings_of, &
-      & unit_weight
+   use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, set_loads, &
+      & settings_of, unit_weight
    use dda_deck_keys, only : deck_key
    use dda_deck, only : put_number
    use dda_error, only : fatal_error
@@ -49,10 +49,9 @@ contains
       call arch_chain(family%numbers, family%rays, value, chain)
    end procedure link_arch
 
-   !> The deck of one value of the parameter
+   !> Put one value of the parameter into a deck
    module procedure put_value
       if (number_fits(deck_key(family%parameter%key), value)) then
-         deck = family%deck
          call put_number(deck, family%parameter, value, &
             & deck%value(family%parameter%key)%place, error)
       else
@@ -67,6 +66,7 @@ contains
       type(form_problem_t) :: problem
       type(scene_plan_t) :: plan
 
+      deck = family%deck
       call put_value(family, value, deck, error)
       if (allocated(error)) return
       if (source_of(deck) == "shape") call shape_assembly(deck, assembly, problem)
@@ -78,5 +78,20 @@ contains
       call deck_scene(deck, plan, scene)
       call check_live_points(deck, scene, error)
    end procedure build_deck_scene
+
+   !> Make the scene of one value from that of another one
+   module procedure turn_deck_scene
+      type(deck_t) :: deck
+
+      if (family%load == searched_load%none .or. .not. allocated(scene%contacts%joint)) then
+         call family%build(value, scene, error)
+      else
+         ! numbers alone are asked for: blocks may be many
+         deck%file = family%deck%file
+         deck%value = family%deck%value
+         call put_value(family, value, deck, error)
+         if (.not. allocated(error)) call set_loads(deck, scene%settings)
+      end if
+   end procedure turn_deck_scene
 
 end submodule dda_deck_family

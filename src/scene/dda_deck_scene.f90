@@ -45,6 +45,8 @@ module dda_deck_scene
       procedure :: link => link_arch
       !> Make the scene of one value
       procedure :: build => build_deck_scene
+      !> Make the scene of one value from that of another one
+      procedure :: turn => turn_deck_scene
    end type deck_family_t
 
    interface
@@ -68,11 +70,11 @@ module dda_deck_scene
          logical, intent(out) :: linked
       end subroutine link_arch
 
-      !> The deck of one value of the parameter
+      !> Put one value of the parameter into a deck
       pure module subroutine put_value(family, value, deck, error)
          class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value  !! The value
-         type(deck_t), intent(out) :: deck
+         real(wp), intent(in) :: value         !! The value
+         type(deck_t), intent(inout) :: deck   !! That of the family, or its values alone
          type(error_t), allocatable, intent(out) :: error
       end subroutine put_value
 
@@ -83,6 +85,15 @@ module dda_deck_scene
          type(scene_t), intent(out) :: scene
          type(error_t), allocatable, intent(out) :: error
       end subroutine build_deck_scene
+
+      !> Make the scene of one value from that of another one: where a load coefficient is the
+      !> parameter, nothing else differs
+      pure module subroutine turn_deck_scene(family, value, scene, error)
+         class(deck_family_t), intent(in) :: family
+         real(wp), intent(in) :: value
+         type(scene_t), intent(inout) :: scene
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine turn_deck_scene
 
       !> The scene of an arch of any shape
       pure module subroutine shape_scene(deck, plan, scene)

@@ -57,17 +57,17 @@ contains
    module procedure find_critical_load
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
-      type(scene_t) :: scene
+      type(scene_t), allocatable :: scene
       type(side_t) :: right, left
       real(wp) :: low, high, origin
       integer :: n
       logical :: rest
 
+      allocate (scene)
       call family%build(search%low, scene, error)
+      if (.not. allocated(error)) low = coefficient(family%load, scene%settings)
+      if (.not. allocated(error)) call family%turn(search%high, scene, error)
       done = .not. allocated(error)
-      if (done) low = coefficient(family%load, scene%settings)
-      if (done) call family%build(search%high, scene, error)
-      done = done .and. .not. allocated(error)
       if (done) high = coefficient(family%load, scene%settings)
       if (done) done = high > low .and. can_follow(family%load, scene, max(abs(low), abs(high)))
       if (.not. done) return
@@ -91,6 +91,7 @@ contains
       done = family%load /= searched_load%tilt .or. .not. rest &
          & .or. right%stands_upright .and. left%stands_upright
       if (done) call conclude(search, low, high, scene, right, left, critical)
+      if (done) call move_alloc(scene, critical%scene)
       search%low = search%low + (origin - low)*(search%high - search%low)/(high - low)
       search%start = search%low
    end procedure find_critical_load

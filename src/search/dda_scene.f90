@@ -1,8 +1,8 @@
 !> A scene ready to run, and families of scenes that differ by one number
 module dda_scene
-   use dda_block_system, only : block_system_t
+   use dda_block_system, only : block_system_t, move_system
    use dda_chain, only : chain_t
-   use dda_contacts, only : contacts_t
+   use dda_contacts, only : contacts_t, move_contacts
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
@@ -10,6 +10,7 @@ module dda_scene
    private
 
    public :: scene_t, family_t, link_t, searched_load, searched_load_enum, build_once, link_once
+   public :: move_scene
 
    !> Load coefficients that come last on the loading path
    type :: searched_load_enum
@@ -56,6 +57,8 @@ module dda_scene
    contains
       !> Make the scene of one value
       procedure(build_scene), deferred :: build
+      !> Make the scene of one value from that of another one
+      procedure :: turn => turn_anew
       !> Make the scene of one value as a chain of rigid blocks, where it is one but for strain
       procedure :: link => link_nothing
    end type family_t
@@ -73,17 +76,41 @@ module dda_scene
 
 contains
 
-   !> Make the scene of one value where it is not there yet; without joints where there is none
+   !> Make the scene of one value where it is not there yet, from that of another load coefficient
+   !> where that is there; without joints where there is none
    pure subroutine build_once(family, value, scene)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value
       type(scene_t), intent(inout) :: scene
       type(error_t), allocatable :: error
 
-      if (allocated(scene%contacts%joint)) return
-      call family%build(value, scene, error)
+      if (family%load == searched_load%none .and. allocated(scene%contacts%joint)) return
+      call family%turn(value, scene, error)
       if (allocated(error) .and. allocated(scene%contacts%joint)) deallocate (scene%contacts%joint)
    end subroutine build_once
+
+   !> Hand a scene over without a copy of what is large
+   pure subroutine move_scene(from, to)
+      type(scene_t), intent(inout) :: from  !! The scene; its blocks and contacts are gone
+      type(scene_t), intent(inout) :: to
+
+      to%settings = from%settings
+      to%origin = from%origin
+      to%crown_joint = from%crown_joint
+      call move_system(from%system, to%system)
+      call move_contacts(from%contacts, to%contacts)
+      call move_alloc(from%joint_angle_deg, to%joint_angle_deg)
+   end subroutine move_scene
+
+   !> Make the scene of one value, whatever that of another one has
+   pure subroutine turn_anew(family, value, scene, error)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      type(scene_t), intent(inout) :: scene
+      type(error_t), allocatable, intent(out) :: error
+
+      call family%build(value, scene, error)
+   end subroutine turn_anew
 
    !> Make the chain of one value where it is not there yet
    pure subroutine link_once(family, value, link)

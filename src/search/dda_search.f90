@@ -77,6 +77,8 @@ module dda_search
       real(wp), allocatable :: limit_velocity(:, :)
       !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: limit_live(:, :)
+      !> The scene of a value of the coefficient, whichever
+      type(scene_t), allocatable :: scene
       !> Jumps on the loading path, at fixed load
       integer :: jumps = 0
       !> The largest of them [m]
