@@ -46,22 +46,15 @@ module dda_case_table
    !> The table of a deck
    type :: case_table_t
       private
-      !> Where it goes
-      type(screen_t) :: screen
-      !> How far the cases are
-      type(progress_t) :: progress
-      !> Widest line that it may have
-      integer :: width = 0
-      !> Its columns
-      type(column_t), allocatable :: column(:)
-      !> Whether its head is printed
-      logical :: begun = .false.
+      type(screen_t) :: screen                  !! Where it goes
+      type(progress_t) :: progress              !! How far the cases are
+      integer :: width = 0                      !! Widest line that it may have
+      type(column_t), allocatable :: column(:)  !! Its columns
+      logical :: begun = .false.                !! Whether its head is printed
       !> Whether all cases are printed, or of many only those that are undecided
       logical :: all_cases = .true.
-      !> Cases that are not computed yet: (n)
-      logical, allocatable :: awaited(:)
-      !> The first case that is not printed yet
-      integer :: next = 1
+      logical, allocatable :: awaited(:)  !! Cases that are not computed yet: (n)
+      integer :: next = 1                 !! The first case that is not printed yet
       !> What waits for the lines of an earlier case, by the number of the case: (n)
       type(lines_t), allocatable :: waiting(:)
    end type case_table_t
@@ -219,10 +212,8 @@ contains
 
    !> Let columns fit into a width: names of swept parameters are cut, then columns left out
    pure subroutine fit_columns(width, column)
-      !> Width of the screen
-      integer, intent(in) :: width
-      !> The columns; their widths are set
-      type(column_t), allocatable, intent(inout) :: column(:)
+      integer, intent(in) :: width                             !! Width of the screen
+      type(column_t), allocatable, intent(inout) :: column(:)  !! The columns; their widths are set
       integer :: values(size(column)), c, least, last
 
       values = column%width

@@ -15,8 +15,7 @@ submodule (dda_verbs) dda_check
       !> Print what a deck's cases are made of
       module subroutine print_plan(screen, name, deck, scene)
          type(screen_t), intent(in) :: screen
-         !> Name of the deck
-         character(len=*), intent(in) :: name
+         character(len=*), intent(in) :: name  !! Name of the deck
          type(deck_t), intent(inout) :: deck
          !> The scene of its first case, if its blocks are from a file
          type(scene_t), intent(inout) :: scene

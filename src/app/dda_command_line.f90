@@ -21,30 +21,21 @@ module dda_command_line
 
    !> What the user asked for
    type :: command_t
-      !> run, check, cut, lines, export, help or version
-      character(len=16) :: verb = "help"
+      character(len=16) :: verb = "help"  !! run, check, cut, lines, export, help or version
       !> Decks to run, check or export, files to cut, maps to draw, or the topic of help: (n)
       character(len=longest), allocatable :: name(:)
       !> Lengths of those names, blanks at their ends counted: (n) [characters]
       integer, allocatable :: name_length(:)
-      !> --set values: (n)
-      character(len=longest), allocatable :: setting(:)
+      character(len=longest), allocatable :: setting(:)  !! --set values: (n)
       !> Output folder, or the file of cut or lines; unallocated if none is named
       character(len=:), allocatable :: out
-      !> Numbers of the cases to compute; empty for all
-      character(len=:), allocatable :: cases
-      !> Cases computed at the same time
-      integer :: jobs = 1
-      !> Print nothing but errors
-      logical :: quiet = .false.
-      !> Skip cases that an earlier run has finished
-      logical :: resume = .false.
-      !> Bounds of searches as near as rounding lets them be
-      logical :: tight = .false.
-      !> Print what deck.record would hold
-      logical :: record = .false.
-      !> Where lines for the user go
-      type(screen_t) :: screen
+      character(len=:), allocatable :: cases  !! Numbers of the cases to compute; empty for all
+      integer :: jobs = 1                     !! Cases computed at the same time
+      logical :: quiet = .false.              !! Print nothing but errors
+      logical :: resume = .false.             !! Skip cases that an earlier run has finished
+      logical :: tight = .false.              !! Bounds of searches as near as rounding lets them be
+      logical :: record = .false.             !! Print what deck.record would hold
+      type(screen_t) :: screen                !! Where lines for the user go
    end type command_t
 
 contains
@@ -71,8 +62,7 @@ contains
 
    !> Understand the arguments
    pure subroutine parse_command(argument, length, command, error)
-      !> The arguments: (n)
-      character(len=*), intent(in) :: argument(:)
+      character(len=*), intent(in) :: argument(:)  !! The arguments: (n)
       !> Their lengths, blanks at their ends counted: (n) [characters]
       integer, intent(in) :: length(:)
       type(command_t), intent(out) :: command

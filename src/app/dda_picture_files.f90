@@ -115,18 +115,15 @@ contains
 
    !> Write the blocks and the joint forces of one picture, and tell the index
    subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)
-      !> Folder of the pictures, with a slash behind it
-      character(len=*), intent(in) :: folder
-      !> Name of the picture without ending
-      character(len=*), intent(in) :: stem
+      character(len=*), intent(in) :: folder  !! Folder of the pictures, with a slash behind it
+      character(len=*), intent(in) :: stem    !! Name of the picture without ending
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: origin(2)
       type(frame_t), intent(in) :: frame
       !> Its joints: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)
       type(pvd_index_t), intent(inout) :: index
-      !> Time of the picture [s]; of a static run its number
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! Time of the picture [s]; of a static run its number
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))

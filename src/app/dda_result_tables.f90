@@ -26,33 +26,21 @@ module dda_result_tables
 
    !> Places of the tables in result_tables_t
    type :: table_enum
-      !> A row a case
-      integer :: results = 1
-      !> A row a joint
-      integer :: joints = 2
-      !> A line a case
-      integer :: log = 3
-      !> A row a corner of a picture
-      integer :: frames = 4
-      !> A row a joint of a picture
-      integer :: frame_joints = 5
-      !> A row a measured point and step
-      integer :: points = 6
-      !> A row a step
-      integer :: energy = 7
-      !> A row a corner of a block
-      integer :: blocks = 8
+      integer :: results = 1       !! A row a case
+      integer :: joints = 2        !! A row a joint
+      integer :: log = 3           !! A line a case
+      integer :: frames = 4        !! A row a corner of a picture
+      integer :: frame_joints = 5  !! A row a joint of a picture
+      integer :: points = 6        !! A row a measured point and step
+      integer :: energy = 7        !! A row a step
+      integer :: blocks = 8        !! A row a corner of a block
       !> A row a case: its bytes in all tables but this one and results.csv, and the check sum of
       !> its lines there
       integer :: sizes = 9
-      !> A row a joint: forces of the proof
-      integer :: proof_forces = 10
-      !> A row a block: velocities of the proof
-      integer :: proof_motion = 11
-      !> A row a bar and time
-      integer :: bars = 12
-      !> A row a support, of dynamic runs for each step
-      integer :: reactions = 13
+      integer :: proof_forces = 10  !! A row a joint: forces of the proof
+      integer :: proof_motion = 11  !! A row a block: velocities of the proof
+      integer :: bars = 12          !! A row a bar and time
+      integer :: reactions = 13     !! A row a support, of dynamic runs for each step
    end type table_enum
 
    !> The places by name
@@ -71,28 +59,21 @@ module dda_result_tables
 
    !> Where the results of one deck go
    type :: result_tables_t
-      !> Name of the folder
-      character(len=:), allocatable :: folder
-      !> The tables, by their places
-      type(result_table_t) :: at(13)
+      character(len=:), allocatable :: folder  !! Name of the folder
+      type(result_table_t) :: at(13)           !! The tables, by their places
       !> Number of the column of results.csv that no two runs agree in
       integer :: seconds = 0
       !> Bytes of all tables but results.csv and the sizes after the last case
       integer(int64) :: length = 0
-      !> Check sum of their lines
-      integer(int64) :: sum = 0
+      integer(int64) :: sum = 0  !! Check sum of their lines
       !> Lines of the log, the sizes and results.csv that are not written yet
       type(growing_text_t) :: waiting(3)
-      !> Check sum of those of the log
-      integer(int64) :: waiting_sum = 0
-      !> File that holds what was asked for
-      character(len=:), allocatable :: record_file
+      integer(int64) :: waiting_sum = 0             !! Check sum of those of the log
+      character(len=:), allocatable :: record_file  !! File that holds what was asked for
       !> File that holds how much of results.csv is on the disk
       character(len=:), allocatable :: disk_file
-      !> Clock at which the tables are brought to the disk again
-      integer(int64) :: due = 0
-      !> Whether pictures are wanted as VTU too
-      logical :: has_vtu = .false.
+      integer(int64) :: due = 0     !! Clock at which the tables are brought to the disk again
+      logical :: has_vtu = .false.  !! Whether pictures are wanted as VTU too
    end type result_tables_t
 
    !> Time between two occasions to bring the tables to the disk, at least and beside the time that

@@ -19,10 +19,8 @@ submodule (dda_verbs:dda_run) dda_resume
    type :: layout_t
       !> Number of columns; 0 for the log, which has blanks in place of commas and free remarks
       integer :: columns = 0
-      !> Column of the case
-      integer :: case = 1
-      !> Column of the seconds of results.csv; 0 in other tables
-      integer :: seconds = 0
+      integer :: case = 1     !! Column of the case
+      integer :: seconds = 0  !! Column of the seconds of results.csv; 0 in other tables
       !> Column of the unknowns of results.csv, the last one that is never empty; 0 in other tables
       integer :: unknowns = 0
    end type layout_t
@@ -179,7 +177,7 @@ contains
    !> The next whole row of a table, and its case; 0 at the end of the table
    subroutine next_row(layout, total, lines, line, number)
       type(layout_t), intent(in) :: layout
-      integer, intent(in) :: total  !! Number of cases
+      integer, intent(in) :: total                        !! Number of cases
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable, intent(out) :: line  !! The row
       integer, intent(out) :: number                      !! Its case

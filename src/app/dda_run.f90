@@ -67,18 +67,14 @@ submodule (dda_verbs) dda_run
       !> threads
       module subroutine run_cases(command, name, deck, chosen, next, tables, shown, count, error)
          type(command_t), intent(in) :: command
-         !> Name of the deck
-         character(len=*), intent(in) :: name
+         character(len=*), intent(in) :: name  !! Name of the deck
          !> The deck; where it has one case, that takes the corners of its blocks
          type(deck_t), intent(inout) :: deck
-         !> Cases to be computed
-         logical, intent(in) :: chosen(:)
-         !> The last case that was begun by any thread
-         integer, intent(inout) :: next
+         logical, intent(in) :: chosen(:)    !! Cases to be computed
+         integer, intent(inout) :: next      !! The last case that was begun by any thread
          type(result_tables_t), intent(inout) :: tables
          type(case_table_t), intent(inout) :: shown
-         !> Cases decided, undecided, written: (3)
-         integer, intent(inout) :: count(3)
+         integer, intent(inout) :: count(3)  !! Cases decided, undecided, written: (3)
          !> Failure to write
          type(error_t), allocatable, intent(inout) :: error
       end subroutine run_cases

@@ -31,10 +31,8 @@ module dda_screen
    integer, parameter :: width = 60
    !> Tells of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t
-      !> Whether anything is told
-      logical :: shown = .false.
-      !> Whether a line stands on the screen
-      logical :: told = .false.
+      logical :: shown = .false.  !! Whether anything is told
+      logical :: told = .false.   !! Whether a line stands on the screen
       !> Clock at the beginning, and when the line was written
       integer(int64) :: start = 0, last = 0
       !> A task is reported once it has taken so long, then in intervals [s]
@@ -136,8 +134,7 @@ contains
    !> Tell how far a task is: not at once, and not too often
    subroutine tell_of_task(watch, task, share)
       class(terminal_watch_t), intent(inout) :: watch
-      !> What is done
-      character(len=*), intent(in) :: task
+      character(len=*), intent(in) :: task  !! What is done
       !> How much of it is done, from 0 to 1; below 0 if that is not known
       real(wp), intent(in) :: share
       integer(int64) :: now, rate

@@ -12,10 +12,8 @@ module dda_arch
 
    !> Shape of an arch that is its own mirror image; joints are radial
    type :: arch_shape_t
-      !> Radius halfway through the thickness [m]
-      real(wp) :: radius = 10.0_wp
-      !> Thickness over radius
-      real(wp) :: thickness_ratio = 0.1_wp
+      real(wp) :: radius = 10.0_wp          !! Radius halfway through the thickness [m]
+      real(wp) :: thickness_ratio = 0.1_wp  !! Thickness over radius
       !> Joints of one half from the crown, strictly increasing; the first is 0 if a joint lies at
       !> the crown, else half the crown voussoir; the last is the springing: (n) [rad]
       real(wp), allocatable :: joint_angle(:)
@@ -28,10 +26,8 @@ contains
 
    !> Joints of one half of an arch of equal voussoirs
    pure function equal_joints(voussoirs, half_angle) result(joint_angle)
-      !> Number of voussoirs of the whole arch, at least 1
-      integer, intent(in) :: voussoirs
-      !> Angle from the crown to the springing [rad]
-      real(wp), intent(in) :: half_angle
+      integer, intent(in) :: voussoirs    !! Number of voussoirs of the whole arch, at least 1
+      real(wp), intent(in) :: half_angle  !! Angle from the crown to the springing [rad]
       !> Joint angles from the crown: (voussoirs/2 + 1), or ((voussoirs + 1)/2) if odd [rad]
       real(wp), allocatable :: joint_angle(:)
       integer :: k
@@ -42,8 +38,7 @@ contains
 
    !> Number of equal chords of a voussoir none of which spans more than a facet
    elemental integer function facet_count(span_deg, facet_deg)
-      !> Angle of the voussoir [deg]
-      real(wp), intent(in) :: span_deg
+      real(wp), intent(in) :: span_deg  !! Angle of the voussoir [deg]
       !> Largest angle of a chord; zero or less for one chord [deg]
       real(wp), intent(in) :: facet_deg
 
@@ -56,8 +51,7 @@ contains
       type(arch_shape_t), intent(in) :: shape
       !> Angles of all sections from the crown, the first >= 0: (m) [rad]
       real(wp), allocatable, intent(out) :: angle(:)
-      !> Which sections are joints: (m)
-      logical, allocatable, intent(out) :: is_joint(:)
+      logical, allocatable, intent(out) :: is_joint(:)  !! Which sections are joints: (m)
       real(wp) :: start, span
       integer :: i, k, n, crown
 

@@ -25,12 +25,9 @@ module dda_arch_assembly
       type(block_plan_t) :: plan
       !> Chords of the upper faces of blocks that move: (n)
       type(top_chord_t), allocatable :: top(:)
-      !> Where the crown of each span is along x: (n_span) [m]
-      real(wp), allocatable :: crown_x(:)
-      !> Number of voussoirs
-      integer :: n_voussoir = 0
-      !> Height of the left springing of the intrados [m]
-      real(wp) :: springing_y = 0.0_wp
+      real(wp), allocatable :: crown_x(:)  !! Where the crown of each span is along x: (n_span) [m]
+      integer :: n_voussoir = 0            !! Number of voussoirs
+      real(wp) :: springing_y = 0.0_wp     !! Height of the left springing of the intrados [m]
    end type arch_assembly_t
 
    !> Material of supports, whose joints may be another law's
@@ -207,10 +204,8 @@ contains
       !> Intrados and extrados of the springing of the arch on its left, or its upper left corner
       !> twice: (2, 2) [m]
       real(wp), intent(in) :: left(2, 2)
-      !> Likewise on its right: (2, 2) [m]
-      real(wp), intent(in) :: right(2, 2)
-      !> Its height up to the lower springing [m]
-      real(wp), intent(in) :: height
+      real(wp), intent(in) :: right(2, 2)  !! Likewise on its right: (2, 2) [m]
+      real(wp), intent(in) :: height       !! Its height up to the lower springing [m]
       type(arch_assembly_t), intent(inout) :: assembly
       type(form_problem_t), intent(inout) :: problem
       real(wp) :: base, course, gap, low, width

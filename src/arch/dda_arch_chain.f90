@@ -17,22 +17,16 @@ module dda_arch_chain
 
    !> What an arch of one material is made from
    type :: arch_numbers_t
-      !> Its shape
-      type(arch_shape_t) :: shape
-      !> Mass per volume [kg/m3]
-      real(wp) :: density = 0.0_wp
-      !> Young's modulus [Pa]
-      real(wp) :: young = 0.0_wp
-      !> Load per volume: (2) [N/m3]
-      real(wp) :: body_force(2) = 0.0_wp
+      type(arch_shape_t) :: shape         !! Its shape
+      real(wp) :: density = 0.0_wp        !! Mass per volume [kg/m3]
+      real(wp) :: young = 0.0_wp          !! Young's modulus [Pa]
+      real(wp) :: body_force(2) = 0.0_wp  !! Load per volume: (2) [N/m3]
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp) :: penalty_ratio = 0.0_wp
-      !> Law of the joints, without cohesion and tensile strength
-      type(joint_law_t) :: law
+      type(joint_law_t) :: law  !! Law of the joints, without cohesion and tensile strength
       !> Whether the springings cannot slide
       logical :: no_slip_springing = .false.
-      !> Whether the left half alone will do: the loads must be upright
-      logical :: halved = .false.
+      logical :: halved = .false.  !! Whether the left half alone will do: the loads must be upright
    end type arch_numbers_t
 
    !> What does not depend on the thickness, of the whole arch or its left half
@@ -121,12 +115,10 @@ contains
    !> Coefficients of one voussoir. As its chords lie across the mean directions of their ends, an
    !> area is rate (1 + s/radius) ds du, with u from 0 to 1 along the chord
    pure subroutine find_moments(radius, rays, b)
-      !> Radius halfway through the thickness [m]
-      real(wp), intent(in) :: radius
+      real(wp), intent(in) :: radius  !! Radius halfway through the thickness [m]
       !> The sections; the coefficients of the voussoir are set
       type(arch_rays_t), intent(inout) :: rays
-      !> Number of the voussoir
-      integer, intent(in) :: b
+      integer, intent(in) :: b  !! Number of the voussoir
       real(wp) :: chord(2), from(2), mean(2), spread(2), area, rate, first(2, 2), polar(2)
       integer :: k
 
@@ -156,8 +148,7 @@ contains
    pure subroutine arch_chain(numbers, rays, thickness_ratio, chain)
       type(arch_numbers_t), intent(in) :: numbers
       type(arch_rays_t), intent(in) :: rays
-      !> Thickness over radius
-      real(wp), intent(in) :: thickness_ratio
+      real(wp), intent(in) :: thickness_ratio  !! Thickness over radius
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
       real(wp) :: area, centre(2), give, most, radius, spring, square, thickness, way(2)
@@ -214,14 +205,10 @@ contains
 
    !> Add the half of a block at a joint to its compliance
    pure subroutine add_compliance(give, area, across, thickness, compliance)
-      !> One over Young's modulus and thickness [m/N]
-      real(wp), intent(in) :: give
-      !> Area of the block [m2]
-      real(wp), intent(in) :: area
-      !> How far its centre is from the joint, with any sign [m]
-      real(wp), intent(in) :: across
-      !> Length of the joint [m]
-      real(wp), intent(in) :: thickness
+      real(wp), intent(in) :: give       !! One over Young's modulus and thickness [m/N]
+      real(wp), intent(in) :: area       !! Area of the block [m2]
+      real(wp), intent(in) :: across     !! How far its centre is from the joint, with any sign [m]
+      real(wp), intent(in) :: thickness  !! Length of the joint [m]
       !> Receives it [m2/N]
       real(wp), intent(inout) :: compliance
       real(wp) :: least

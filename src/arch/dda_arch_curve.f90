@@ -30,14 +30,11 @@ module dda_arch_curve
 
    !> The line
    type :: curve_t
-      !> Its pieces, from left to right: (n)
-      type(piece_t), allocatable :: piece(:)
+      type(piece_t), allocatable :: piece(:)  !! Its pieces, from left to right: (n)
       !> Length of the line up to each piece, and the whole: (0:n) [m]
       real(wp), allocatable :: length(:)
-      !> Length up to the crown [m]
-      real(wp) :: crown = 0.0_wp
-      !> Whether the line bends sharply there
-      logical :: pointed = .false.
+      real(wp) :: crown = 0.0_wp    !! Length up to the crown [m]
+      logical :: pointed = .false.  !! Whether the line bends sharply there
    end type curve_t
 
    !> A place on the line

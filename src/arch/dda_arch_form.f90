@@ -9,47 +9,35 @@ module dda_arch_form
 
    !> Numbers that make an arch
    type :: arch_form_t
-      !> One of the words of arch%shape
-      character(len=16) :: shape = "circular"
+      character(len=16) :: shape = "circular"  !! One of the words of arch%shape
       !> Whether radius and half angle make it, of its middle; otherwise span and rise, of its
       !> intrados
       logical :: by_radius = .true.
-      !> Radius half way between intrados and extrados [m]
-      real(wp) :: radius = 10.0_wp
+      real(wp) :: radius = 10.0_wp  !! Radius half way between intrados and extrados [m]
       !> Angle from the crown to a springing; of a flat arch, of its skewbacks from upright [deg]
       real(wp) :: half_angle_deg = 90.0_wp
-      !> Distance of the springings of the intrados along x [m]
-      real(wp) :: span = 0.0_wp
+      real(wp) :: span = 0.0_wp  !! Distance of the springings of the intrados along x [m]
       !> Height of the crown of the intrados above its springings, left and right: (2) [m]
       real(wp) :: rise(2) = 0.0_wp
-      !> Thickness at the crown and at the springings: (2) [m]
-      real(wp) :: thickness(2) = 0.0_wp
+      real(wp) :: thickness(2) = 0.0_wp  !! Thickness at the crown and at the springings: (2) [m]
       !> Whether joints point from a centre; otherwise they are square to the middle line
       logical :: radial = .false.
-      !> Voussoirs of a ring
-      integer :: voussoirs = 36
-      !> Largest angle of a chord; 0 for one chord a voussoir [deg]
-      real(wp) :: facet_deg = 0.0_wp
-      !> Rings
-      integer :: rings = 1
-      !> Spans
-      integer :: spans = 1
-      !> Width and height of the piers: (2) [m]
-      real(wp) :: pier(2) = 0.0_wp
+      integer :: voussoirs = 36       !! Voussoirs of a ring
+      real(wp) :: facet_deg = 0.0_wp  !! Largest angle of a chord; 0 for one chord a voussoir [deg]
+      integer :: rings = 1            !! Rings
+      integer :: spans = 1            !! Spans
+      real(wp) :: pier(2) = 0.0_wp    !! Width and height of the piers: (2) [m]
       !> Width and height of the two buttresses; no width for springings that are fixed: (2) [m]
       real(wp) :: buttress(2) = 0.0_wp
-      !> Blocks of a pier, or of a buttress, one on the other
-      integer :: courses = 1
-      !> Whether joints at fixed blocks cannot slide
-      logical :: no_slip = .false.
+      integer :: courses = 1        !! Blocks of a pier, or of a buttress, one on the other
+      logical :: no_slip = .false.  !! Whether joints at fixed blocks cannot slide
    end type arch_form_t
 
    !> What makes no arch
    type :: form_problem_t
       !> What was expected and found, and what to do; empty if nothing is wrong
       character(len=200) :: text = ""
-      !> Key of &arch at fault
-      character(len=24) :: key = "shape"
+      character(len=24) :: key = "shape"  !! Key of &arch at fault
    end type form_problem_t
 
 contains

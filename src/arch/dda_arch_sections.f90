@@ -61,12 +61,9 @@ contains
       type(curve_t), intent(in) :: curve
       !> Length where they begin, a section already [m]
       real(wp), intent(in) :: from
-      !> Length of the joint [m]
-      real(wp), intent(in) :: to
-      !> Receives their lengths: (n) [m]
-      real(wp), allocatable, intent(inout) :: length(:)
-      !> Receives that the last is a joint: (n)
-      logical, allocatable, intent(inout) :: is_joint(:)
+      real(wp), intent(in) :: to                          !! Length of the joint [m]
+      real(wp), allocatable, intent(inout) :: length(:)   !! Receives their lengths: (n) [m]
+      logical, allocatable, intent(inout) :: is_joint(:)  !! Receives that the last is a joint: (n)
       type(station_t) :: first, last
       integer :: i, n
 

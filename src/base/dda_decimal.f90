@@ -61,10 +61,8 @@ contains
    !> Digits of a decimal number as a whole number, and its power of ten
    pure subroutine split_decimal(text, digits, power, ok)
       character(len=*), intent(in) :: text
-      !> All digits, without sign
-      integer(int64), intent(out) :: digits
-      !> Power of ten of the last of them
-      integer, intent(out) :: power
+      integer(int64), intent(out) :: digits  !! All digits, without sign
+      integer, intent(out) :: power          !! Power of ten of the last of them
       !> Whether the text is a number of at most 18 digits, its exponent of at most 4
       logical, intent(out) :: ok
       integer :: i, n, point, code, first
@@ -99,8 +97,7 @@ contains
       !> Text such as e-3, not empty
       character(len=*), intent(in) :: text
       integer, intent(inout) :: power
-      !> Whether it is a letter and a whole number of at most 4 digits
-      logical, intent(out) :: ok
+      logical, intent(out) :: ok  !! Whether it is a letter and a whole number of at most 4 digits
       integer :: exponent, first, i
 
       ok = scan(text(1:1), "eEdD") == 1 .and. len(text) > 1

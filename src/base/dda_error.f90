@@ -26,8 +26,7 @@ module dda_error
    type :: warnings_t
       !> The warnings, each message once; unallocated if there is none
       type(warning_t), allocatable :: item(:)
-      !> How many other ones found no place in it
-      integer :: left_out = 0
+      integer :: left_out = 0  !! How many other ones found no place in it
    end type warnings_t
 
    !> Longest list
@@ -59,10 +58,8 @@ contains
 
    !> A contract at the border of a module: the sentence must be true
    pure subroutine require(condition, sentence, error)
-      !> Whether the sentence holds
-      logical, intent(in) :: condition
-      !> What must hold, in words
-      character(len=*), intent(in) :: sentence
+      logical, intent(in) :: condition          !! Whether the sentence holds
+      character(len=*), intent(in) :: sentence  !! What must hold, in words
       !> Allocated if it does not hold; left as it was otherwise
       type(error_t), allocatable, intent(inout) :: error
 

@@ -129,14 +129,10 @@ contains
       real(wp), intent(in) :: minor(:)
       !> The runs: places start to middle - 1 and middle to finish - 1
       integer, intent(in) :: order(:)
-      !> Start of the first run
-      integer, intent(in) :: start
-      !> Start of the second run
-      integer, intent(in) :: middle
-      !> One beyond the second run
-      integer, intent(in) :: finish
-      !> Receives the places start to finish - 1
-      integer, intent(inout) :: merged(:)
+      integer, intent(in) :: start         !! Start of the first run
+      integer, intent(in) :: middle        !! Start of the second run
+      integer, intent(in) :: finish        !! One beyond the second run
+      integer, intent(inout) :: merged(:)  !! Receives the places start to finish - 1
       integer :: a, b, k
       logical :: take_second
 

@@ -39,10 +39,8 @@ module dda_text
 
       !> Read a decimal number of usual size, rounded to the nearest double
       pure module subroutine read_short_decimal(text, value, known)
-         !> Text such as -1.5e-3 or 1d3
-         character(len=*), intent(in) :: text
-         !> The number; 0 if it is not known
-         real(wp), intent(out) :: value
+         character(len=*), intent(in) :: text  !! Text such as -1.5e-3 or 1d3
+         real(wp), intent(out) :: value        !! The number; 0 if it is not known
          !> Whether it is known: the text is one number of at most 18 digits, its last one within 22
          !> places of the point, and not so near to the middle of two doubles that more is needed
          logical, intent(out) :: known
@@ -154,10 +152,8 @@ contains
    !> Leave out of 17 digits those that the number does not need to be read back
    pure subroutine shorten(value, beyond, doubt, digits, exponent, known)
       real(wp), intent(in) :: value, beyond
-      !> How far that may be wrong
-      real(wp), intent(in) :: doubt
-      !> Its 17 digits in, the shorter ones out
-      integer(int64), intent(inout) :: digits
+      real(wp), intent(in) :: doubt            !! How far that may be wrong
+      integer(int64), intent(inout) :: digits  !! Its 17 digits in, the shorter ones out
       integer, intent(in) :: exponent
       !> Whether it could be told without reading the digits back, so that they were changed
       logical, intent(out) :: known
@@ -206,10 +202,8 @@ contains
    pure subroutine take_digits(scientific, digits, exponent)
       !> The text
       character(len=*), intent(in) :: scientific
-      !> All digits before the exponent, as one whole number
-      integer(int64), intent(out) :: digits
-      !> The exponent
-      integer, intent(out) :: exponent
+      integer(int64), intent(out) :: digits  !! All digits before the exponent, as one whole number
+      integer, intent(out) :: exponent       !! The exponent
       integer :: code, e, i
 
       digits = 0

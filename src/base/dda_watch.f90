@@ -9,8 +9,7 @@ module dda_watch
    !> Is told of a task now and then, and makes of it what it likes
    type, abstract :: watch_t
    contains
-      !> Tell of the task
-      procedure(tell_of_task), deferred :: tell
+      procedure(tell_of_task), deferred :: tell  !! Tell of the task
    end type watch_t
 
    abstract interface
@@ -18,8 +17,7 @@ module dda_watch
       subroutine tell_of_task(watch, task, share)
          import :: watch_t, wp
          class(watch_t), intent(inout) :: watch
-         !> What is done
-         character(len=*), intent(in) :: task
+         character(len=*), intent(in) :: task  !! What is done
          !> How much of it is done, from 0 to 1; below 0 if that is not known
          real(wp), intent(in) :: share
       end subroutine tell_of_task

@@ -22,44 +22,29 @@ module dda_case
    !> cases: the others make texts, and gfortran keeps the length of a text that a function returns
    !> in memory that threads share
    type :: case_t
-      !> What its scene needs
-      type(scene_plan_t) :: plan
+      type(scene_plan_t) :: plan  !! What its scene needs
       !> Whether a critical value is searched; whether tables of joints or blocks are told
       logical :: searches = .false., tells_tables = .true.
-      !> Whether its verdict is proven
-      logical :: proves = .true.
-      !> Whether Shi's scheme decides
-      logical :: limerick = .false.
-      !> The scenes of the search
-      type(deck_family_t) :: family
-      !> The search
-      type(search_t) :: search
-      !> What the search found
-      type(critical_t) :: critical
-      !> Decision of a case that searches nothing
-      type(decision_t) :: decision
-      !> Scene of the collapse, or of the decision
-      type(scene_t) :: scene
+      logical :: proves = .true.     !! Whether its verdict is proven
+      logical :: limerick = .false.  !! Whether Shi's scheme decides
+      type(deck_family_t) :: family  !! The scenes of the search
+      type(search_t) :: search       !! The search
+      type(critical_t) :: critical   !! What the search found
+      type(decision_t) :: decision   !! Decision of a case that searches nothing
+      type(scene_t) :: scene         !! Scene of the collapse, or of the decision
       !> Scene nearest to critical that stands, where it was asked for
       type(scene_t) :: standing
-      !> Where a dynamic run goes on, and where it ended
-      type(march_t) :: onward
+      type(march_t) :: onward  !! Where a dynamic run goes on, and where it ended
       !> Restart file that it goes on from; empty if there is none
       character(len=:), allocatable :: restart_file
-      !> Why the case could not be computed
-      type(error_t), allocatable :: error
-      !> Pictures of the collapse, or of the way to rest
-      type(album_t) :: album
+      type(error_t), allocatable :: error  !! Why the case could not be computed
+      type(album_t) :: album               !! Pictures of the collapse, or of the way to rest
       !> Whether the vehicle was put where the least load factor is carried
       logical :: has_worst = .false.
-      !> What proves the verdict, where tables are told
-      type(proof_t) :: proof
-      !> Exact critical thickness ratio
-      real(wp) :: exact = 0.0_wp
-      !> Whether it is known
-      logical :: exact_known = .false.
-      !> Wall time of the computation [s]
-      real(wp) :: seconds = 0.0_wp
+      type(proof_t) :: proof            !! What proves the verdict, where tables are told
+      real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio
+      logical :: exact_known = .false.  !! Whether it is known
+      real(wp) :: seconds = 0.0_wp      !! Wall time of the computation [s]
    end type case_t
 
 contains

@@ -171,8 +171,7 @@ contains
    pure subroutine prove_state(scene, graph, wanted, known, proof)
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> The verdict that is to be proven: stable or collapsed
-      integer, intent(in) :: wanted
+      integer, intent(in) :: wanted  !! The verdict that is to be proven: stable or collapsed
       !> What limit analysis has said when it was found; unallocated if it was not asked
       type(load_decision_t), allocatable, intent(in) :: known
       type(proof_t), intent(inout) :: proof

@@ -97,12 +97,9 @@ module dda_compute_case
          type(joint_graph_t), intent(in) :: graph
          !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
          real(wp), intent(in) :: dead(:, :)
-         !> The live loads: (n)
-         type(load_arc_t), intent(in) :: arc(:)
-         !> Whether the dead load is known to stand
-         logical, intent(in) :: stands
-         !> How near the place is to be [m]
-         real(wp), intent(in) :: near
+         type(load_arc_t), intent(in) :: arc(:)  !! The live loads: (n)
+         logical, intent(in) :: stands           !! Whether the dead load is known to stand
+         real(wp), intent(in) :: near            !! How near the place is to be [m]
          !> The least factor so far in, with these arcs out
          type(least_factor_t), intent(inout) :: least
       end subroutine seek_least_factor

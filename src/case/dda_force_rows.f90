@@ -133,8 +133,7 @@ contains
    !> Reactions of blocks at rest
    pure subroutine find_reactions(this, time, support, reaction)
       type(case_t), intent(in) :: this
-      !> Time of the loads [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! Time of the loads [s]
       integer, intent(in) :: support(:, :)
       !> Force, and moment about the origin of the blocks' coordinates: (3, n) [N/m, N/m, N]
       real(wp), allocatable, intent(out) :: reaction(:, :)
@@ -191,8 +190,7 @@ contains
       !> First fields of a row
       character(len=*), intent(in) :: start
       type(proof_t), intent(in) :: proof
-      !> Number of the last joint before them; theirs are added
-      integer, intent(inout) :: n
+      integer, intent(inout) :: n  !! Number of the last joint before them; theirs are added
       type(growing_text_t), intent(inout) :: rows
       real(wp) :: force(3)
       integer :: i

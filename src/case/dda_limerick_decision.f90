@@ -128,8 +128,7 @@ contains
 
    !> Corners of the scene's blocks at the end of a run
    pure subroutine place_corners(kind, run, system)
-      !> What the blocks are made from
-      character(len=*), intent(in) :: kind
+      character(len=*), intent(in) :: kind  !! What the blocks are made from
       type(limerick_run_t), intent(in) :: run
       !> The blocks; where their corners have moved to is set
       type(block_system_t), intent(inout) :: system
@@ -153,12 +152,10 @@ contains
    !> Joints at the end of a run: openings and slips from the corners, forces from the contacts.
    !> The increments are those of the whole run, for single steps of this scheme jitter
    pure subroutine tell_joints(scene, model, run, now, contacts)
-      !> The scene at the beginning
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(in) :: scene  !! The scene at the beginning
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(in) :: run
-      !> The corners at the end: (2, n_vertex) [m]
-      real(wp), intent(in) :: now(:, :)
+      real(wp), intent(in) :: now(:, :)   !! The corners at the end: (2, n_vertex) [m]
       !> The joints: at the beginning in, at the end out
       type(contacts_t), intent(inout) :: contacts
       type(joint_law_t) :: law

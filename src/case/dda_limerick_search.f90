@@ -109,7 +109,7 @@ contains
    !> Run one value and keep the decision on its side of the bracket
    pure subroutine decide_at(family, value, critical, answer)
       type(deck_family_t), intent(in) :: family
-      real(wp), intent(in) :: value  !! The value
+      real(wp), intent(in) :: value   !! The value
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! One of verdict
       type(decision_t), allocatable :: decision

@@ -32,26 +32,19 @@ module dda_restart
 
    !> What a file holds
    type :: state_t
-      !> The whole numbers: (n_count)
-      integer(int32) :: count(n_count) = 0
+      integer(int32) :: count(n_count) = 0  !! The whole numbers: (n_count)
       !> The joints as whole numbers: (n_joint_whole, n_joint)
       integer(int32), allocatable :: joint_whole(:, :)
       !> The joints as numbers: (n_joint_number, n_joint)
       real(wp), allocatable :: joint_number(:, :)
-      !> Corners in the reference shape: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
-      !> Motion of the blocks: (6, n_block)
-      real(wp), allocatable :: motion(:, :)
-      !> Rates of the same: (6, n_block)
-      real(wp), allocatable :: velocity(:, :)
-      !> Stress of the blocks: (3, n_block) [Pa]
-      real(wp), allocatable :: stress(:, :)
+      real(wp), allocatable :: vertex(:, :)    !! Corners in the reference shape: (2, n_vertex) [m]
+      real(wp), allocatable :: motion(:, :)    !! Motion of the blocks: (6, n_block)
+      real(wp), allocatable :: velocity(:, :)  !! Rates of the same: (6, n_block)
+      real(wp), allocatable :: stress(:, :)    !! Stress of the blocks: (3, n_block) [Pa]
       !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
       real(wp), allocatable :: reach(:)
-      !> Forces at held points: (n_spring) [N/m]
-      real(wp), allocatable :: held_force(:)
-      !> The march: (n_march)
-      real(wp) :: march(n_march) = 0.0_wp
+      real(wp), allocatable :: held_force(:)  !! Forces at held points: (n_spring) [N/m]
+      real(wp) :: march(n_march) = 0.0_wp     !! The march: (n_march)
    end type state_t
 
    !> Larger than any number of a run, and small enough to be squared twice
@@ -101,8 +94,7 @@ module dda_restart
          type(state_t), intent(in) :: state
          !> The blocks at their beginning in, where they were out
          type(block_system_t), intent(inout) :: system
-         !> What is wrong; left as it is if nothing is
-         character(len=*), intent(inout) :: fault
+         character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
       end subroutine take_blocks
 
       !> The march of a file
@@ -281,7 +273,7 @@ contains
    !> name is replaced at once, when the new one is on the disk
    subroutine write_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: title   !! Its first bytes, which tell what it holds
+      character(len=*), intent(in) :: title  !! Its first bytes, which tell what it holds
       integer(int32), intent(in) :: whole(:)
       real(wp), intent(in) :: number(:)
       type(error_t), allocatable, intent(out) :: error
@@ -306,8 +298,7 @@ contains
    !> Read a file of numbers that is whole
    subroutine read_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
-      !> What its first bytes must be
-      character(len=*), intent(in) :: title
+      character(len=*), intent(in) :: title  !! What its first bytes must be
       integer(int32), allocatable, intent(out) :: whole(:)
       real(wp), allocatable, intent(out) :: number(:)
       !> Allocated if it is missing, another file, or damaged

@@ -227,8 +227,7 @@ contains
 
    !> Add a load of an arc to others
    pure subroutine add_live(weight, arc, load)
-      !> Factors of its three loads
-      real(wp), intent(in) :: weight(3)
+      real(wp), intent(in) :: weight(3)  !! Factors of its three loads
       type(load_arc_t), intent(in) :: arc
       !> Loads, to which its are added: (3, n_block) [N/m, N/m, N]
       real(wp), intent(inout) :: load(:, :)

@@ -30,14 +30,10 @@ submodule (dda_compute_case) dda_worst_position
    type :: bridge_t
       !> The scene without the vehicle, its live loads at a factor of one
       type(scene_t) :: scene
-      !> The vehicle
-      type(vehicle_t) :: vehicle
-      !> What it stands on
-      type(road_t) :: road
-      !> Fill that it stands on
-      type(fill_t), allocatable :: fill
-      !> Whether it stands without live loads
-      logical :: stands = .false.
+      type(vehicle_t) :: vehicle         !! The vehicle
+      type(road_t) :: road               !! What it stands on
+      type(fill_t), allocatable :: fill  !! Fill that it stands on
+      logical :: stands = .false.        !! Whether it stands without live loads
    end type bridge_t
 
    !> A part of the road
@@ -236,8 +232,7 @@ contains
    !> Live loads with the vehicle on a stretch
    pure type(load_arc_t) function arc_of(bridge, from, to, other) result(arc)
       type(bridge_t), intent(in) :: bridge
-      !> Beginning and end of the stretch [m]
-      real(wp), intent(in) :: from, to
+      real(wp), intent(in) :: from, to  !! Beginning and end of the stretch [m]
       !> Live loads beside the vehicle: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: other(:, :)
       type(loaded_point_t), allocatable :: axles(:)

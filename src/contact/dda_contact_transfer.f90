@@ -17,22 +17,15 @@ module dda_contact_transfer
 
    !> One contact of the step before
    type :: past_contact_t
-      !> The contact
-      type(contact_t) :: contact
-      !> The joint that it belonged to
-      integer :: joint = 0
-      !> Which of the joint's contacts it was
-      integer :: place = 0
+      type(contact_t) :: contact  !! The contact
+      integer :: joint = 0        !! The joint that it belonged to
+      integer :: place = 0        !! Which of the joint's contacts it was
       !> Normal force, and its part of the joint's shear force: (2) [N/m]
       real(wp) :: force(2) = 0.0_wp
-      !> Slip that the springs still feel [m]
-      real(wp) :: slip = 0.0_wp
-      !> Stiffness of the springs [N/m per metre depth]
-      real(wp) :: stiffness = 0.0_wp
-      !> Tension that it carries [N/m]
-      real(wp) :: tension = 0.0_wp
-      !> Whether a contact of the next step has taken it over
-      logical :: passed_on = .false.
+      real(wp) :: slip = 0.0_wp       !! Slip that the springs still feel [m]
+      real(wp) :: stiffness = 0.0_wp  !! Stiffness of the springs [N/m per metre depth]
+      real(wp) :: tension = 0.0_wp    !! Tension that it carries [N/m]
+      logical :: passed_on = .false.  !! Whether a contact of the next step has taken it over
    end type past_contact_t
 
    !> An open end takes part in the slip of a joint as far as this share of its length allows
@@ -155,10 +148,8 @@ contains
    !> Let a joint start with the slip that its contacts had, and measure it where it is closed
    pure subroutine take_over_slip(system, past, source, in_time, joint, place)
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step before
-      type(past_contact_t), intent(in) :: past(:)
-      !> Which of them go on, 0 for none: (2)
-      integer, intent(in) :: source(2)
+      type(past_contact_t), intent(in) :: past(:)  !! The contacts of the step before
+      integer, intent(in) :: source(2)             !! Which of them go on, 0 for none: (2)
       !> Whether blocks move in time: then each step allows anew for what lies inside
       logical, intent(in) :: in_time
       type(joint_t), intent(inout) :: joint
@@ -247,14 +238,11 @@ contains
 
    !> Forces, strength and direction of sliding of the contacts that go on
    pure subroutine take_over_state(before, past, source, j, contacts)
-      !> The contacts of the step before
-      type(contacts_t), intent(in) :: before
+      type(contacts_t), intent(in) :: before  !! The contacts of the step before
       !> The same one by one
       type(past_contact_t), intent(in) :: past(:)
-      !> Which of them go on in the joint, 0 for none: (2)
-      integer, intent(in) :: source(2)
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: source(2)  !! Which of them go on in the joint, 0 for none: (2)
+      integer, intent(in) :: j          !! Number of the joint
       type(contacts_t), intent(inout) :: contacts
       integer :: k
 
@@ -305,15 +293,13 @@ contains
    !> or else the nearest of the same two blocks
    pure subroutine match_contacts(system, joint, reach, past, source)
       type(block_system_t), intent(in) :: system
-      !> The joints
-      type(joint_t), intent(in) :: joint(:)
+      type(joint_t), intent(in) :: joint(:)  !! The joints
       !> Contacts farther from one another than their blocks reach are different ones: (n_block)
       !> [m]
       real(wp), intent(in) :: reach(:)
       !> The contacts of the step before in the order of their keys; those taken over are marked
       type(past_contact_t), intent(inout) :: past(:)
-      !> Places in past, 0 for none: (2, n_joint)
-      integer, intent(out) :: source(:, :)
+      integer, intent(out) :: source(:, :)  !! Places in past, 0 for none: (2, n_joint)
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k
 

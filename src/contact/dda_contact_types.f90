@@ -21,18 +21,13 @@ module dda_contact_types
 
    !> A vertex of one block against an edge of another
    type :: contact_t
-      !> Block that owns the vertex
-      integer :: vertex_block = 0
-      !> Number of the vertex within its block
-      integer :: vertex = 0
-      !> Block that owns the edge
-      integer :: edge_block = 0
+      integer :: vertex_block = 0  !! Block that owns the vertex
+      integer :: vertex = 0        !! Number of the vertex within its block
+      integer :: edge_block = 0    !! Block that owns the edge
       !> Number of the edge within its block; edge k runs from vertex k to vertex k + 1
       integer :: edge = 0
-      !> Which of the joint's two blocks owns the edge
-      integer :: edge_side = 1
-      !> Part of the joint's length that the contact stands for [m]
-      real(wp) :: length = 0.0_wp
+      integer :: edge_side = 1     !! Which of the joint's two blocks owns the edge
+      real(wp) :: length = 0.0_wp  !! Part of the joint's length that the contact stands for [m]
       !> Part of the joint's shear force that is felt here; the parts of a joint make one
       real(wp) :: share = 0.5_wp
       !> Where on the edge the vertex has no slip, as a share of the edge from its start
@@ -47,16 +42,12 @@ module dda_contact_types
       !> The two blocks; of a joint of given edges the first owns the edge, the second the vertices:
       !> (2)
       integer :: block(2) = 0
-      !> Contacts; the second is unused where n_contact is 1: (2)
-      type(contact_t) :: contact(2)
-      !> Number of contacts, 1 or 2
-      integer :: n_contact = 0
-      !> Length over which the blocks touch [m]
-      real(wp) :: length = 0.0_wp
+      type(contact_t) :: contact(2)  !! Contacts; the second is unused where n_contact is 1: (2)
+      integer :: n_contact = 0       !! Number of contacts, 1 or 2
+      real(wp) :: length = 0.0_wp    !! Length over which the blocks touch [m]
       !> Whether a search has found it; otherwise it was given and is kept
       logical :: found = .false.
-      !> Number of the law of the joint force among those of the contacts
-      integer :: law = 1
+      integer :: law = 1  !! Number of the law of the joint force among those of the contacts
    end type joint_t
 
    !> Where a joint is
@@ -111,8 +102,7 @@ contains
    !> Place of a block's vertex among all vertices; counts on past the last vertex
    pure integer function vertex_number(system, block, vertex)
       type(block_system_t), intent(in) :: system
-      !> Number of the block
-      integer, intent(in) :: block
+      integer, intent(in) :: block  !! Number of the block
       !> Number of the vertex within the block, from 1 to its number of vertices + 1
       integer, intent(in) :: vertex
       integer :: n
@@ -139,8 +129,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
-      !> Number of its law
-      integer, intent(in) :: law
+      integer, intent(in) :: law  !! Number of its law
       real(wp) :: start(2), finish(2)
 
       start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
@@ -160,8 +149,7 @@ contains
    !> Where a joint is, and how far it is open
    pure subroutine place_joint(system, vertex, joint, place, gap)
       type(block_system_t), intent(in) :: system
-      !> Their corners: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Their corners: (2, n_vertex) [m]
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(out) :: place
       !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
@@ -221,16 +209,12 @@ contains
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> The joints: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
-      !> Laws that they may have: (n_law)
-      type(joint_law_t), intent(in) :: law(:)
-      !> Where they are: (n_joint)
-      type(joint_place_t), intent(in) :: place(:)
+      type(joint_t), intent(in) :: joint(:)        !! The joints: (n_joint)
+      type(joint_law_t), intent(in) :: law(:)      !! Laws that they may have: (n_law)
+      type(joint_place_t), intent(in) :: place(:)  !! Where they are: (n_joint)
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
+      integer, intent(in) :: n_dof  !! Unknowns of one block
       type(joint_springs_t), intent(out) :: springs
       real(wp) :: centroid(2, size(system%area))
       integer :: j, n
@@ -258,10 +242,8 @@ contains
       !> How the blocks have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(joint_t), intent(in) :: joint(:)
-      !> Where they are: (n_joint)
-      type(joint_place_t), intent(in) :: place(:)
-      !> The rows: (n_dof, 3, 2, n_joint)
-      real(wp), intent(out) :: row(:, :, :, :)
+      type(joint_place_t), intent(in) :: place(:)  !! Where they are: (n_joint)
+      real(wp), intent(out) :: row(:, :, :, :)     !! The rows: (n_dof, 3, 2, n_joint)
       integer :: j, side
 
       do j = 1, size(joint)
@@ -332,10 +314,8 @@ contains
    pure subroutine mohr_coulomb(joint, law, intact, cone, shift)
       type(joint_t), intent(in) :: joint
       type(joint_law_t), intent(in) :: law
-      !> Share that is left of each contact's strength: (2)
-      real(wp), intent(in) :: intact(2)
-      !> Bounds of the force, with the cone moved by the tension
-      type(cone_t), intent(out) :: cone
+      real(wp), intent(in) :: intact(2)  !! Share that is left of each contact's strength: (2)
+      type(cone_t), intent(out) :: cone  !! Bounds of the force, with the cone moved by the tension
       !> Tension of each contact and a zero for the shear force: (3) [N/m]
       real(wp), intent(out) :: shift(3)
       real(wp) :: whole(2), cohesion

@@ -19,22 +19,18 @@ module dda_contacts
 
    !> Pairs of edges that were near, and how far their corners can go before others may be
    type :: edge_pairs_t
-      !> The pairs in the order of their blocks: (2, n_pair)
-      integer, allocatable :: pair(:, :)
-      !> Corners when they were found: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
+      integer, allocatable :: pair(:, :)     !! The pairs in the order of their blocks: (2, n_pair)
+      real(wp), allocatable :: vertex(:, :)  !! Corners when they were found: (2, n_vertex) [m]
       !> Reach of each block that they were found for, margin included: (n_block) [m]
       real(wp), allocatable :: reach(:)
    end type edge_pairs_t
 
    !> What a search needs of the scene, made once, and what it remembers
    type :: joint_search_t
-      !> How the corners follow one another
-      type(outline_t) :: outline
+      type(outline_t) :: outline  !! How the corners follow one another
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), allocatable :: law(:, :)
-      !> Where to look; joints do not depend on it
-      type(edge_pairs_t) :: near
+      type(edge_pairs_t) :: near  !! Where to look; joints do not depend on it
       !> Blocks that are not there, so that nothing meets them; unallocated if all are: (n_block)
       logical, allocatable :: absent(:)
    end type joint_search_t
@@ -149,8 +145,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Block and edge, block and edge of each joint: (4, n_joint)
       integer, intent(in) :: edge_pair(:, :)
-      !> Law of each joint: (n_joint)
-      type(joint_law_t), intent(in) :: law(:)
+      type(joint_law_t), intent(in) :: law(:)  !! Law of each joint: (n_joint)
       type(contacts_t), intent(out) :: contacts
       type(joint_t), allocatable :: joint(:)
       integer :: j
@@ -168,8 +163,7 @@ contains
    pure subroutine set_joints(joint, contacts)
       !> The joints: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
-      !> The contacts; their search is kept
-      type(contacts_t), intent(inout) :: contacts
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is kept
 
       call move_alloc(joint, contacts%joint)
       if (allocated(contacts%place)) deallocate (contacts%place)
@@ -254,10 +248,8 @@ contains
       type(block_system_t), intent(in) :: system
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> The contacts; what they carry is kept
-      type(contacts_t), intent(inout) :: contacts
+      integer, intent(in) :: n_dof                 !! Unknowns of one block
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; what they carry is kept
       type(joint_springs_t) :: before
       real(wp) :: gap(3)
       integer :: j

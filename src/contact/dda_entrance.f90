@@ -70,8 +70,7 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
-      !> Gaps wider than this are no matter [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: reach  !! Gaps wider than this are no matter [m]
       type(joint_list_t), intent(inout) :: list
       type(key_set_t) :: taken
       integer :: i
@@ -144,14 +143,11 @@ contains
    !> touched before
    pure subroutine choose_end(near, of_first, of_second, ahead, zone, corner, edge)
       type(neighbourhood_t), intent(in) :: near
-      !> Corner of the first block and edge of the second: (2)
-      integer, intent(in) :: of_first(2)
-      !> Corner of the second block and edge of the first: (2)
-      integer, intent(in) :: of_second(2)
+      integer, intent(in) :: of_first(2)   !! Corner of the first block and edge of the second: (2)
+      integer, intent(in) :: of_second(2)  !! Corner of the second block and edge of the first: (2)
       !> How far the corner of the first block lies inside the other edge [m]
       real(wp), intent(in) :: ahead
-      !> Corners that lie nearer have met [m]
-      real(wp), intent(in) :: zone
+      real(wp), intent(in) :: zone  !! Corners that lie nearer have met [m]
       integer, intent(out) :: corner, edge
       logical :: by_first
 
@@ -320,8 +316,7 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> A corner or edge of the first block and one of the second: (2)
       integer, intent(in) :: pair(2)
-      !> The joint; its blocks are set
-      type(joint_t), intent(inout) :: joint
+      type(joint_t), intent(inout) :: joint  !! The joint; its blocks are set
       type(joint_list_t), intent(inout) :: list
       type(joint_piece_t), allocatable :: more(:)
       integer :: i, k
@@ -344,8 +339,8 @@ contains
 
    !> Take all joints out of a list
    pure subroutine take_joints(list, joint)
-      type(joint_list_t), intent(inout) :: list                !! The list, empty afterwards
-      type(joint_t), allocatable, intent(out) :: joint(:)      !! The joints: (n)
+      type(joint_list_t), intent(inout) :: list            !! The list, empty afterwards
+      type(joint_t), allocatable, intent(out) :: joint(:)  !! The joints: (n)
       integer :: i, n
 
       allocate (joint(list%n))

@@ -18,8 +18,7 @@ module dda_friction_cone
 
    !> Face of the cone on which the force of a joint lies
    type :: joint_face_t
-      !> Corners that are open: (2)
-      logical :: open(2) = .false.
+      logical :: open(2) = .false.  !! Corners that are open: (2)
       !> Direction of the shear force at the Coulomb limit: -1 or 1; 0 while the joint is stuck
       integer :: slip = 0
    end type joint_face_t
@@ -38,10 +37,8 @@ module dda_friction_cone
    type :: cone_t
       !> Coefficient of friction; 0 where the limit alone bounds the shear force
       real(wp) :: friction = 0.0_wp
-      !> Shear force that the joint carries without normal force [N/m]
-      real(wp) :: limit = 0.0_wp
-      !> Whether the joint has one corner only: the second stays open
-      logical :: single = .false.
+      real(wp) :: limit = 0.0_wp   !! Shear force that the joint carries without normal force [N/m]
+      logical :: single = .false.  !! Whether the joint has one corner only: the second stays open
       !> One of `cone_kind`
       integer :: kind = cone_kind%frictional
    end type cone_t
@@ -140,8 +137,7 @@ contains
       type(joint_face_t), intent(in) :: face
       !> Projector onto the face's directions: symmetric (3, 3)
       real(wp), intent(out) :: tangent(3, 3)
-      !> Force of the face's point nearest to zero: (3) [N/m]
-      real(wp), intent(out) :: constant(3)
+      real(wp), intent(out) :: constant(3)  !! Force of the face's point nearest to zero: (3) [N/m]
       real(wp) :: normal(3), square
 
       tangent = 0.0_wp

@@ -11,30 +11,22 @@ module dda_outline
 
    !> How corners follow one another: (n_vertex) each
    type :: outline_t
-      !> Block that owns the corner
-      integer, allocatable :: block(:)
-      !> The next corner of the block, counter-clockwise
-      integer, allocatable :: next(:)
-      !> The corner before
-      integer, allocatable :: previous(:)
+      integer, allocatable :: block(:)     !! Block that owns the corner
+      integer, allocatable :: next(:)      !! The next corner of the block, counter-clockwise
+      integer, allocatable :: previous(:)  !! The corner before
       !> Unit vector along each edge where the corners are, once it is measured: (2, n_vertex)
       real(wp), allocatable :: direction(:, :)
       !> Length of each edge, once it is measured: (n_vertex) [m]
       real(wp), allocatable :: length(:)
-      !> Whether a block has no notch: (n_block)
-      logical, allocatable :: convex(:)
+      logical, allocatable :: convex(:)  !! Whether a block has no notch: (n_block)
    end type outline_t
 
    !> A corner seen from an edge
    type :: corner_view_t
-      !> Height above the edge's line; negative inside [m]
-      real(wp) :: gap = 0.0_wp
-      !> Way along the edge from its start [m]
-      real(wp) :: way = 0.0_wp
-      !> Length of the edge [m]
-      real(wp) :: length = 0.0_wp
-      !> Outward unit normal of the edge: (2)
-      real(wp) :: normal(2) = 0.0_wp
+      real(wp) :: gap = 0.0_wp        !! Height above the edge's line; negative inside [m]
+      real(wp) :: way = 0.0_wp        !! Way along the edge from its start [m]
+      real(wp) :: length = 0.0_wp     !! Length of the edge [m]
+      real(wp) :: normal(2) = 0.0_wp  !! Outward unit normal of the edge: (2)
       !> Whether the corner points to the edge, so that it is the first to touch
       logical :: faces = .false.
    end type corner_view_t

@@ -32,10 +32,8 @@ contains
    pure real(wp) function block_gap(first_vertex, vertex, block)
       !> First corner of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
-      !> Corners: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The two blocks: (2)
-      integer, intent(in) :: block(2)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
+      integer, intent(in) :: block(2)       !! The two blocks: (2)
       integer :: edge, next, side
 
       block_gap = -huge(block_gap)
@@ -71,8 +69,7 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
-      !> Gaps wider than this are no matter [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: reach  !! Gaps wider than this are no matter [m]
       type(joint_list_t), intent(inout) :: list
       type(line_t) :: line
       type(key_set_t) :: taken

@@ -47,10 +47,8 @@ contains
 
    !> Take over a file that the system has opened already
    subroutine open_descriptor(descriptor, name, file)
-      !> The system's number of the file
-      integer, intent(in) :: descriptor
-      !> Name that messages will show
-      character(len=*), intent(in) :: name
+      integer, intent(in) :: descriptor     !! The system's number of the file
+      character(len=*), intent(in) :: name  !! Name that messages will show
       !> The file; not open if there is none of that number
       type(binary_file_t), intent(out) :: file
 

@@ -23,8 +23,7 @@ module dda_c_files
       !> C: a file that the system has opened already
       function c_fdopen(descriptor, mode) bind(c, name="fdopen") result(handle)
          import :: c_char, c_int, c_ptr
-         !> The system's number of the file
-         integer(c_int), intent(in), value :: descriptor
+         integer(c_int), intent(in), value :: descriptor  !! The system's number of the file
          character(kind=c_char), intent(in) :: mode(*)
          !> The file, null if there is none of that number
          type(c_ptr) :: handle
@@ -94,8 +93,7 @@ module dda_c_files
       !> C: read items
       function c_fread(items, size, count, handle) bind(c, name="fread") result(got)
          import :: c_ptr, c_size_t
-         !> Where the items go
-         type(c_ptr), intent(in), value :: items
+         type(c_ptr), intent(in), value :: items  !! Where the items go
          integer(c_size_t), intent(in), value :: size, count
          type(c_ptr), intent(in), value :: handle
          !> Number of items read; fewer at the end of the file

@@ -41,20 +41,14 @@ module dda_deck_token
 
    !> A text and its tokens, and the place of the scanner while it works
    type :: deck_scan_t
-      !> The text, its lines ended by line feeds
-      character(len=:), allocatable :: text
-      !> Tokens in their order: (n)
-      type(token_t), allocatable :: token(:)
-      !> Number of tokens
-      integer :: n = 0
-      !> Next character to look at
-      integer :: position = 1
-      !> Line of that character
-      integer :: line = 1
+      character(len=:), allocatable :: text   !! The text, its lines ended by line feeds
+      type(token_t), allocatable :: token(:)  !! Tokens in their order: (n)
+      integer :: n = 0                        !! Number of tokens
+      integer :: position = 1                 !! Next character to look at
+      integer :: line = 1                     !! Line of that character
       !> Whether a comma stands before that character with no value between
       logical :: after_comma = .false.
-      !> Token of the group that is open; 0 between groups
-      integer :: open_group = 0
+      integer :: open_group = 0  !! Token of the group that is open; 0 between groups
    end type deck_scan_t
 
 contains
@@ -86,8 +80,7 @@ contains
 
    !> Text fit for a message: no control characters, not too long
    pure function shown(text) result(clean)
-      !> Any text
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Any text
       !> One line of at most 60 characters; each character that is not ASCII becomes one '?'
       character(len=:), allocatable :: clean
       character(len=60) :: buffer

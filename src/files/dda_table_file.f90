@@ -118,10 +118,8 @@ contains
 
    !> Begin a table with its header
    subroutine open_table(file, header, table, error)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: file
-      !> First line
-      character(len=*), intent(in) :: header
+      character(len=*), intent(in) :: file    !! Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: header  !! First line
       type(table_file_t), intent(out) :: table
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -233,8 +231,7 @@ contains
 
    !> Begin to read; a file that is not there has no lines
    subroutine open_lines(file, lines, most)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       type(table_lines_t), intent(out) :: lines
       !> How much of it is read at most [bytes]; all of it without this
       integer(int64), intent(in), optional :: most

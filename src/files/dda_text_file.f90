@@ -110,12 +110,10 @@ contains
 
    !> One kind of line end, no byte order mark, no control characters but the tab
    pure subroutine plain_text(raw, text, error)
-      !> Bytes of a file
-      character(len=*), intent(in) :: raw
+      character(len=*), intent(in) :: raw  !! Bytes of a file
       !> The text: lines end in a line feed, whether they ended in CR LF, CR or LF
       character(len=:), allocatable, intent(out) :: text
-      !> A control character, with its line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! A control character, with its line
       character(len=1), parameter :: lf = achar(10), cr = achar(13), tab = achar(9)
       character(len=3), parameter :: mark = char(239)//char(187)//char(191)
       integer :: i, n, line, code

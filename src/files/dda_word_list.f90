@@ -19,18 +19,12 @@ module dda_word_list
 
    !> Words of a text, and the one that is taken next
    type :: word_list_t
-      !> The text
-      character(len=:), allocatable :: text
-      !> Name of its file
-      character(len=:), allocatable :: file
-      !> Number of words
-      integer :: n = 0
-      !> The word that is taken next
-      integer :: next = 1
-      !> First character of each word: (n)
-      integer, allocatable :: start(:)
-      !> Last character of each word: (n)
-      integer, allocatable :: finish(:)
+      character(len=:), allocatable :: text  !! The text
+      character(len=:), allocatable :: file  !! Name of its file
+      integer :: n = 0                       !! Number of words
+      integer :: next = 1                    !! The word that is taken next
+      integer, allocatable :: start(:)       !! First character of each word: (n)
+      integer, allocatable :: finish(:)      !! Last character of each word: (n)
       !> Line of each word, and of the end of the text: (n + 1)
       integer, allocatable :: row(:)
    end type word_list_t
@@ -47,12 +41,9 @@ contains
 
    !> Find the words of a text
    pure subroutine split_words(text, file, first_row, words, also_blank)
-      !> The text; its lines end in line feeds
-      character(len=*), intent(in) :: text
-      !> Name of its file, for messages
-      character(len=*), intent(in) :: file
-      !> Line of the file where the text begins
-      integer, intent(in) :: first_row
+      character(len=*), intent(in) :: text  !! The text; its lines end in line feeds
+      character(len=*), intent(in) :: file  !! Name of its file, for messages
+      integer, intent(in) :: first_row      !! Line of the file where the text begins
       type(word_list_t), intent(out) :: words
       !> Characters that part words besides blanks, tabs and line ends
       character(len=*), intent(in), optional :: also_blank
@@ -113,10 +104,8 @@ contains
    !> Take a number
    pure subroutine take_number(words, what, value, error)
       type(word_list_t), intent(inout) :: words
-      !> What the number is, for the message
-      character(len=*), intent(in) :: what
-      !> The number
-      real(wp), intent(out) :: value
+      character(len=*), intent(in) :: what  !! What the number is, for the message
+      real(wp), intent(out) :: value        !! The number
       !> An earlier one, the end of the text, or no number
       type(error_t), allocatable, intent(inout) :: error
       logical :: ok
@@ -137,10 +126,8 @@ contains
    pure subroutine take_word_numbers(words, what, bound, value, error)
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
-      !> Largest magnitude
-      real(wp), intent(in) :: bound
-      !> The numbers: (n)
-      real(wp), intent(out) :: value(:)
+      real(wp), intent(in) :: bound      !! Largest magnitude
+      real(wp), intent(out) :: value(:)  !! The numbers: (n)
       !> An earlier one, or what is wrong with the first bad one
       type(error_t), allocatable, intent(inout) :: error
       integer :: i, row
@@ -178,12 +165,9 @@ contains
    pure subroutine take_whole(words, what, low, high, value, error)
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
-      !> Smallest value
-      integer, intent(in) :: low
-      !> Largest value
-      integer, intent(in) :: high
-      !> The number
-      integer, intent(out) :: value
+      integer, intent(in) :: low     !! Smallest value
+      integer, intent(in) :: high    !! Largest value
+      integer, intent(out) :: value  !! The number
       !> An earlier one, the end of the text, or no such number
       type(error_t), allocatable, intent(inout) :: error
       real(wp) :: number

@@ -100,13 +100,10 @@ contains
    !> Check every element of a file and mark those that are not read
    pure subroutine check_elements(tree, part, form, warnings, error)
       type(xml_tree_t), intent(inout) :: tree
-      !> Place of the part that is read
-      integer, intent(in) :: part
-      !> What may be in it
-      type(form_t), intent(in) :: form(:)
+      integer, intent(in) :: part                       !! Place of the part that is read
+      type(form_t), intent(in) :: form(:)               !! What may be in it
       type(warnings_t), intent(inout) :: warnings
-      !> What has two meanings
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! What has two meanings
       !> Entry of each element in the form: 0 for the root and the part, below 0 if it is not read
       integer, allocatable :: entry(:)
       !> Where each entry of the form was met last: (size of form)

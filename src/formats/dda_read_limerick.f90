@@ -40,8 +40,7 @@ module dda_read_limerick
          type(xml_tree_t), intent(inout) :: tree
          type(limerick_analysis_t), intent(out) :: analysis
          type(warnings_t), intent(inout) :: warnings
-         !> What is wrong, with its line
-         type(error_t), allocatable, intent(out) :: error
+         type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
       end subroutine read_ddaml_analysis
 
    end interface
@@ -60,7 +59,7 @@ contains
 
    !> Read a geometry file
    subroutine read_geometry(file, model, warnings, error)
-      character(len=*), intent(in) :: file  !! Name of the file
+      character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error  !! What is wrong, with file and line

@@ -19,14 +19,11 @@ module dda_vtu_field
 
    !> What the numbers of a field are
    type :: field_kind_enum
-      !> One real number
-      integer :: scalar = 1
-      !> x and y; written with z = 0
-      integer :: vector = 2
+      integer :: scalar = 1  !! One real number
+      integer :: vector = 2  !! x and y; written with z = 0
       !> xx, yy and xy of a symmetric tensor; written as three components of these names
       integer :: tensor = 3
-      !> One whole number; written as an integer
-      integer :: state = 4
+      integer :: state = 4  !! One whole number; written as an integer
    end type field_kind_enum
 
    !> Names of the kinds
@@ -34,10 +31,8 @@ module dda_vtu_field
 
    !> A field
    type :: field_t
-      !> Name that ParaView shows
-      character(len=64) :: name = ""
-      !> One of field_kind
-      integer :: kind = field_kind%scalar
+      character(len=64) :: name = ""       !! Name that ParaView shows
+      integer :: kind = field_kind%scalar  !! One of field_kind
       !> The numbers: (1, n), of a vector (2, n), of a tensor (3, n)
       real(wp), allocatable :: values(:, :)
    end type field_t
@@ -59,8 +54,7 @@ contains
 
    !> An attribute of an element, with a blank before it
    pure function attribute(name, value) result(text)
-      !> Its name
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Its name
       !> Its value; what XML reserves is written as XML wants it
       character(len=*), intent(in) :: value
       character(len=:), allocatable :: text
@@ -134,8 +128,7 @@ contains
    !> The contract of a field: a column of the right height for each point or cell
    pure subroutine check_field(field, n, error)
       type(field_t), intent(in) :: field
-      !> Number of points or cells
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of points or cells
       !> Allocated if the field does not fit; left as it was otherwise
       type(error_t), allocatable, intent(inout) :: error
       integer, parameter :: height(4) = [1, 2, 3, 1]

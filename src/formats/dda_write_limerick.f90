@@ -117,15 +117,12 @@ contains
 
    !> A list of DDAML
    pure function list(name, item, entities, first, last) result(text)
-      !> Name of the list
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the list
       !> Name of its elements; empty where it is Point for points and Line for lines
       character(len=*), intent(in) :: item
       type(entities_t), intent(in) :: entities
-      !> First of them
-      integer, intent(in) :: first
-      !> Last of them
-      integer, intent(in) :: last
+      integer, intent(in) :: first  !! First of them
+      integer, intent(in) :: last   !! Last of them
       !> Lines, each with its line end; empty for an empty list
       character(len=:), allocatable :: text
       character(len=:), allocatable :: kind
@@ -149,10 +146,8 @@ contains
    !> An element without text
    pure function empty(name, attribute, value, more) result(text)
       character(len=*), intent(in) :: name
-      !> Name of its attribute
-      character(len=*), intent(in) :: attribute
-      !> Value of the attribute
-      character(len=*), intent(in) :: value
+      character(len=*), intent(in) :: attribute  !! Name of its attribute
+      character(len=*), intent(in) :: value      !! Value of the attribute
       !> Further attributes, with a blank before each
       character(len=*), intent(in), optional :: more
       !> The element with its line end

@@ -25,16 +25,11 @@ module dda_xml_tags
    type :: scan_t
       !> Name of the file, for messages
       character(len=:), allocatable :: file
-      !> Next character of the text
-      integer :: next = 1
-      !> Its line
-      integer :: row = 1
-      !> Pairs of attributes of one element, over all elements
-      real :: pairs = 0.0
-      !> Names of elements and attributes at most
-      integer :: n_names = 0
-      !> Tags whose names have been counted
-      type(key_set_t) :: seen
+      integer :: next = 1      !! Next character of the text
+      integer :: row = 1       !! Its line
+      real :: pairs = 0.0      !! Pairs of attributes of one element, over all elements
+      integer :: n_names = 0   !! Names of elements and attributes at most
+      type(key_set_t) :: seen  !! Tags whose names have been counted
    end type scan_t
 
    !> What a tag says besides values
@@ -58,10 +53,8 @@ contains
 
    !> Find the tags of an XML text; what is malformed is left to the parser
    pure subroutine find_tags(text, file, tags, error)
-      !> The text; its lines end in line feeds
-      character(len=*), intent(in) :: text
-      !> Name of its file, for messages
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text  !! The text; its lines end in line feeds
+      character(len=*), intent(in) :: file  !! Name of its file, for messages
       type(xml_tags_t), intent(out) :: tags
       !> Entities, declarations, too many attributes
       type(error_t), allocatable, intent(out) :: error
@@ -202,8 +195,7 @@ contains
    pure subroutine find_outside_quotes(text, first, wanted, tag)
       character(len=*), intent(in) :: text
       integer, intent(in) :: first
-      !> The characters
-      character(len=*), intent(in) :: wanted
+      character(len=*), intent(in) :: wanted  !! The characters
       !> What was passed; it ends with one of the characters, or with the text
       type(tag_t), intent(out) :: tag
       character(len=1) :: quote

@@ -17,21 +17,15 @@ module dda_xml_tree
 
    !> An element
    type :: xml_element_t
-      !> Its name without prefix
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name  !! Its name without prefix
       !> The text inside it; of comments only the line ends, so that lines can be counted. Of an
       !> element that holds others the first piece that is not blank
       character(len=:), allocatable :: text
-      !> Line of the file where its start tag begins
-      integer :: row = 0
-      !> Line of the file where its text begins
-      integer :: text_row = 0
-      !> Place of the element that holds it; 0 for the root
-      integer :: parent = 0
-      !> Place of the last element inside it, itself if there is none
-      integer :: last = 0
-      !> Whether it has a meaning where it stands
-      logical :: is_read = .true.
+      integer :: row = 0           !! Line of the file where its start tag begins
+      integer :: text_row = 0      !! Line of the file where its text begins
+      integer :: parent = 0        !! Place of the element that holds it; 0 for the root
+      integer :: last = 0          !! Place of the last element inside it, itself if there is none
+      logical :: is_read = .true.  !! Whether it has a meaning where it stands
       !> Its attributes: (n)
       type(xml_attribute_t), allocatable :: attribute(:)
    end type xml_element_t
@@ -45,20 +39,14 @@ module dda_xml_tree
 
    !> A tree, and what is open in it
    type :: xml_builder_t
-      !> The elements so far
-      type(xml_tree_t) :: tree
-      !> Tags of the file
-      type(xml_tags_t) :: tags
-      !> How many of them have been read
-      integer :: n_tags = 0
-      !> Place of the element that is open; 0 outside the root
-      integer :: open = 0
-      !> Number of open elements
-      integer :: depth = 0
+      type(xml_tree_t) :: tree  !! The elements so far
+      type(xml_tags_t) :: tags  !! Tags of the file
+      integer :: n_tags = 0     !! How many of them have been read
+      integer :: open = 0       !! Place of the element that is open; 0 outside the root
+      integer :: depth = 0      !! Number of open elements
       !> Text behind the last tag, and room behind it
       character(len=:), allocatable :: piece
-      !> Length of that text
-      integer :: length = 0
+      integer :: length = 0  !! Length of that text
    end type xml_builder_t
 
    !> Characters that part words
@@ -173,8 +161,7 @@ contains
    !> Add an element inside the one that is open, and open it
    pure subroutine open_element(builder, name, attribute)
       type(xml_builder_t), intent(inout) :: builder
-      !> Name of the element
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the element
       !> Its attributes, which are moved into the tree: (n)
       type(xml_attribute_t), allocatable, intent(inout) :: attribute(:)
       type(xml_element_t), allocatable :: longer(:)

@@ -16,14 +16,10 @@ module dda_box_tree
 
    !> Node i holds nodes 2 i and 2 i + 1; the leaves are the last n_leaf nodes
    type :: box_tree_t
-      !> Number of leaves, a power of two
-      integer :: n_leaf = 1
-      !> Box of each leaf, 0 for none: (n_leaf)
-      integer, allocatable :: box(:)
-      !> Largest number of a box below each node: (2*n_leaf - 1)
-      integer, allocatable :: last(:)
-      !> Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
-      real(wp), allocatable :: low(:, :)
+      integer :: n_leaf = 1               !! Number of leaves, a power of two
+      integer, allocatable :: box(:)      !! Box of each leaf, 0 for none: (n_leaf)
+      integer, allocatable :: last(:)     !! Largest number of a box below each node: (2*n_leaf - 1)
+      real(wp), allocatable :: low(:, :)  !! Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
       !> Upper right corners: (2, 2*n_leaf - 1) [m]
       real(wp), allocatable :: high(:, :)
    end type box_tree_t
@@ -33,12 +29,9 @@ contains
    !> Pairs of boxes of different groups that overlap or touch, sorted. Group 0 may be large, and
    !> its boxes may lie upon one another
    pure subroutine box_pairs(low, high, group, pair)
-      !> Lower left corners: (2, n) [m]
-      real(wp), intent(in) :: low(:, :)
-      !> Upper right corners: (2, n) [m]
-      real(wp), intent(in) :: high(:, :)
-      !> Boxes of one group are not compared: (n)
-      integer, intent(in) :: group(:)
+      real(wp), intent(in) :: low(:, :)   !! Lower left corners: (2, n) [m]
+      real(wp), intent(in) :: high(:, :)  !! Upper right corners: (2, n) [m]
+      integer, intent(in) :: group(:)     !! Boxes of one group are not compared: (n)
       !> The pairs, the first smaller than the second: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       type(box_tree_t) :: tree
@@ -76,23 +69,18 @@ contains
    !> Boxes that overlap or touch another box, or meet a segment
    pure subroutine find_boxes(tree, low, high, found, n, above, last, segment, margin)
       type(box_tree_t), intent(in) :: tree
-      !> Lower left corner of the other box: (2) [m]
-      real(wp), intent(in) :: low(2)
-      !> Upper right corner: (2) [m]
-      real(wp), intent(in) :: high(2)
+      real(wp), intent(in) :: low(2)   !! Lower left corner of the other box: (2) [m]
+      real(wp), intent(in) :: high(2)  !! Upper right corner: (2) [m]
       !> Numbers of the boxes, the first n of them set; its room is used again
       integer, allocatable, intent(inout) :: found(:)
-      !> How many there are
-      integer, intent(out) :: n
-      !> Only boxes of a larger number than this
-      integer, intent(in), optional :: above
+      integer, intent(out) :: n               !! How many there are
+      integer, intent(in), optional :: above  !! Only boxes of a larger number than this
       !> Largest number below each node of those boxes that are wanted; without it all are:
       !> (2*n_leaf - 1)
       integer, intent(in), optional :: last(:)
       !> Only boxes that this segment inside the other box meets: (4) [m]
       real(wp), intent(in), optional :: segment(4)
-      !> Distance within which it does [m]
-      real(wp), intent(in), optional :: margin
+      real(wp), intent(in), optional :: margin  !! Distance within which it does [m]
       real(wp) :: wide
       integer :: stack(max_levels), top, node, least
 
@@ -270,10 +258,8 @@ contains
    pure recursive subroutine fill_leaves(centre, item, node, tree)
       !> Centres of the boxes; their order changes: (2, n) [m]
       real(wp), intent(inout) :: centre(:, :)
-      !> Numbers of the boxes, in the same order: (n)
-      integer, intent(inout) :: item(:)
-      !> The node; it has at least n leaves
-      integer, intent(in) :: node
+      integer, intent(inout) :: item(:)  !! Numbers of the boxes, in the same order: (n)
+      integer, intent(in) :: node        !! The node; it has at least n leaves
       type(box_tree_t), intent(inout) :: tree
       integer :: axis, half
 

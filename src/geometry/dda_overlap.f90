@@ -15,18 +15,13 @@ contains
    !> Whether two polygons overlap by more than a tolerance
    pure subroutine find_overlap(first, second, tolerance, overlaps, inside, point, first_tree, &
       & second_tree)
-      !> Corners of the first, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: first(:, :)
-      !> Corners of the second, counter-clockwise: (2, m) [m]
-      real(wp), intent(in) :: second(:, :)
-      !> The tolerance [m]
-      real(wp), intent(in) :: tolerance
-      !> Whether they overlap
-      logical, intent(out) :: overlaps
+      real(wp), intent(in) :: first(:, :)   !! Corners of the first, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: second(:, :)  !! Corners of the second, counter-clockwise: (2, m) [m]
+      real(wp), intent(in) :: tolerance     !! The tolerance [m]
+      logical, intent(out) :: overlaps      !! Whether they overlap
       !> Which of them lies wholly inside the other: 1, 2 or 0 for none
       integer, intent(out) :: inside
-      !> A point that both hold: (2) [m]
-      real(wp), intent(out) :: point(2)
+      real(wp), intent(out) :: point(2)  !! A point that both hold: (2) [m]
       !> Edges of the first, where they are many
       type(box_tree_t), intent(in), optional :: first_tree
       !> Edges of the second, where they are many
@@ -101,12 +96,10 @@ contains
    !> Whether a polygon holds all corners of another
    pure logical function holds_all(vertex, other, box, common, tolerance, tree)
       real(wp), intent(in) :: vertex(:, :), other(:, :)
-      !> Box around the other: (2, 2) [m]
-      real(wp), intent(in) :: box(2, 2)
+      real(wp), intent(in) :: box(2, 2)  !! Box around the other: (2, 2) [m]
       !> What is common to both boxes, and the tolerance around it: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
-      !> How far corners may lie outside [m]
-      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: tolerance  !! How far corners may lie outside [m]
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 
@@ -120,13 +113,11 @@ contains
    !> The point of one polygon's outline that lies deepest in another, of the corners and the
    !> middles of the pieces into which the lines of near edges cut its edges
    pure subroutine deepest_on_outline(outline, other, common, deepest, point, tree, other_tree)
-      !> Corners of the one: (2, n) [m]
-      real(wp), intent(in) :: outline(:, :)
+      real(wp), intent(in) :: outline(:, :)  !! Corners of the one: (2, n) [m]
       real(wp), intent(in) :: other(:, :)
       !> Where both of them can be: lower left and upper right corner: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
-      !> How deep it lies, negative outside [m]
-      real(wp), intent(out) :: deepest
+      real(wp), intent(out) :: deepest  !! How deep it lies, negative outside [m]
       real(wp), intent(out) :: point(2)
       type(box_tree_t), intent(in), optional :: tree
       !> Edges of the other, where they are many
@@ -164,12 +155,9 @@ contains
    !> Where the lines of edges cut another edge, as shares of its length, rising; its end is there
    !> twice
    pure subroutine cut_edge(vertex, ends, near, cut)
-      !> Corners of the polygon whose edges cut: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Ends of the edge that is cut: (4) [m]
-      real(wp), intent(in) :: ends(4)
-      !> Numbers of the edges: (n_near)
-      integer, intent(in) :: near(:)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners of the polygon whose edges cut: (2, n) [m]
+      real(wp), intent(in) :: ends(4)       !! Ends of the edge that is cut: (4) [m]
+      integer, intent(in) :: near(:)        !! Numbers of the edges: (n_near)
       !> The shares: (n_cut)
       real(wp), allocatable, intent(out) :: cut(:)
       real(wp) :: share(size(near) + 3), other(4), b(2), c(2), area, way

@@ -267,8 +267,7 @@ contains
       real(wp), intent(in) :: vertex(:, :), segment(4), reach
       !> Their numbers, the first n of them set; its room is used again
       integer, allocatable, intent(inout) :: near(:)
-      !> How many there are
-      integer, intent(out) :: n
+      integer, intent(out) :: n  !! How many there are
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 

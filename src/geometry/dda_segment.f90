@@ -34,14 +34,11 @@ contains
 
    !> Where the lines of two segments cross, as shares of their lengths
    pure subroutine crossing_parameters(first, second, share, crossed)
-      !> Ends of one segment: (4) [m]
-      real(wp), intent(in) :: first(4)
-      !> Ends of the other: (4) [m]
-      real(wp), intent(in) :: second(4)
+      real(wp), intent(in) :: first(4)   !! Ends of one segment: (4) [m]
+      real(wp), intent(in) :: second(4)  !! Ends of the other: (4) [m]
       !> Place of the crossing on each, 0 at the start and 1 at the end: (2)
       real(wp), intent(out) :: share(2)
-      !> Whether the lines cross at all
-      logical, intent(out) :: crossed
+      logical, intent(out) :: crossed  !! Whether the lines cross at all
       real(wp) :: a(2), b(2), arm(2), sine
 
       share = 0.0_wp

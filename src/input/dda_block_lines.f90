@@ -19,10 +19,8 @@ module dda_block_lines
    integer, parameter :: max_words = 40
    !> One line as words
    type :: line_t
-      !> Number of the line
-      integer :: number = 0
-      !> Number of words
-      integer :: n = 0
+      integer :: number = 0  !! Number of the line
+      integer :: n = 0       !! Number of words
       !> The words, a quote for the one in quotes; blanks behind them where they are fewer than
       !> three: (n or more)
       character(len=word_size), allocatable :: word(:)
@@ -46,10 +44,8 @@ contains
    !> Put an entry behind others, in as much room as it needs
    pure subroutine keep_entry(entry, list, n)
       type(entry_t), intent(in) :: entry
-      !> The others: (n or more)
-      type(entry_t), allocatable, intent(inout) :: list(:)
-      !> Their number
-      integer, intent(inout) :: n
+      type(entry_t), allocatable, intent(inout) :: list(:)  !! The others: (n or more)
+      integer, intent(inout) :: n                           !! Their number
       type(entry_t), allocatable :: longer(:)
       integer :: i
 
@@ -75,10 +71,8 @@ contains
 
    !> Part a line into words; what follows a ! is a comment. One text may stand in quotes
    pure subroutine split_line(text, number, line, error)
-      !> The line
-      character(len=*), intent(in) :: text
-      !> Its number
-      integer, intent(in) :: number
+      character(len=*), intent(in) :: text  !! The line
+      integer, intent(in) :: number         !! Its number
       type(line_t), intent(out) :: line
       !> Too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
@@ -144,10 +138,8 @@ contains
    !> Read the numbers behind a word
    pure subroutine take_numbers(line, i, number, error)
       type(line_t), intent(in) :: line
-      !> Place of the word; then the place after the numbers
-      integer, intent(inout) :: i
-      !> The numbers: (n)
-      real(wp), intent(inout) :: number(:)
+      integer, intent(inout) :: i           !! Place of the word; then the place after the numbers
+      real(wp), intent(inout) :: number(:)  !! The numbers: (n)
       !> Anything else
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
@@ -173,14 +165,10 @@ contains
    !> for a flag
    pure subroutine take_words(line, first, key, value, given, error)
       type(line_t), intent(in) :: line
-      !> Place of the first word
-      integer, intent(in) :: first
-      !> Words that may come, and what numbers they take: (n)
-      type(key_t), intent(in) :: key(:)
-      !> All their numbers: (sum of the words')
-      real(wp), intent(inout) :: value(:)
-      !> Which came: (n)
-      logical, intent(out) :: given(:)
+      integer, intent(in) :: first         !! Place of the first word
+      type(key_t), intent(in) :: key(:)    !! Words that may come, and what numbers they take: (n)
+      real(wp), intent(inout) :: value(:)  !! All their numbers: (sum of the words')
+      logical, intent(out) :: given(:)     !! Which came: (n)
       !> Another word, one that comes twice, or a number out of its range
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k, width(size(key))

@@ -262,12 +262,10 @@ contains
    !> Say which blocks overlap and where
    pure subroutine refuse_overlap(plan, block, inside, point, error)
       type(block_plan_t), intent(in) :: plan
-      !> The two blocks
-      integer, intent(in) :: block(2)
+      integer, intent(in) :: block(2)  !! The two blocks
       !> Which of them lies wholly inside the other: 1, 2 or 0 for none
       integer, intent(in) :: inside
-      !> A point that both hold: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: point(2)  !! A point that both hold: (2) [m]
       type(error_t), allocatable, intent(out) :: error
       character(len=60) :: where_to
 

@@ -51,15 +51,12 @@ contains
    !> strains linearly, so along each direction a point that is a mixture of held ones goes where
    !> the mixture of their ways leads
    pure subroutine compare_paths(held, other, more, size_of_block, contradicts, telling)
-      !> Points that are held: (n)
-      type(held_point_t), intent(in) :: held(:)
+      type(held_point_t), intent(in) :: held(:)  !! Points that are held: (n)
       !> Those of the same block that have told something: (n)
       integer, intent(in) :: other(:)
       type(held_point_t), intent(in) :: more
-      !> Size of its block [m]
-      real(wp), intent(in) :: size_of_block
-      !> Whether it cannot go its way
-      logical, intent(out) :: contradicts
+      real(wp), intent(in) :: size_of_block  !! Size of its block [m]
+      logical, intent(out) :: contradicts    !! Whether it cannot go its way
       !> Whether it tells something: those that follow need not be compared with others
       logical, intent(out) :: telling
       integer, allocatable :: same_axis(:)

@@ -283,14 +283,11 @@ contains
 
    !> Split a name such as arch%joints_deg(2)
    pure subroutine split_name(name, group, key, item, ok)
-      !> The name
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! The name
       !> Group, lower case; empty if the name has none
       character(len=:), allocatable, intent(out) :: group
-      !> Key, lower case
-      character(len=:), allocatable, intent(out) :: key
-      !> Item of a list; 0 if the name has none
-      integer, intent(out) :: item
+      character(len=:), allocatable, intent(out) :: key  !! Key, lower case
+      integer, intent(out) :: item                       !! Item of a list; 0 if the name has none
       !> Whether what stands in parentheses, if they are there, is a number from 1
       logical, intent(out) :: ok
       integer :: percent, open

@@ -82,8 +82,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> What is wrong; left as it was if nothing is
       character(len=:), allocatable, intent(inout) :: problem
-      !> The key at fault, 0 if one is missing
-      integer, intent(inout) :: key
+      integer, intent(inout) :: key  !! The key at fault, 0 if one is missing
       logical, dimension(ground_amplitude:ground_unit) :: needed, fits
       character(len=:), allocatable :: what, name
       integer :: i

@@ -32,36 +32,25 @@ module dda_deck_key
 
    !> One key of a deck
    type :: key_t
-      !> Group that the key belongs to
-      character(len=16) :: group = ""
-      !> Name of the key
-      character(len=name_length) :: name = ""
-      !> One of key_kind
-      integer :: kind = key_kind%number
-      !> Unit of the value; empty if it has none
-      character(len=8) :: unit = ""
+      character(len=16) :: group = ""          !! Group that the key belongs to
+      character(len=name_length) :: name = ""  !! Name of the key
+      integer :: kind = key_kind%number        !! One of key_kind
+      character(len=8) :: unit = ""            !! Unit of the value; empty if it has none
       !> Default as one would write it in a deck; empty if there is none
       character(len=24) :: default = ""
-      !> What happens without the key where it has no default
-      character(len=56) :: without = ""
+      character(len=56) :: without = ""  !! What happens without the key where it has no default
       !> Smallest and largest value that is allowed: (2)
       real(wp) :: within(2) = [-huge(1.0_wp), huge(1.0_wp)]
-      !> Bound of these that the value must exceed
-      real(wp) :: above = -huge(1.0_wp)
-      !> Bound of these that the value must stay below
-      real(wp) :: below = huge(1.0_wp)
-      !> Words that are allowed, separated by blanks
-      character(len=72) :: words = ""
+      real(wp) :: above = -huge(1.0_wp)  !! Bound of these that the value must exceed
+      real(wp) :: below = huge(1.0_wp)   !! Bound of these that the value must stay below
+      character(len=72) :: words = ""    !! Words that are allowed, separated by blanks
       !> Whether &sweep may name the key; &search may, if it is also a real number
       logical :: varies = .true.
       !> Whether its name alone means it where groups share the name
       logical :: bare = .true.
-      !> Lower end of a search that gives none
-      real(wp) :: search_low = -huge(1.0_wp)
-      !> Upper end of a search that gives none
-      real(wp) :: search_high = huge(1.0_wp)
-      !> What the key means, in one sentence
-      character(len=100) :: meaning = ""
+      real(wp) :: search_low = -huge(1.0_wp)  !! Lower end of a search that gives none
+      real(wp) :: search_high = huge(1.0_wp)  !! Upper end of a search that gives none
+      character(len=100) :: meaning = ""      !! What the key means, in one sentence
    end type key_t
 
    !> One group of a deck
@@ -186,14 +175,10 @@ contains
 
    !> The key that was meant
    pure function near_key(name, group, keys, topic) result(text)
-      !> Name that is no key of the group
-      character(len=*), intent(in) :: name
-      !> Name of the group; empty if any group will do
-      character(len=*), intent(in) :: group
-      !> Keys of the registry
-      type(key_t), intent(in) :: keys(:)
-      !> Page of the help that lists them
-      character(len=*), intent(in) :: topic
+      character(len=*), intent(in) :: name   !! Name that is no key of the group
+      character(len=*), intent(in) :: group  !! Name of the group; empty if any group will do
+      type(key_t), intent(in) :: keys(:)     !! Keys of the registry
+      character(len=*), intent(in) :: topic  !! Page of the help that lists them
       !> Sentence that names the group of that key, or the nearest key
       character(len=:), allocatable :: text
       logical :: fits(size(keys))
@@ -212,8 +197,7 @@ contains
    !> The word that was meant, of those that a key takes
    pure function near_word(key, text) result(near)
       type(key_t), intent(in) :: key
-      !> Word that the key does not take
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Word that the key does not take
       !> Words after a colon that name the nearest one; empty for a key that takes no words
       character(len=:), allocatable :: near
       character(len=word_length) :: list(len(key%words)/2)
@@ -234,10 +218,8 @@ contains
 
    !> A word of a list that is much like another
    pure function near_one(word, list) result(near)
-      !> Word that is not on the list
-      character(len=*), intent(in) :: word
-      !> Words to choose from: (n)
-      character(len=*), intent(in) :: list(:)
+      character(len=*), intent(in) :: word     !! Word that is not on the list
+      character(len=*), intent(in) :: list(:)  !! Words to choose from: (n)
       !> Words after a colon that name it; empty if more than half of the letters differ
       character(len=:), allocatable :: near
 
@@ -284,8 +266,7 @@ contains
    pure integer function edit_distance(a, b)
       !> First word; only its beginning counts where it is very long
       character(len=*), intent(in) :: a
-      !> Second word
-      character(len=*), intent(in) :: b
+      character(len=*), intent(in) :: b  !! Second word
       integer :: row(0:len(b)), diagonal, above, i, j
 
       row = [(j, j=0, len(b))]

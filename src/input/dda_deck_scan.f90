@@ -19,8 +19,7 @@ contains
 
    !> Cut a deck into tokens
    pure subroutine scan_deck(text, scan, error)
-      !> Text of the deck, lines ended by line feeds
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Text of the deck, lines ended by line feeds
       type(deck_scan_t), intent(out) :: scan
       !> What the grammar does not allow, with its line
       type(error_t), allocatable, intent(out) :: error

@@ -257,8 +257,7 @@ contains
    !> Values of the swept parameters in a case, as text
    pure function swept_texts(deck, number) result(texts)
       type(deck_t), intent(in) :: deck
-      !> Number of the case
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the case
       !> One text a sweep; numbers read back as the same doubles: (n)
       character(len=word_length) :: texts(size(deck%sweeps))
       integer :: position(size(deck%sweeps)), s
@@ -279,10 +278,8 @@ contains
    pure subroutine choose_cases(text, total, chosen, error)
       !> Numbers and ranges parted by commas, such as 1-500,812; empty for all cases
       character(len=*), intent(in) :: text
-      !> Number of cases of the deck
-      integer, intent(in) :: total
-      !> Whether a case is chosen: (total)
-      logical, allocatable, intent(out) :: chosen(:)
+      integer, intent(in) :: total                    !! Number of cases of the deck
+      logical, allocatable, intent(out) :: chosen(:)  !! Whether a case is chosen: (total)
       !> Not such a list, or a case that the deck does not have
       type(error_t), allocatable, intent(out) :: error
       integer :: first, comma, low, high

@@ -25,16 +25,11 @@ contains
 
    !> Read all groups of a text
    pure subroutine read_groups(text, file, groups, keys, topic, group, error)
-      !> The text, lines ended by line feeds
-      character(len=*), intent(in) :: text
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> Groups that there are
-      type(group_t), intent(in) :: groups(:)
-      !> Keys that there are, group by group
-      type(key_t), intent(in) :: keys(:)
-      !> Page of the help that lists them
-      character(len=*), intent(in) :: topic
+      character(len=*), intent(in) :: text    !! The text, lines ended by line feeds
+      character(len=*), intent(in) :: file    !! Name of the file
+      type(group_t), intent(in) :: groups(:)  !! Groups that there are
+      type(key_t), intent(in) :: keys(:)      !! Keys that there are, group by group
+      character(len=*), intent(in) :: topic   !! Page of the help that lists them
       !> The groups of the text, in their order
       type(key_group_t), allocatable, intent(out) :: group(:)
       type(error_t), allocatable, intent(out) :: error
@@ -82,20 +77,15 @@ contains
    !> Read one key and its values
    pure subroutine read_entry(scan, i, group, keys, topic, value, problem, line)
       type(deck_scan_t), intent(in) :: scan
-      !> Token of the key; then the token after its values
-      integer, intent(inout) :: i
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Keys of the registry
-      type(key_t), intent(in) :: keys(:)
-      !> Page of the help that lists them
-      character(len=*), intent(in) :: topic
+      integer, intent(inout) :: i            !! Token of the key; then the token after its values
+      character(len=*), intent(in) :: group  !! Name of the group
+      type(key_t), intent(in) :: keys(:)     !! Keys of the registry
+      character(len=*), intent(in) :: topic  !! Page of the help that lists them
       !> Values by the places of their keys; those of other groups may be missing
       type(deck_value_t), allocatable, intent(inout) :: value(:)
       !> What is wrong, and what to do; empty if nothing is
       character(len=:), allocatable, intent(out) :: problem
-      !> Where it is
-      integer, intent(out) :: line
+      integer, intent(out) :: line  !! Where it is
       integer :: first, key
 
       line = scan%token(i)%line
@@ -125,9 +115,9 @@ contains
    pure subroutine find_key(keys, group, name, topic, key, problem)
       type(key_t), intent(in) :: keys(:)
       character(len=*), intent(in) :: group
-      character(len=*), intent(in) :: name   !! Name of the key
+      character(len=*), intent(in) :: name  !! Name of the key
       character(len=*), intent(in) :: topic
-      integer, intent(out) :: key            !! Place in the registry
+      integer, intent(out) :: key           !! Place in the registry
       character(len=:), allocatable, intent(out) :: problem
       integer :: open
 
@@ -146,15 +136,11 @@ contains
    !> Read the values of one key
    pure subroutine read_value(scan, first, last, keys, key, item, place, value, problem)
       type(deck_scan_t), intent(in) :: scan
-      !> First token of the values
-      integer, intent(in) :: first
-      !> Last token; one before the first if there are none
-      integer, intent(in) :: last
+      integer, intent(in) :: first  !! First token of the values
+      integer, intent(in) :: last   !! Last token; one before the first if there are none
       type(key_t), intent(in) :: keys(:)
-      !> Place of the key among them
-      integer, intent(in) :: key
-      !> The item of its list, if only that one is set; else 0
-      integer, intent(in) :: item
+      integer, intent(in) :: key    !! Place of the key among them
+      integer, intent(in) :: item   !! The item of its list, if only that one is set; else 0
       !> Where the key stands
       type(deck_place_t), intent(in) :: place
       !> Receives the value, and where it stands, or what is wrong with it
@@ -194,8 +180,7 @@ contains
       type(key_t), intent(in) :: keys(:)
       integer, intent(in) :: key, item
       type(deck_place_t), intent(in) :: place
-      !> Where the first is that will not do
-      type(deck_place_t), intent(out) :: at
+      type(deck_place_t), intent(out) :: at  !! Where the first is that will not do
       !> Why it will not do; empty if all will
       character(len=:), allocatable, intent(out) :: problem
       character(len=:), allocatable :: found

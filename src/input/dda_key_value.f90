@@ -13,22 +13,17 @@ module dda_key_value
 
    !> Where a value was written
    type :: deck_place_t
-      !> Line of the deck, or number of the --set; 0 for a default
-      integer :: line = 0
+      integer :: line = 0  !! Line of the deck, or number of the --set; 0 for a default
       !> Whether it came from a --set
       logical :: from_command = .false.
    end type deck_place_t
 
    !> Value of one key
    type :: deck_value_t
-      !> Whether the deck, a --set or a sweep gives it
-      logical :: given = .false.
-      !> Where
-      type(deck_place_t) :: place
-      !> Number, whole numbers too
-      real(wp) :: number = 0.0_wp
-      !> Flag
-      logical :: flag = .false.
+      logical :: given = .false.   !! Whether the deck, a --set or a sweep gives it
+      type(deck_place_t) :: place  !! Where
+      real(wp) :: number = 0.0_wp  !! Number, whole numbers too
+      logical :: flag = .false.    !! Flag
       !> Text, words too; unallocated where the key takes none
       character(len=:), allocatable :: text
       !> List of numbers; unallocated where the key takes none: (n)

@@ -29,18 +29,14 @@ module dda_model_table
 
    !> Keys that are searched alike
    type :: search_t
-      !> Their group
-      character(len=16) :: group = ""
+      character(len=16) :: group = ""  !! Their group
       !> Their names, parted by blanks; all others of the group if there are none
       character(len=160) :: names = ""
       !> Kinds of scene%kind with mode = 'static' in which they are searched, parted by blanks
       character(len=24) :: static = ""
-      !> Likewise with mode = 'dynamic'
-      character(len=24) :: dynamic = ""
-      !> Likewise with mode = 'limerick'
-      character(len=24) :: limerick = ""
-      !> Why not in the others
-      character(len=60) :: why = ""
+      character(len=24) :: dynamic = ""   !! Likewise with mode = 'dynamic'
+      character(len=24) :: limerick = ""  !! Likewise with mode = 'limerick'
+      character(len=60) :: why = ""       !! Why not in the others
    end type search_t
 
    !> All modes and geometries

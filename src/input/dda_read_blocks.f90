@@ -47,16 +47,12 @@ module dda_read_blocks
 
    !> What has been read of a file
    type :: reading_t
-      !> Name of the file
-      character(len=:), allocatable :: file
-      !> Blocks, materials and laws so far
-      type(growing_plan_t) :: growing
-      !> The entry that is being read
-      type(entry_t) :: entry
+      character(len=:), allocatable :: file  !! Name of the file
+      type(growing_plan_t) :: growing        !! Blocks, materials and laws so far
+      type(entry_t) :: entry                 !! The entry that is being read
       !> Entries of points, kept until all blocks are known: (n_later or more)
       type(entry_t), allocatable :: later(:)
-      !> Number of these
-      integer :: n_later = 0
+      integer :: n_later = 0  !! Number of these
    end type reading_t
 
    interface
@@ -104,8 +100,7 @@ module dda_read_blocks
       !> Check a plan as a whole and move its origin to where coordinates keep their digits
       pure module subroutine check_plan(plan, file, warnings, error)
          type(block_plan_t), intent(inout) :: plan
-         !> Name of the file, for warnings
-         character(len=*), intent(in) :: file
+         character(len=*), intent(in) :: file  !! Name of the file, for warnings
          type(warnings_t), intent(inout) :: warnings
          !> Allocated if there is no block, or one material or law too few or too many
          type(error_t), allocatable, intent(out) :: error

@@ -55,8 +55,7 @@ module dda_read_deck
          type(deck_t), intent(in) :: deck
          !> Cases that will be computed, as choose_cases reads them; empty for all
          character(len=*), intent(in) :: cases
-         !> The first thing that is wrong
-         type(error_t), allocatable, intent(out) :: error
+         type(error_t), allocatable, intent(out) :: error  !! The first thing that is wrong
       end subroutine check_deck
 
    end interface

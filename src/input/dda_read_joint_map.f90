@@ -293,12 +293,9 @@ contains
    !> Points of two lists
    pure subroutine take_points(group, x_key, y_key, least, point, error)
       type(key_group_t), intent(in) :: group
-      !> Places of the keys
-      integer, intent(in) :: x_key, y_key
-      !> Fewest points
-      integer, intent(in) :: least
-      !> The points: (2, n) [m]
-      real(wp), allocatable, intent(out) :: point(:, :)
+      integer, intent(in) :: x_key, y_key                !! Places of the keys
+      integer, intent(in) :: least                       !! Fewest points
+      real(wp), allocatable, intent(out) :: point(:, :)  !! The points: (2, n) [m]
       !> Lists of unequal lengths, or too short ones
       type(error_t), allocatable, intent(out) :: error
 

@@ -24,14 +24,11 @@ contains
 
    !> Read a record
    subroutine read_record(file, column, scale, row, mark, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       !> Columns of time, x and y: numbers from 1, 0 for none, or names of the header: (3)
       character(len=*), intent(in) :: column(3)
-      !> What the two components are multiplied by
-      real(wp), intent(in) :: scale
-      !> Time and components: (3, n)
-      real(wp), allocatable, intent(out) :: row(:, :)
+      real(wp), intent(in) :: scale                    !! What the two components are multiplied by
+      real(wp), allocatable, intent(out) :: row(:, :)  !! Time and components: (3, n)
       !> Length and check sums of the file
       character(len=:), allocatable, intent(out) :: mark
       !> Bad input, with file and line; without a line if the file cannot be read
@@ -108,8 +105,7 @@ contains
    !> One field of a line: between commas if there are any, else between blanks
    pure function field_of(line, number) result(field)
       character(len=*), intent(in) :: line
-      !> Its number, from 1
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Its number, from 1
       !> The field without blanks and double quotes around it; empty if there is none
       character(len=:), allocatable :: field
       character(len=2), parameter :: blanks = " "//achar(9)

@@ -11,12 +11,9 @@ module dda_joint_map
 
    !> How a length is spread about its mean
    type :: length_law_enum
-      !> Not at all
-      integer :: constant = 1
-      !> Evenly, by the randomness on either side
-      integer :: uniform = 2
-      !> Negative exponential
-      integer :: exponential = 3
+      integer :: constant = 1     !! Not at all
+      integer :: uniform = 2      !! Evenly, by the randomness on either side
+      integer :: exponential = 3  !! Negative exponential
       !> Normal, with the randomness as coefficient of variation, cut off at 0 and at twice the mean
       integer :: normal = 4
    end type length_law_enum
@@ -47,94 +44,67 @@ module dda_joint_map
 
    !> A set of joints
    type :: joint_set_t
-      !> Angle of the joints, anticlockwise from x [rad]
-      real(wp) :: dip = 0.0_wp
-      !> Largest deviation of a joint from it, evenly spread [rad]
-      real(wp) :: dip_spread = 0.0_wp
-      !> Distance between neighbours
-      type(length_t) :: spacing
-      !> Length of a trace; joints without end where its mean is 0
-      type(length_t) :: trace
-      !> Rock between two traces of a joint
-      type(length_t) :: bridge
-      !> Number of the joint material
-      integer :: material = 1
+      real(wp) :: dip = 0.0_wp         !! Angle of the joints, anticlockwise from x [rad]
+      real(wp) :: dip_spread = 0.0_wp  !! Largest deviation of a joint from it, evenly spread [rad]
+      type(length_t) :: spacing        !! Distance between neighbours
+      type(length_t) :: trace          !! Length of a trace; joints without end where its mean is 0
+      type(length_t) :: bridge         !! Rock between two traces of a joint
+      integer :: material = 1          !! Number of the joint material
       !> What chooses the random numbers of the set: seed and stream (2)
       integer :: seed(2) = 0
-      !> Whether one joint of the set runs through a given point
-      logical :: anchored = .false.
-      !> That point, or the origin of the set: (2) [m]
-      real(wp) :: anchor(2) = 0.0_wp
+      logical :: anchored = .false.   !! Whether one joint of the set runs through a given point
+      real(wp) :: anchor(2) = 0.0_wp  !! That point, or the origin of the set: (2) [m]
       !> Corners of the region of the set; without any it is the whole outline: (2, n) [m]
       real(wp), allocatable :: region(:, :)
-      !> Line of the file
-      integer :: row = 0
+      integer :: row = 0  !! Line of the file
    end type joint_set_t
 
    !> An opening
    type :: opening_t
-      !> Corners, anticlockwise: (2, n) [m]
-      real(wp), allocatable :: corner(:, :)
-      !> Number of the joint material of its edges
-      integer :: material = 1
+      real(wp), allocatable :: corner(:, :)  !! Corners, anticlockwise: (2, n) [m]
+      integer :: material = 1                !! Number of the joint material of its edges
       !> Whether it is there from the beginning; joints run through one that is not
       logical :: excavated = .true.
-      !> Line of the file
-      integer :: row = 0
+      integer :: row = 0  !! Line of the file
    end type opening_t
 
    !> A line or a point that is placed by hand
    type :: map_line_t
       !> One of map_role
       integer :: role = map_role%joint
-      !> Ends, one and the same for a point: (4) [m]
-      real(wp) :: ends(4) = 0.0_wp
-      !> Number of its material, or of the properties of a bolt
-      integer :: material = 1
-      !> Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]
-      real(wp) :: bolt(3) = 0.0_wp
-      !> Line of the file
-      integer :: row = 0
+      real(wp) :: ends(4) = 0.0_wp  !! Ends, one and the same for a point: (4) [m]
+      integer :: material = 1       !! Number of its material, or of the properties of a bolt
+      real(wp) :: bolt(3) = 0.0_wp  !! Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]
+      integer :: row = 0            !! Line of the file
    end type map_line_t
 
    !> Bolts in a pattern around an opening
    type :: bolts_t
-      !> Number of the opening
-      integer :: opening = 1
-      !> Number of bolts
-      integer :: number = 0
+      integer :: opening = 1  !! Number of the opening
+      integer :: number = 0   !! Number of bolts
       !> Directions of the first and of the last, seen from the opening's centre: (2) [rad]
       real(wp) :: fan(2) = 0.0_wp
       !> Their length, and how deep inside the rock they begin: (2) [m]
       real(wp) :: reach(2) = 0.0_wp
-      !> Stiffness, strength and prestress: (3) [N/m, N, N]
-      real(wp) :: property(3) = 0.0_wp
-      !> Line of the file
-      integer :: row = 0
+      real(wp) :: property(3) = 0.0_wp  !! Stiffness, strength and prestress: (3) [N/m, N, N]
+      integer :: row = 0                !! Line of the file
    end type bolts_t
 
    !> All of a map
    type :: joint_map_t
-      !> Name of the file, for messages
-      character(len=:), allocatable :: file
-      !> Shi's e00
-      real(wp) :: edge_node_ratio = 0.0_wp
+      character(len=:), allocatable :: file  !! Name of the file, for messages
+      real(wp) :: edge_node_ratio = 0.0_wp   !! Shi's e00
       !> Corners of the outline, anticlockwise: (2, n) [m]
       real(wp), allocatable :: outline(:, :)
-      !> Number of the joint material of the outline
-      integer :: outline_material = 1
-      !> Sides whose blocks are held: left, right, bottom (3)
-      logical :: held_side(3) = .false.
+      integer :: outline_material = 1    !! Number of the joint material of the outline
+      logical :: held_side(3) = .false.  !! Sides whose blocks are held: left, right, bottom (3)
       !> How far from the side the line that holds them runs [m]
       real(wp) :: hold_depth = 0.0_wp
-      !> Sets of joints
-      type(joint_set_t), allocatable :: set(:)
+      type(joint_set_t), allocatable :: set(:)  !! Sets of joints
       !> Openings
       type(opening_t), allocatable :: opening(:)
-      !> Lines and points placed by hand
-      type(map_line_t), allocatable :: line(:)
-      !> Bolts around openings
-      type(bolts_t), allocatable :: bolts(:)
+      type(map_line_t), allocatable :: line(:)  !! Lines and points placed by hand
+      type(bolts_t), allocatable :: bolts(:)    !! Bolts around openings
    end type joint_map_t
 
 contains
@@ -171,12 +141,10 @@ contains
    !> A horseshoe: half a circle above, walls that draw in to the floor on arcs of twice its radius
    pure function horseshoe(middle, radius, wall, n) result(corner)
       real(wp), intent(in) :: middle(2)
-      !> Radius of the roof [m]
-      real(wp), intent(in) :: radius
+      real(wp), intent(in) :: radius  !! Radius of the roof [m]
       !> Height of the roof's centre above the floor, less than twice the radius [m]
       real(wp), intent(in) :: wall
-      !> Number of edges of the roof; each wall has half as many
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of edges of the roof; each wall has half as many
       real(wp), allocatable :: corner(:, :)
       real(wp) :: centre(2), fall, right(2, max(1, n/2) + 1), left(2, max(1, n/2) + 1)
       integer :: m

@@ -34,13 +34,11 @@ module dda_map_lines
       !> Traces of a set that meet a circle
       pure module subroutine set_traces(set, centre, radius, trace, n)
          type(joint_set_t), intent(in) :: set
-         !> Centre of the circle: (2) [m]
-         real(wp), intent(in) :: centre(2)
+         real(wp), intent(in) :: centre(2)  !! Centre of the circle: (2) [m]
          real(wp), intent(in) :: radius
          !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
          real(wp), allocatable, intent(out) :: trace(:, :)
-         !> Their number
-         integer, intent(out) :: n
+         integer, intent(out) :: n  !! Their number
       end subroutine set_traces
 
       !> A length by its law
@@ -259,11 +257,9 @@ contains
    pure subroutine clip_line(line, n, corner, inside)
       !> Columns of ends, replaced by those of the parts: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: line(:, :)
-      !> Their number
-      integer, intent(inout) :: n
+      integer, intent(inout) :: n    !! Their number
       real(wp), intent(in) :: corner(:, :)
-      !> Whether the parts inside are kept
-      logical, intent(in) :: inside
+      logical, intent(in) :: inside  !! Whether the parts inside are kept
       real(wp), allocatable :: part(:, :)
       integer :: i, m
 
@@ -278,14 +274,12 @@ contains
 
    !> The parts of one line
    pure subroutine clip_one(line, corner, inside, part, m)
-      !> Its ends: (4) [m]
-      real(wp), intent(in) :: line(4)
+      real(wp), intent(in) :: line(4)  !! Its ends: (4) [m]
       real(wp), intent(in) :: corner(:, :)
       logical, intent(in) :: inside
       !> Receives columns of ends: (4, m or more) [m]
       real(wp), allocatable, intent(inout) :: part(:, :)
-      !> Their number
-      integer, intent(inout) :: m
+      integer, intent(inout) :: m  !! Their number
       real(wp), allocatable :: share(:)
       real(wp) :: along(2), start
       integer :: k

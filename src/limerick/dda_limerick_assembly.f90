@@ -22,14 +22,10 @@ module dda_limerick_assembly
    type :: limerick_equations_t
       !> Coupled blocks that the pattern was made for: (2, n_pair)
       integer, allocatable :: pair(:, :)
-      !> The matrix
-      type(block_matrix_t) :: matrix
-      !> Its factor
-      type(block_factor_t) :: factor
-      !> What the blocks give to the matrix: (6, 6, n_block)
-      real(wp), allocatable :: base(:, :, :)
-      !> What they give to the right-hand side: (6, n_block)
-      real(wp), allocatable :: load(:, :)
+      type(block_matrix_t) :: matrix          !! The matrix
+      type(block_factor_t) :: factor          !! Its factor
+      real(wp), allocatable :: base(:, :, :)  !! What the blocks give to the matrix: (6, 6, n_block)
+      real(wp), allocatable :: load(:, :)     !! What they give to the right-hand side: (6, n_block)
       !> Entries of the matrix that couple the blocks of the bolts, 0 for the ground: (n_bolt)
       integer, allocatable :: bolt_entry(:)
       !> Stiffness of each bolt between the block of the row and that of the column:
@@ -121,8 +117,7 @@ contains
    pure subroutine assemble_limerick(model, blocks, march, equations)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The march; its time step is the step's
-      type(limerick_march_t), intent(in) :: march
+      type(limerick_march_t), intent(in) :: march  !! The march; its time step is the step's
       !> The equations; base and load are set
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: mass(n_unknown, n_unknown), rate
@@ -207,8 +202,7 @@ contains
       type(contact_list_t), intent(in) :: contacts
       type(contact_spring_t), intent(in) :: spring(:)
       type(limerick_march_t), intent(in) :: march
-      !> Whether nothing was solved in this step yet
-      logical, intent(in) :: first_pass
+      logical, intent(in) :: first_pass  !! Whether nothing was solved in this step yet
       !> The equations; matrix and motion are set
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: damper
@@ -251,16 +245,12 @@ contains
    !> One spring between two blocks, and a damper beside it (Ke 1995)
    pure subroutine add_spring(contact, spring, stiffness, damper, row, start, equations)
       type(limerick_contact_t), intent(in) :: contact
-      !> Where it stands in the matrix
-      type(contact_spring_t), intent(in) :: spring
-      !> Stiffness [N/m2]
-      real(wp), intent(in) :: stiffness
+      type(contact_spring_t), intent(in) :: spring  !! Where it stands in the matrix
+      real(wp), intent(in) :: stiffness             !! Stiffness [N/m2]
       !> Force of the damper over its elongation in the step [N/m2]
       real(wp), intent(in) :: damper
-      !> Length of the spring per unknown: (6, 2)
-      real(wp), intent(in) :: row(:, :)
-      !> Its length at the beginning of the step [m]
-      real(wp), intent(in) :: start
+      real(wp), intent(in) :: row(:, :)  !! Length of the spring per unknown: (6, 2)
+      real(wp), intent(in) :: start      !! Its length at the beginning of the step [m]
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: both
 
@@ -296,8 +286,7 @@ contains
       type(limerick_model_t), intent(in) :: model
       type(limerick_contact_t), intent(in) :: contact
       type(contact_spring_t), intent(in) :: spring
-      !> Stiffness of the contacts in the last solution [N/m2]
-      real(wp), intent(in) :: penalty
+      real(wp), intent(in) :: penalty  !! Stiffness of the contacts in the last solution [N/m2]
       !> Right-hand side: (6, n_block)
       real(wp), intent(inout) :: load(:, :)
       real(wp) :: friction

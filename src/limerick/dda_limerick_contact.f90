@@ -49,20 +49,13 @@ module dda_limerick_contact
 
    !> Springs of one contact at the beginning of a step: opening and slip from the unknowns
    type :: contact_spring_t
-      !> Opening per unknown: (6, first and second block, line)
-      real(wp) :: normal(6, 2, 2)
-      !> Slip per unknown: (6, first and second block)
-      real(wp) :: along(6, 2)
-      !> Friction on the edge's block per unit of force: (6)
-      real(wp) :: drag(6)
-      !> Opening at the beginning of the step: (line) [m]
-      real(wp) :: gap(2)
-      !> Slip at the beginning of the step [m]
-      real(wp) :: shear
-      !> Length of the first line's edge [m]
-      real(wp) :: edge_length
-      !> Entry of the two blocks in the matrix
-      integer :: entry
+      real(wp) :: normal(6, 2, 2)  !! Opening per unknown: (6, first and second block, line)
+      real(wp) :: along(6, 2)      !! Slip per unknown: (6, first and second block)
+      real(wp) :: drag(6)          !! Friction on the edge's block per unit of force: (6)
+      real(wp) :: gap(2)           !! Opening at the beginning of the step: (line) [m]
+      real(wp) :: shear            !! Slip at the beginning of the step [m]
+      real(wp) :: edge_length      !! Length of the first line's edge [m]
+      integer :: entry             !! Entry of the two blocks in the matrix
       !> Whether the rows of that entry are those of the contact's first block
       logical :: first_is_row
    end type contact_spring_t
@@ -174,8 +167,7 @@ contains
 
    !> Take over from one contact of the step before, if it is the same
    pure subroutine inherit(from, to, keeps_place)
-      !> The contact of the step before, closed
-      type(limerick_contact_t), intent(in) :: from
+      type(limerick_contact_t), intent(in) :: from  !! The contact of the step before, closed
       type(limerick_contact_t), intent(inout) :: to
       !> Becomes true if the shear spring stays where it was set
       logical, intent(inout) :: keeps_place

@@ -20,14 +20,11 @@ module dda_limerick_model
 
    !> What a block is made of, and how it begins
    type, extends(material_t) :: limerick_material_t
-      !> Weight per volume [N/m3]
-      real(wp) :: unit_weight = 0.0_wp
-      !> Stress at height 0: sx, sy, txy (3) [Pa]
-      real(wp) :: stress(3) = 0.0_wp
+      real(wp) :: unit_weight = 0.0_wp  !! Weight per volume [N/m3]
+      real(wp) :: stress(3) = 0.0_wp    !! Stress at height 0: sx, sy, txy (3) [Pa]
       !> Growth of that stress with height: (3) [Pa/m]
       real(wp) :: stress_gradient(3) = 0.0_wp
-      !> Velocity u, v and of the rotation: (3) [m/s, m/s, rad/s]
-      real(wp) :: velocity(3) = 0.0_wp
+      real(wp) :: velocity(3) = 0.0_wp  !! Velocity u, v and of the rotation: (3) [m/s, m/s, rad/s]
    end type limerick_material_t
 
    !> Everything that a run is told
@@ -60,14 +57,11 @@ module dda_limerick_model
 
    !> States of a contact
    type :: limerick_state_enum
-      !> No spring
-      integer :: open = 0
+      integer :: open = 0  !! No spring
       !> A normal spring, and friction; of two corners: a normal spring at the first line
       integer :: sliding = 1
-      !> A normal and a shear spring
-      integer :: locked = 2
-      !> Of two corners: a normal spring at the second line
-      integer :: second_line = 3
+      integer :: locked = 2       !! A normal and a shear spring
+      integer :: second_line = 3  !! Of two corners: a normal spring at the second line
    end type limerick_state_enum
 
    !> Names of the states
@@ -77,66 +71,44 @@ module dda_limerick_model
    type :: limerick_blocks_t
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> Block of each vertex: (n_vertex)
-      integer, allocatable :: owner(:)
+      integer, allocatable :: owner(:)  !! Block of each vertex: (n_vertex)
       !> The vertex after each one round its block: (n_vertex)
       integer, allocatable :: next(:)
-      !> The vertex before each one: (n_vertex)
-      integer, allocatable :: previous(:)
-      !> Corners: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
-      !> Area: (n_block) [m2]
-      real(wp), allocatable :: area(:)
-      !> Centre of gravity: (2, n_block) [m]
-      real(wp), allocatable :: centroid(:, :)
+      integer, allocatable :: previous(:)      !! The vertex before each one: (n_vertex)
+      real(wp), allocatable :: vertex(:, :)    !! Corners: (2, n_vertex) [m]
+      real(wp), allocatable :: area(:)         !! Area: (n_block) [m2]
+      real(wp), allocatable :: centroid(:, :)  !! Centre of gravity: (2, n_block) [m]
       !> Central second moments Sxx, Syy, Sxy: (3, n_block) [m4]
       real(wp), allocatable :: second(:, :)
-      !> Stress sx, sy, txy: (3, n_block) [Pa]
-      real(wp), allocatable :: stress(:, :)
-      !> Rotation since the beginning: (n_block) [rad]
-      real(wp), allocatable :: rotation(:)
-      !> Rates of the unknowns: (n_unknown, n_block)
-      real(wp), allocatable :: velocity(:, :)
-      !> Fixed points: (2, n_fixed) [m]
-      real(wp), allocatable :: fixed_point(:, :)
+      real(wp), allocatable :: stress(:, :)       !! Stress sx, sy, txy: (3, n_block) [Pa]
+      real(wp), allocatable :: rotation(:)        !! Rotation since the beginning: (n_block) [rad]
+      real(wp), allocatable :: velocity(:, :)     !! Rates of the unknowns: (n_unknown, n_block)
+      real(wp), allocatable :: fixed_point(:, :)  !! Fixed points: (2, n_fixed) [m]
       !> How far each has drifted from where it was fixed: (2, n_fixed) [m]
       real(wp), allocatable :: fixed_drift(:, :)
-      !> Load points: (2, n_load) [m]
-      real(wp), allocatable :: load_point(:, :)
-      !> Ends of the bolts: (2, 2, n_bolt) [m]
-      real(wp), allocatable :: bolt_point(:, :, :)
+      real(wp), allocatable :: load_point(:, :)     !! Load points: (2, n_load) [m]
+      real(wp), allocatable :: bolt_point(:, :, :)  !! Ends of the bolts: (2, 2, n_bolt) [m]
       !> Force of each, positive where it pulls: (n_bolt) [N]
       real(wp), allocatable :: bolt_force(:)
-      !> Measured points: (2, n_measured) [m]
-      real(wp), allocatable :: measured_point(:, :)
+      real(wp), allocatable :: measured_point(:, :)  !! Measured points: (2, n_measured) [m]
    end type limerick_blocks_t
 
    !> Numbers of the march of steps
    type :: limerick_march_t
-      !> Half the larger side of the model (w0) [m]
-      real(wp) :: half_size = 0.0_wp
-      !> Distance within which contacts are sought (d0) [m]
-      real(wp) :: reach = 0.0_wp
-      !> Mean area of the blocks at the beginning [m2]
-      real(wp) :: mean_area = 0.0_wp
-      !> Stiffness of the springs at the fixed points [N/m2]
-      real(wp) :: fixed_stiffness = 0.0_wp
-      !> Stiffness of the contacts in the next solution [N/m2]
-      real(wp) :: penalty = 0.0_wp
-      !> Stiffness of the contacts in the last solution [N/m2]
-      real(wp) :: used_penalty = 0.0_wp
+      real(wp) :: half_size = 0.0_wp        !! Half the larger side of the model (w0) [m]
+      real(wp) :: reach = 0.0_wp            !! Distance within which contacts are sought (d0) [m]
+      real(wp) :: mean_area = 0.0_wp        !! Mean area of the blocks at the beginning [m2]
+      real(wp) :: fixed_stiffness = 0.0_wp  !! Stiffness of the springs at the fixed points [N/m2]
+      real(wp) :: penalty = 0.0_wp          !! Stiffness of the contacts in the next solution [N/m2]
+      real(wp) :: used_penalty = 0.0_wp     !! Stiffness of the contacts in the last solution [N/m2]
       !> Deepest penetration of the last step over the half size; 0 with a fixed penalty
       real(wp) :: penetration = 0.0_wp
-      !> Length of the step [s]
-      real(wp) :: time_step = 0.0_wp
-      !> Time at the end of the last accepted step [s]
-      real(wp) :: time = 0.0_wp
+      real(wp) :: time_step = 0.0_wp  !! Length of the step [s]
+      real(wp) :: time = 0.0_wp       !! Time at the end of the last accepted step [s]
       !> Largest motion of a vertex in the step over what is allowed
       real(wp) :: displacement_ratio = 0.0_wp
-      !> Accepted steps
-      integer :: steps = 0
-      !> Passes of the open-close loop, each of one factorisation
-      integer :: passes = 0
+      integer :: steps = 0   !! Accepted steps
+      integer :: passes = 0  !! Passes of the open-close loop, each of one factorisation
    end type limerick_march_t
 
 contains

@@ -105,8 +105,7 @@ contains
       type(limerick_constants_t), intent(in) :: constants
       type(joint_law_t), intent(in) :: law
       type(limerick_march_t), intent(in) :: march
-      !> Slip since the shear spring was set [m]
-      real(wp), intent(in) :: slip
+      real(wp), intent(in) :: slip  !! Slip since the shear spring was set [m]
       !> The contact of a vertex and an edge, closed; state and slip are set
       type(limerick_contact_t), intent(inout) :: contact
       real(wp) :: last, strength

@@ -15,14 +15,11 @@ module dda_limerick_run
 
    !> How a run can end
    type :: limerick_verdict_enum
-      !> Not known
-      integer :: undecided = 0
+      integer :: undecided = 0  !! Not known
       !> At rest, or still below the collapse displacement when the steps are spent
       integer :: stable = 1
-      !> A vertex moved by the collapse displacement
-      integer :: collapsed = 2
-      !> A dynamic run that reached its last step
-      integer :: completed = 3
+      integer :: collapsed = 2  !! A vertex moved by the collapse displacement
+      integer :: completed = 3  !! A dynamic run that reached its last step
    end type limerick_verdict_enum
 
    !> Names of the verdicts

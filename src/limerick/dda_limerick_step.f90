@@ -19,22 +19,15 @@ module dda_limerick_step
 
    !> Everything that a run carries from step to step
    type :: limerick_run_t
-      !> The blocks
-      type(limerick_blocks_t) :: blocks
-      !> Contacts of the last step
-      type(contact_list_t) :: contacts
-      !> Numbers of the march
-      type(limerick_march_t) :: march
-      !> Work space: contacts of the step before
-      type(contact_list_t) :: before
-      !> Work space: springs of the contacts
-      type(contact_spring_t), allocatable :: spring(:)
-      !> Work space: the equations
-      type(limerick_equations_t) :: equations
+      type(limerick_blocks_t) :: blocks                 !! The blocks
+      type(contact_list_t) :: contacts                  !! Contacts of the last step
+      type(limerick_march_t) :: march                   !! Numbers of the march
+      type(contact_list_t) :: before                    !! Work space: contacts of the step before
+      type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
+      type(limerick_equations_t) :: equations           !! Work space: the equations
       !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
       real(wp), allocatable :: moved(:, :)
-      !> Work space: blocks from left to right: (n_block)
-      integer, allocatable :: order(:)
+      integer, allocatable :: order(:)  !! Work space: blocks from left to right: (n_block)
    end type limerick_run_t
 
    !> Most attempts at one step: the original has no such bound and may loop forever
@@ -44,10 +37,8 @@ module dda_limerick_step
    type :: corners_t
       !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
       real(wp), allocatable :: direction(:)
-      !> Inner angle: (n_vertex) [deg]
-      real(wp), allocatable :: angle(:)
-      !> Length of the edge that starts there: (n_vertex) [m]
-      real(wp), allocatable :: length(:)
+      real(wp), allocatable :: angle(:)   !! Inner angle: (n_vertex) [deg]
+      real(wp), allocatable :: length(:)  !! Length of the edge that starts there: (n_vertex) [m]
    end type corners_t
 
    interface
@@ -98,10 +89,8 @@ module dda_limerick_step
       !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
       pure module subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
          type(limerick_blocks_t), intent(in) :: blocks
-         !> Distance within which contacts are sought [m]
-         real(wp), intent(in) :: reach
-         !> Overlap of two corners that is overlooked [deg]
-         real(wp), intent(in) :: overlap_deg
+         real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
+         real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
          !> Blocks from left to right, as near as the step before left them: (n_block)
          integer, intent(inout) :: order(:)
          type(contact_list_t), intent(inout) :: list
@@ -245,12 +234,10 @@ contains
    pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
-      !> Whether they settled
-      logical, intent(in) :: settled
+      logical, intent(in) :: settled  !! Whether they settled
       !> The march; time step, penalty and penetration are set
       type(limerick_march_t), intent(inout) :: march
-      !> Whether the step stands
-      logical, intent(out) :: accepted
+      logical, intent(out) :: accepted  !! Whether the step stands
       real(wp) :: shortest
       logical :: moved_too_far
 

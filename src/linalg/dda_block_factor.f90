@@ -24,10 +24,8 @@ module dda_block_factor
 
    !> Factor of a block matrix
    type :: block_factor_t
-      !> Which numbers there are
-      type(elimination_plan_t) :: plan
-      !> The numbers
-      type(panels_t) :: panels
+      type(elimination_plan_t) :: plan  !! Which numbers there are
+      type(panels_t) :: panels          !! The numbers
       !> Whether the factor can be used: the matrix was positive definite, or if it is not
       !> symmetric, no pivot was zero
       logical :: usable = .false.
@@ -42,8 +40,7 @@ contains
    pure subroutine plan_factor(matrix, factor)
       !> The matrix, of which the pattern counts; three or six unknowns a block
       type(block_matrix_t), intent(in) :: matrix
-      !> The factor, without numbers
-      type(block_factor_t), intent(out) :: factor
+      type(block_factor_t), intent(out) :: factor  !! The factor, without numbers
 
       call plan_panels(matrix, factor%plan)
       call new_panels(factor%plan, matrix%symmetric, factor%panels)
@@ -53,8 +50,7 @@ contains
    !> factor that is not usable
    pure subroutine factorise(matrix, factor, changed)
       type(block_matrix_t), intent(in) :: matrix
-      !> Its factor, laid out for its pattern
-      type(block_factor_t), intent(inout) :: factor
+      type(block_factor_t), intent(inout) :: factor  !! Its factor, laid out for its pattern
       !> Blocks whose diagonal block or couplings have changed since the factor was usable; all if
       !> it is not given: (n_block)
       logical, intent(in), optional :: changed(:)
@@ -91,8 +87,7 @@ contains
    pure subroutine substitute(factor, x)
       !> Usable factor
       type(block_factor_t), intent(in) :: factor
-      !> Right-hand side in, solution out: (n_dof, n_block)
-      real(wp), intent(inout) :: x(:, :)
+      real(wp), intent(inout) :: x(:, :)  !! Right-hand side in, solution out: (n_dof, n_block)
       real(wp) :: y(3, size(factor%panels%pivot, 2) + factor%plan%highest)
       integer :: b, k
 

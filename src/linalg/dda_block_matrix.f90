@@ -11,16 +11,13 @@ module dda_block_matrix
 
    !> An order of elimination; a place is one in this order
    type :: elimination_t
-      !> Place of each block: (n_block)
-      integer, allocatable :: place(:)
+      integer, allocatable :: place(:)  !! Place of each block: (n_block)
       !> First coupling of each row, and one beyond the last: (n_block + 1)
       integer, allocatable :: first(:)
-      !> Columns of the couplings, row by row: (n_entry)
-      integer, allocatable :: column(:)
+      integer, allocatable :: column(:)  !! Columns of the couplings, row by row: (n_entry)
       !> The column that each column is eliminated into first; 0 for a root: (n_block)
       integer, allocatable :: parent(:)
-      !> Rows below the diagonal of each column: (n_block)
-      integer, allocatable :: below(:)
+      integer, allocatable :: below(:)  !! Rows below the diagonal of each column: (n_block)
    end type elimination_t
 
    !> Diagonal blocks and the blocks below the diagonal of the coupled pairs
@@ -170,12 +167,9 @@ contains
    pure subroutine set_pattern(matrix, n_dof, n_block, pair, symmetric)
       !> The matrix; its numbers are not set
       type(block_matrix_t), intent(out) :: matrix
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Coupled blocks, both between 1 and n_block: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
+      integer, intent(in) :: n_dof       !! Unknowns of one block
+      integer, intent(in) :: n_block     !! Number of blocks
+      integer, intent(in) :: pair(:, :)  !! Coupled blocks, both between 1 and n_block: (2, n_entry)
       !> Whether the numbers will be symmetric; they are if it is not given
       logical, intent(in), optional :: symmetric
       integer :: i

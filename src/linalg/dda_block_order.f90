@@ -41,24 +41,19 @@ module dda_block_order
    type :: dissection_t
       !> First entry of each block's list of neighbours, and one beyond: (n_block + 1)
       integer, allocatable :: start(:)
-      !> Lists of neighbours
-      integer, allocatable :: neighbour(:)
-      !> Blocks in the order of elimination: (n_block)
-      integer, allocatable :: order(:)
+      integer, allocatable :: neighbour(:)  !! Lists of neighbours
+      integer, allocatable :: order(:)      !! Blocks in the order of elimination: (n_block)
       !> First place of each block's group in the order, 0 for a block that has its place: (n_block)
       integer, allocatable :: group(:)
       !> Step at which the search reached each block; -1 before: (n_block)
       integer, allocatable :: level(:)
       !> Steps from each corner of its group to a block: (n_block, n_corner)
       integer, allocatable :: steps(:, :)
-      !> Blocks in the order of the search: (n_block)
-      integer, allocatable :: queue(:)
+      integer, allocatable :: queue(:)  !! Blocks in the order of the search: (n_block)
       !> First and last place of each group that waits: (2, n_block)
       integer, allocatable :: waiting(:, :)
-      !> Number of groups that wait
-      integer :: n_waiting = 0
-      !> Groups of no more blocks are not parted
-      integer :: smallest = 0
+      integer :: n_waiting = 0  !! Number of groups that wait
+      integer :: smallest = 0   !! Groups of no more blocks are not parted
    end type dissection_t
 
 contains
@@ -329,10 +324,8 @@ contains
    !> The cut between two levels of a group that costs the least: blocks on one side of it that meet
    !> the other side lie between the parts
    pure subroutine cut_between(block, least, d, part)
-      !> The group
-      integer, intent(in) :: block(:)
-      !> Cost of the best cut in, and out
-      real, intent(inout) :: least
+      integer, intent(in) :: block(:)  !! The group
+      real, intent(inout) :: least     !! Cost of the best cut in, and out
       type(dissection_t), intent(in) :: d
       !> Receives 1 and 2 for the two sides, 3 for what is between, if the cut is better
       integer, intent(inout) :: part(:)

@@ -94,13 +94,11 @@ contains
 
    !> Group columns: a panel takes the one before it in where that saves work
    pure subroutine choose_panels(n_triple, elimination, first, panel)
-      !> Triples of one block
-      integer, intent(in) :: n_triple
+      integer, intent(in) :: n_triple  !! Triples of one block
       type(elimination_t), intent(in) :: elimination
       !> First column of each panel, and one beyond the last: (n_panel + 1)
       integer, allocatable, intent(out) :: first(:)
-      !> Panel of each column: (n_block)
-      integer, intent(out) :: panel(:)
+      integer, intent(out) :: panel(:)  !! Panel of each column: (n_block)
       integer :: head(size(panel) + 1), j, m, n, parent
       real(wp) :: cost(size(panel)), joint
 

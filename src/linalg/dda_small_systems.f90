@@ -91,10 +91,8 @@ contains
    !> The x that makes |A x - b| least, by modified Gram-Schmidt with the largest column first
    !> (Golub and Van Loan, Matrix Computations, 5.2.8 and 5.4.1)
    pure function least_squares(a, b, drop) result(x)
-      !> Matrix A: (m, n)
-      real(wp), intent(in) :: a(:, :)
-      !> Right-hand side: (m)
-      real(wp), intent(in) :: b(:)
+      real(wp), intent(in) :: a(:, :)  !! Matrix A: (m, n)
+      real(wp), intent(in) :: b(:)     !! Right-hand side: (m)
       !> Columns of which less than this share of the largest is left take no part
       real(wp), intent(in) :: drop
       !> Solution, 0 for columns that take no part: (n)
@@ -136,12 +134,9 @@ contains
    pure subroutine substitute_back(r, order, z, x)
       !> Row i is that of the column taken as the i-th; entries stand in the columns of A: (n, n)
       real(wp), intent(in) :: r(:, :)
-      !> Columns of A in the order in which they were taken: (rank)
-      integer, intent(in) :: order(:)
-      !> Right-hand side: (n)
-      real(wp), intent(in) :: z(:)
-      !> Solution: (n)
-      real(wp), intent(out) :: x(:)
+      integer, intent(in) :: order(:)  !! Columns of A in the order in which they were taken: (rank)
+      real(wp), intent(in) :: z(:)     !! Right-hand side: (n)
+      real(wp), intent(out) :: x(:)    !! Solution: (n)
       integer :: i
 
       x = 0.0_wp

@@ -30,20 +30,14 @@ module dda_cut_model
 
    !> Why a part of a line bounds no block
    type :: cut_reason_enum
-      !> The line has no length
-      integer :: point = 1
-      !> The line meets fewer than two others
-      integer :: loose_line = 2
-      !> The part ends in nothing
-      integer :: loose_edge = 3
-      !> The part lies on a part of another line
-      integer :: doubled = 4
+      integer :: point = 1       !! The line has no length
+      integer :: loose_line = 2  !! The line meets fewer than two others
+      integer :: loose_edge = 3  !! The part ends in nothing
+      integer :: doubled = 4     !! The part lies on a part of another line
       !> The part crosses another line although they have no node in common
       integer :: crossing = 5
-      !> The part passes a node of other lines too closely
-      integer :: too_close = 6
-      !> The lines enclose a block without area
-      integer :: flat = 7
+      integer :: too_close = 6  !! The part passes a node of other lines too closely
+      integer :: flat = 7       !! The lines enclose a block without area
    end type cut_reason_enum
 
    !> Names of the reasons
@@ -75,14 +69,11 @@ module dda_cut_model
 
    !> A point that belongs to a block
    type :: block_point_t
-      !> One of point_kind
-      integer :: kind = 0
-      !> Number of the block
-      integer :: block = 0
+      integer :: kind = 0   !! One of point_kind
+      integer :: block = 0  !! Number of the block
       !> Number of the point, or of the fixed line, among those of its kind in the file
       integer :: source = 0
-      !> Where it is, from the origin of the cut: (2) [m]
-      real(wp) :: place(2) = 0.0_wp
+      real(wp) :: place(2) = 0.0_wp  !! Where it is, from the origin of the cut: (2) [m]
    end type block_point_t
 
    !> Two edges of two blocks that lie together, wholly or in part
@@ -97,14 +88,11 @@ module dda_cut_model
 
    !> A bolt between two blocks
    type :: cut_bolt_t
-      !> The blocks, 0 for the ground: (2)
-      integer :: block(2) = 0
-      !> Its ends, from the origin of the cut: (4) [m]
-      real(wp) :: place(4) = 0.0_wp
+      integer :: block(2) = 0        !! The blocks, 0 for the ground: (2)
+      real(wp) :: place(4) = 0.0_wp  !! Its ends, from the origin of the cut: (4) [m]
       !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
       real(wp) :: property(3) = 0.0_wp
-      !> Line of the file
-      integer :: row = 0
+      integer :: row = 0  !! Line of the file
    end type cut_bolt_t
 
    !> The blocks
@@ -113,40 +101,29 @@ module dda_cut_model
       type(cut_scale_t) :: scale
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> Corners, anticlockwise: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
+      real(wp), allocatable :: vertex(:, :)  !! Corners, anticlockwise: (2, n_vertex) [m]
       !> Joint material of the edge from each vertex to the next: (n_vertex)
       integer, allocatable :: edge_joint(:)
-      !> Area of each block: (n_block) [m2]
-      real(wp), allocatable :: area(:)
-      !> Material of each block: (n_block)
-      integer, allocatable :: material(:)
+      real(wp), allocatable :: area(:)     !! Area of each block: (n_block) [m2]
+      integer, allocatable :: material(:)  !! Material of each block: (n_block)
       !> Fixed points, then load points, then measured points: (n_point)
       type(block_point_t), allocatable :: point(:)
-      !> Bolts: (n_bolt)
-      type(cut_bolt_t), allocatable :: bolt(:)
-      !> Edges that lie together: (n_pair)
-      type(edge_pair_t), allocatable :: pair(:)
-      !> What was dropped
-      type(cut_remarks_t) :: remarks
+      type(cut_bolt_t), allocatable :: bolt(:)   !! Bolts: (n_bolt)
+      type(edge_pair_t), allocatable :: pair(:)  !! Edges that lie together: (n_pair)
+      type(cut_remarks_t) :: remarks             !! What was dropped
       !> Crossings that became a node that was there already at another place
       integer :: n_merged = 0
-      !> Bolts left out, as both ends lie in one block
-      integer :: n_idle_bolts = 0
-      !> Blocks taken out because of hole points
-      integer :: n_removed = 0
+      integer :: n_idle_bolts = 0  !! Bolts left out, as both ends lie in one block
+      integer :: n_removed = 0     !! Blocks taken out because of hole points
    end type cut_model_t
 
    !> Corners to be
    type :: corners_t
-      !> How many there are
-      integer :: n = 0
-      !> Their places: (2, n or more) [m]
-      real(wp), allocatable :: point(:, :)
+      integer :: n = 0                      !! How many there are
+      real(wp), allocatable :: point(:, :)  !! Their places: (2, n or more) [m]
       !> The vertex that begins the edge on which each lies: (n or more)
       integer, allocatable :: edge(:)
-      !> How far along that edge: (n or more) [m]
-      real(wp), allocatable :: along(:)
+      real(wp), allocatable :: along(:)  !! How far along that edge: (n or more) [m]
    end type corners_t
 
 contains
@@ -317,10 +294,8 @@ contains
       type(cut_model_t), intent(in) :: split
       !> First new edge of each old one, and one beyond the last: (n_old + 1)
       integer, intent(in) :: start(:)
-      !> The old edge
-      integer, intent(in) :: old
-      !> The place: (2) [m]
-      real(wp), intent(in) :: place(2)
+      integer, intent(in) :: old        !! The old edge
+      real(wp), intent(in) :: place(2)  !! The place: (2) [m]
       integer, intent(in) :: block
       real(wp) :: nearest, here
       integer :: k

@@ -116,16 +116,12 @@ contains
    pure subroutine add_points(model, entities, what, kind, boxes, cut, point, n, error)
       type(line_model_t), intent(in) :: model
       type(entities_t), intent(in) :: entities
-      !> What a point is called
-      character(len=*), intent(in) :: what
-      !> One of point_kind
-      integer, intent(in) :: kind
+      character(len=*), intent(in) :: what                         !! What a point is called
+      integer, intent(in) :: kind                                  !! One of point_kind
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
-      !> Receives the points
-      type(block_point_t), allocatable, intent(inout) :: point(:)
-      !> Number of points
-      integer, intent(inout) :: n
+      type(block_point_t), allocatable, intent(inout) :: point(:)  !! Receives the points
+      integer, intent(inout) :: n                                  !! Number of points
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: place(2)
       integer :: b, before, i
@@ -266,7 +262,7 @@ contains
       character(len=*), intent(in) :: what  !! What the thing is called
       type(line_model_t), intent(in) :: model
       type(entities_t), intent(in) :: entities
-      integer, intent(in) :: i  !! Number of the thing in its list
+      integer, intent(in) :: i              !! Number of the thing in its list
 
       call fatal_error(error, "expected a "//what//" inside a block, got one at (" &
          & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &

@@ -47,8 +47,7 @@ module dda_cutting
       !> the one that is no boundary, else that of the later line (Shi: dc06)
       pure module subroutine drop_crossing_edges(network, scale, remarks, crossing)
          type(network_t), intent(inout) :: network
-         !> Scales of the cut
-         type(cut_scale_t), intent(in) :: scale
+         type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
          type(cut_remarks_t), intent(inout) :: remarks
          !> Two boundary lines that still cross; 0 if none do: (2)
          integer, intent(out) :: crossing(2)
@@ -108,8 +107,7 @@ module dda_cutting
       pure module subroutine blocks_of_loops(network, loops, joint, cut)
          type(network_t), intent(in) :: network
          type(loops_t), intent(in) :: loops
-         !> Joint material of each line: (n_line)
-         integer, intent(in) :: joint(:)
+         integer, intent(in) :: joint(:)  !! Joint material of each line: (n_line)
          !> Receives corners, edges and pairs of edges; its scales are set
          type(cut_model_t), intent(inout) :: cut
       end subroutine blocks_of_loops

@@ -9,40 +9,30 @@ module dda_line_model
 
    !> Segments or points of one kind, in the order of the file
    type :: entities_t
-      !> How many there are
-      integer :: n = 0
+      integer :: n = 0  !! How many there are
       !> Ends x1, y1, x2, y2; a point has both ends in one place: (4, n or more) [m]
       real(wp), allocatable :: place(:, :)
       !> Material of the joint or of the blocks, where the kind has one: (n or more)
       integer, allocatable :: material(:)
-      !> Line of the file: (n or more)
-      integer, allocatable :: row(:)
+      integer, allocatable :: row(:)  !! Line of the file: (n or more)
    end type entities_t
 
    !> Everything that a geometry file says
    type :: line_model_t
-      !> Name of the file, for messages
-      character(len=:), allocatable :: file
+      character(len=:), allocatable :: file  !! Name of the file, for messages
       !> Shi's e00: nodes closer than this, times the size of the model, become one
       real(wp) :: edge_node_ratio = 0.0_wp
       !> So many of the first lines are boundary lines, which are never deleted
       integer :: n_boundary = 0
-      !> Boundary lines, then joints, with the material of the joint
-      type(entities_t) :: line
+      type(entities_t) :: line  !! Boundary lines, then joints, with the material of the joint
       !> Lines that give blocks their material
       type(entities_t) :: material_line
-      !> Lines, or points, that hold blocks
-      type(entities_t) :: fixed
-      !> Points where forces act
-      type(entities_t) :: load
-      !> Points that are followed
-      type(entities_t) :: measured
-      !> Points whose blocks are taken out
-      type(entities_t) :: hole
-      !> Points of seismic records, which nothing uses yet
-      type(entities_t) :: seismic
-      !> Bolts
-      type(entities_t) :: bolt
+      type(entities_t) :: fixed     !! Lines, or points, that hold blocks
+      type(entities_t) :: load      !! Points where forces act
+      type(entities_t) :: measured  !! Points that are followed
+      type(entities_t) :: hole      !! Points whose blocks are taken out
+      type(entities_t) :: seismic   !! Points of seismic records, which nothing uses yet
+      type(entities_t) :: bolt      !! Bolts
       !> Stiffness, strength and prestress of each: (3, n or more); below 0 where the analysis
       !> file says them
       real(wp), allocatable :: bolt_property(:, :)
@@ -76,12 +66,10 @@ contains
    !> Add a bolt
    pure subroutine add_bolt(model, place, property, row)
       type(line_model_t), intent(inout) :: model
-      !> Its ends: (4) [m]
-      real(wp), intent(in) :: place(4)
+      real(wp), intent(in) :: place(4)  !! Its ends: (4) [m]
       !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
       real(wp), intent(in) :: property(3)
-      !> Line of the file
-      integer, intent(in) :: row
+      integer, intent(in) :: row  !! Line of the file
 
       call add_entity(model%bolt, place, 0, row)
       call make_room(model%bolt_property, model%bolt%n)

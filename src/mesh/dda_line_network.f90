@@ -20,26 +20,20 @@ module dda_line_network
 
    !> Points that two lines have in common, by the numbers of the lines
    type :: crossings_t
-      !> How many there are
-      integer :: n = 0
-      !> The two lines, the smaller number first: (2, n or more)
-      integer, allocatable :: line(:, :)
+      integer :: n = 0                    !! How many there are
+      integer, allocatable :: line(:, :)  !! The two lines, the smaller number first: (2, n or more)
       !> The points: (2, n or more) [m]
       real(wp), allocatable :: point(:, :)
    end type crossings_t
 
    !> Nodes, and edges between neighbouring nodes of a line
    type :: network_t
-      !> Nodes: (2, n_node) [m]
-      real(wp), allocatable :: node(:, :)
+      real(wp), allocatable :: node(:, :)  !! Nodes: (2, n_node) [m]
       !> First and second node of each edge, along its line: (2, n_edge)
       integer, allocatable :: edge(:, :)
-      !> Line of each edge: (n_edge)
-      integer, allocatable :: line(:)
-      !> Edges that were not dropped: (n_edge)
-      logical, allocatable :: alive(:)
-      !> The first lines, so many, are boundaries
-      integer :: n_boundary = 0
+      integer, allocatable :: line(:)   !! Line of each edge: (n_edge)
+      logical, allocatable :: alive(:)  !! Edges that were not dropped: (n_edge)
+      integer :: n_boundary = 0         !! The first lines, so many, are boundaries
       !> Crossings that became a node that was there already at another place
       integer :: n_merged = 0
    end type network_t
@@ -105,12 +99,9 @@ contains
 
    !> Crossings to nodes, lines to edges
    pure subroutine join_crossings(line, n_boundary, scale, crossings, network, remarks)
-      !> Ends of the lines: (4, n_line) [m]
-      real(wp), intent(in) :: line(:, :)
-      !> Number of boundary lines, the first ones
-      integer, intent(in) :: n_boundary
-      !> Scales of the cut
-      type(cut_scale_t), intent(in) :: scale
+      real(wp), intent(in) :: line(:, :)      !! Ends of the lines: (4, n_line) [m]
+      integer, intent(in) :: n_boundary       !! Number of boundary lines, the first ones
+      type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
       type(crossings_t), intent(in) :: crossings
       type(network_t), intent(out) :: network
       !> Receives the lines that make no edge, and edges that are there twice

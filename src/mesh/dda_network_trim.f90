@@ -43,8 +43,7 @@ contains
       type(network_t), intent(in) :: network
       !> First item of each node, and one beyond the last: (n_node + 1)
       integer, allocatable, intent(out) :: first(:)
-      !> Numbers of edges
-      integer, allocatable, intent(out) :: item(:)
+      integer, allocatable, intent(out) :: item(:)  !! Numbers of edges
       integer, allocatable :: next(:)
       integer :: e, k, node
 
@@ -198,10 +197,8 @@ contains
    !> corner before it to the next node (Shi: dc09)
    pure subroutine corners_of_loop(network, half_edge, reach, corner)
       type(network_t), intent(in) :: network
-      !> The half-edges of the loop: (n)
-      integer, intent(in) :: half_edge(:)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
+      integer, intent(in) :: half_edge(:)  !! The half-edges of the loop: (n)
+      real(wp), intent(in) :: reach        !! Distance within which things touch [m]
       !> Half-edges of the loop that start at a corner: (n_corner)
       integer, allocatable, intent(out) :: corner(:)
       real(wp), allocatable :: node(:, :)
@@ -263,10 +260,8 @@ contains
    pure subroutine add_corners(network, half_edge, corner, joint, block, n_vertex, cut, owner)
       type(network_t), intent(in) :: network
       integer, intent(in) :: half_edge(:), corner(:), joint(:)
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Number of vertices so far
-      integer, intent(inout) :: n_vertex
+      integer, intent(in) :: block        !! Number of the block
+      integer, intent(inout) :: n_vertex  !! Number of vertices so far
       type(cut_model_t), intent(inout) :: cut
       !> Receives block and edge of each half-edge: (2, n_half_edge)
       integer, intent(inout) :: owner(:, :)

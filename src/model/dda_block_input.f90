@@ -13,26 +13,21 @@ module dda_block_input
 
    !> What a file says of a material; what it leaves out is that of the deck
    type :: material_plan_t
-      !> Number of the material, from 2; 1 is that of the deck
-      integer :: number = 0
+      integer :: number = 0  !! Number of the material, from 2; 1 is that of the deck
       !> Density, unit weight, Young's modulus, Poisson's ratio, compressive strength: (5)
       !> [kg/m3, N/m3, Pa, -, Pa]
       real(wp) :: value(5) = 0.0_wp
-      !> Which of them are given: (5)
-      logical :: given(5) = .false.
+      logical :: given(5) = .false.  !! Which of them are given: (5)
    end type material_plan_t
 
    !> What a file says of the joints between two materials
    type :: law_plan_t
-      !> Numbers of the two materials: (2)
-      integer :: material(2) = 0
+      integer :: material(2) = 0  !! Numbers of the two materials: (2)
       !> Friction angle, cohesion, tensile strength, friction angle of what has slid, slip over
       !> which strength goes: (5) [deg, Pa, Pa, deg, m]
       real(wp) :: value(5) = 0.0_wp
-      !> Which of them are given: (5)
-      logical :: given(5) = .false.
-      !> Line of the file
-      integer :: line = 0
+      logical :: given(5) = .false.  !! Which of them are given: (5)
+      integer :: line = 0            !! Line of the file
    end type law_plan_t
 
    !> Blocks and what is said of them
@@ -105,10 +100,8 @@ contains
    pure subroutine tie(leader, first, second)
       !> A block that each follows, itself at the end: (0:n_block)
       integer, intent(inout) :: leader(0:)
-      !> One block
-      integer, intent(in) :: first
-      !> The other
-      integer, intent(in) :: second
+      integer, intent(in) :: first   !! One block
+      integer, intent(in) :: second  !! The other
       integer :: a, b
 
       a = first

@@ -63,10 +63,8 @@ contains
    pure function new_block_system(first_vertex, vertex, fixed, material) result(system)
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
-      !> Corners, counter-clockwise: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Blocks that cannot move: (n_block)
-      logical, intent(in) :: fixed(:)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n_vertex) [m]
+      logical, intent(in) :: fixed(:)       !! Blocks that cannot move: (n_block)
       type(material_t), intent(in) :: material
       type(block_system_t) :: system
       type(area_moments_t) :: moments

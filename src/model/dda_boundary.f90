@@ -28,14 +28,11 @@ module dda_boundary
 
    !> A force on a point of a block; it goes with the point and keeps its direction
    type :: loaded_point_t
-      !> Number of the block
-      integer :: block = 0
-      !> Where the point is in the reference shape: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
+      integer :: block = 0           !! Number of the block
+      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
       !> The force; of a live load, at a load factor of one [N per metre depth]
       type(history_t) :: force
-      !> Whether the load factor multiplies it
-      logical :: live = .false.
+      logical :: live = .false.  !! Whether the load factor multiplies it
    end type loaded_point_t
 
    !> A point of a block whose motion is told
@@ -55,21 +52,15 @@ module dda_boundary
 
    !> A point of a face that lets waves out: a dashpot across the face and one along it
    type :: absorbing_point_t
-      !> Number of the block
-      integer :: block = 0
-      !> Where the point is in the reference shape: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
-      !> Unit vector along the face: (2)
-      real(wp) :: tangent(2) = 0.0_wp
-      !> Length of the face that it stands for [m]
-      real(wp) :: length = 0.0_wp
+      integer :: block = 0             !! Number of the block
+      real(wp) :: point(2) = 0.0_wp    !! Where the point is in the reference shape: (2) [m]
+      real(wp) :: tangent(2) = 0.0_wp  !! Unit vector along the face: (2)
+      real(wp) :: length = 0.0_wp      !! Length of the face that it stands for [m]
       !> Speed of waves across the face and along it; 0 for those of the block's material:
       !> (2) [m/s]
       real(wp) :: speed(2) = 0.0_wp
-      !> Whether it absorbs along x and along y: (2)
-      logical :: along(2) = .true.
-      !> Line of the file
-      integer :: line = 0
+      logical :: along(2) = .true.  !! Whether it absorbs along x and along y: (2)
+      integer :: line = 0           !! Line of the file
    end type absorbing_point_t
 
    !> A block that is built or taken away
@@ -82,18 +73,12 @@ module dda_boundary
 
    !> All of a scene; an array that is not allocated has no points
    type :: boundary_t
-      !> Held points
-      type(held_point_t), allocatable :: held(:)
-      !> Loaded points
-      type(loaded_point_t), allocatable :: loaded(:)
-      !> Measured points
-      type(measured_point_t), allocatable :: measured(:)
-      !> Bounded forces
-      type(bounded_force_t), allocatable :: bounded(:)
-      !> Bars between points
-      type(bar_t), allocatable :: bar(:)
-      !> Points of faces that let waves out
-      type(absorbing_point_t), allocatable :: absorbing(:)
+      type(held_point_t), allocatable :: held(:)            !! Held points
+      type(loaded_point_t), allocatable :: loaded(:)        !! Loaded points
+      type(measured_point_t), allocatable :: measured(:)    !! Measured points
+      type(bounded_force_t), allocatable :: bounded(:)      !! Bounded forces
+      type(bar_t), allocatable :: bar(:)                    !! Bars between points
+      type(absorbing_point_t), allocatable :: absorbing(:)  !! Points of faces that let waves out
       !> Blocks that are built or taken away, in the order of their times
       type(stage_change_t), allocatable :: change(:)
       !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks

@@ -17,21 +17,16 @@ module dda_chain
 
    !> A joint of a chain; its force is N1 at its first corner, N2 at its second, and T along it
    type :: chain_joint_t
-      !> Its middle: (2) [m]
-      real(wp) :: middle(2) = 0.0_wp
-      !> Unit vector from its first corner to its second one: (2)
-      real(wp) :: tangent(2) = 0.0_wp
-      !> Half its length [m]
-      real(wp) :: half = 0.0_wp
+      real(wp) :: middle(2) = 0.0_wp   !! Its middle: (2) [m]
+      real(wp) :: tangent(2) = 0.0_wp  !! Unit vector from its first corner to its second one: (2)
+      real(wp) :: half = 0.0_wp        !! Half its length [m]
       !> Stiffness of each of its three springs [N/m per metre depth]
       real(wp) :: stiffness = 0.0_wp
       !> Compliance l/(E t) of the halves of the blocks on either side of it, l across it and t
       !> along it, or of one half on a plane of symmetry [m2/N]
       real(wp) :: compliance = 0.0_wp
-      !> Coefficient of friction
-      real(wp) :: friction = 0.0_wp
-      !> Whether it cannot slide
-      logical :: no_slip = .false.
+      real(wp) :: friction = 0.0_wp  !! Coefficient of friction
+      logical :: no_slip = .false.   !! Whether it cannot slide
       !> Moments of unit forces along normal and tangent at its middle about the centre of the block
       !> before it and of the block behind it: (2, 2) [m]
       real(wp) :: arm(2, 2) = 0.0_wp
@@ -62,8 +57,7 @@ contains
 
    !> A chain of n blocks without numbers
    pure subroutine new_chain(n, chain)
-      !> Number of blocks
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of blocks
       !> Any chain in; where it has as many blocks its arrays stay
       type(chain_t), intent(inout) :: chain
 

@@ -26,10 +26,8 @@ contains
    !> without strain, so that the work of dead loads is linear in it and Hooke's law is that of
    !> small strains
    pure function tangent_matrix(place, centre, motion) result(t)
-      !> Where the point is now: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> Where the centre of gravity is now: (2) [m]
-      real(wp), intent(in) :: centre(2)
+      real(wp), intent(in) :: place(2)   !! Where the point is now: (2) [m]
+      real(wp), intent(in) :: centre(2)  !! Where the centre of gravity is now: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy in the block's own frame: (6)
       real(wp), intent(in) :: motion(6)
       !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
@@ -51,10 +49,8 @@ contains
    !> Where a point of a block is after a finite motion: strain in the block's own frame, then exact
    !> rotation, then translation; built from the reference shape, so that no error adds up
    pure function moved_point(point, centroid, motion) result(now)
-      !> The point in the reference shape: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Centre of gravity in the reference shape: (2) [m]
-      real(wp), intent(in) :: centroid(2)
+      real(wp), intent(in) :: point(2)     !! The point in the reference shape: (2) [m]
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity in the reference shape: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy: (6) [m, m, rad, -, -, -]
       real(wp), intent(in) :: motion(6)
       !> The point now: (2) [m]
@@ -71,10 +67,8 @@ contains
 
    !> Components of a symmetric tensor in a frame turned by an angle
    pure function turned_tensor(tensor, angle, shear_factor) result(turned)
-      !> Components xx, yy, xy: (3)
-      real(wp), intent(in) :: tensor(3)
-      !> Angle of the new frame, anticlockwise [rad]
-      real(wp), intent(in) :: angle
+      real(wp), intent(in) :: tensor(3)  !! Components xx, yy, xy: (3)
+      real(wp), intent(in) :: angle      !! Angle of the new frame, anticlockwise [rad]
       !> What the third component is of the tensor's: 1 for stress, 2 for strain with gxy
       real(wp), intent(in) :: shear_factor
       !> Components in the new frame: (3)

@@ -128,8 +128,7 @@ contains
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)
       type(joint_graph_t), intent(in) :: graph
-      !> Motion of the blocks: (n_dof, n_block)
-      real(wp), intent(in), contiguous :: motion(:, :)
+      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (n_dof, n_block)
       !> Opening 1, opening 2, slip: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
       integer :: b, d, j, k, side
@@ -157,14 +156,11 @@ contains
 
    !> The same for 3 unknowns of a block, with loops that the compiler unrolls
    pure subroutine joint_motion_3(n_joint, block, row, motion, opening)
-      !> Number of joints
-      integer, intent(in) :: n_joint
-      !> Blocks of each joint
-      integer, intent(in) :: block(2, n_joint)
+      integer, intent(in) :: n_joint            !! Number of joints
+      integer, intent(in) :: block(2, n_joint)  !! Blocks of each joint
       !> Opening and slip by unit motion of each block
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      !> Motion of the blocks: (3, n_block)
-      real(wp), intent(in), contiguous :: motion(:, :)
+      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (3, n_block)
       real(wp), intent(out), contiguous :: opening(:, :)
       integer :: b, j, k, side
       real(wp) :: x(3), y(3)

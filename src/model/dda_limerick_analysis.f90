@@ -72,22 +72,15 @@ module dda_limerick_analysis
 
    !> Everything that an analysis file says; the values here hold where it says nothing
    type, extends(limerick_constants_t) :: limerick_analysis_t
-      !> Name of the file, for messages
-      character(len=:), allocatable :: file
-      !> Plane strain instead of plane stress
-      logical :: plane_strain = .false.
-      !> Smallest time step; 0 if none is given
-      real(wp) :: min_time_step = 0.0_wp
-      !> Most open-close iterations of a step
-      integer :: open_close_limit = 8
-      !> Steps between two saved ones
-      integer :: save_interval = 1
-      !> Acceleration of gravity
-      real(wp) :: gravity = 9.81_wp
+      character(len=:), allocatable :: file  !! Name of the file, for messages
+      logical :: plane_strain = .false.      !! Plane strain instead of plane stress
+      real(wp) :: min_time_step = 0.0_wp     !! Smallest time step; 0 if none is given
+      integer :: open_close_limit = 8        !! Most open-close iterations of a step
+      integer :: save_interval = 1           !! Steps between two saved ones
+      real(wp) :: gravity = 9.81_wp          !! Acceleration of gravity
       !> Materials of blocks: (n)
       type(analysis_material_t), allocatable :: material(:)
-      !> Materials of joints: (n)
-      type(limerick_joint_t), allocatable :: joint(:)
+      type(limerick_joint_t), allocatable :: joint(:)  !! Materials of joints: (n)
       !> Forces on the load points, in their order: (n)
       type(load_history_t), allocatable :: load(:)
       !> Stiffness, strength and prestress of bolts that say none of their own: (3)

@@ -9,28 +9,20 @@ module dda_material
 
    !> What a block is made of
    type :: material_t
-      !> Mass per volume [kg/m3]
-      real(wp) :: density = 2240.0_wp
-      !> Young's modulus [Pa]
-      real(wp) :: young = 5.0e9_wp
-      !> Poisson's ratio
-      real(wp) :: poisson = 0.2_wp
+      real(wp) :: density = 2240.0_wp  !! Mass per volume [kg/m3]
+      real(wp) :: young = 5.0e9_wp     !! Young's modulus [Pa]
+      real(wp) :: poisson = 0.2_wp     !! Poisson's ratio
       !> Compressive strength; huge where it is never crushed [Pa]
       real(wp) :: strength = huge(1.0_wp)
-      !> Plane strain instead of plane stress
-      logical :: plane_strain = .false.
+      logical :: plane_strain = .false.  !! Plane strain instead of plane stress
    end type material_t
 
    !> Mohr-Coulomb law of a joint: -N <= tension*length, |T| <= cohesion*length + friction*N
    type :: joint_law_t
-      !> Coefficient of friction tan(phi)
-      real(wp) :: friction = 0.0_wp
-      !> The joint cannot slide
-      logical :: no_slip = .false.
-      !> Cohesion [Pa]
-      real(wp) :: cohesion = 0.0_wp
-      !> Tensile strength [Pa]
-      real(wp) :: tension = 0.0_wp
+      real(wp) :: friction = 0.0_wp  !! Coefficient of friction tan(phi)
+      logical :: no_slip = .false.   !! The joint cannot slide
+      real(wp) :: cohesion = 0.0_wp  !! Cohesion [Pa]
+      real(wp) :: tension = 0.0_wp   !! Tensile strength [Pa]
       !> Coefficient of friction of a joint that has slid or parted; huge where it stays as it was
       real(wp) :: residual = huge(1.0_wp)
       !> Slip over which cohesion, tensile strength and friction go to what remains of them; 0 where

@@ -13,8 +13,7 @@ module dda_settings
       !> Along the normal of its friction cone: sliding opens the joint. Convex; no structure that
       !> falls under this rule can stand under any other
       integer :: associated = 1
-      !> Along the joint: Coulomb friction without dilatancy
-      integer :: coulomb = 2
+      integer :: coulomb = 2  !! Along the joint: Coulomb friction without dilatancy
    end type flow_rule_enum
 
    !> Names of the flow rules

@@ -12,21 +12,15 @@ module dda_water
 
    !> A line of heads
    type :: water_t
-      !> Places along x, ascending: (n) [m]
-      real(wp), allocatable :: x(:)
-      !> Height of the heads there: (n) [m]
-      real(wp), allocatable :: head(:)
-      !> Weight per volume [N/m3]
-      real(wp) :: unit_weight = 9810.0_wp
-      !> What the pressure in joints is multiplied by
-      real(wp) :: factor = 1.0_wp
+      real(wp), allocatable :: x(:)        !! Places along x, ascending: (n) [m]
+      real(wp), allocatable :: head(:)     !! Height of the heads there: (n) [m]
+      real(wp) :: unit_weight = 9810.0_wp  !! Weight per volume [N/m3]
+      real(wp) :: factor = 1.0_wp          !! What the pressure in joints is multiplied by
       !> Times at which the line has risen, ascending; always as it is where there are none:
       !> (n_time) [s]
       real(wp), allocatable :: time(:)
-      !> By how much it has risen then: (n_time) [m]
-      real(wp), allocatable :: rise(:)
-      !> Line of the file
-      integer :: line = 0
+      real(wp), allocatable :: rise(:)  !! By how much it has risen then: (n_time) [m]
+      integer :: line = 0               !! Line of the file
    end type water_t
 
    !> Places nearer than this share of the line of heads are one

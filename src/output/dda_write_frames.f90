@@ -20,16 +20,12 @@ module dda_write_frames
 
    !> One row of frame_joints.csv without what its frame has in common
    type :: frame_joint_row_t
-      !> Number of the joint, from 1
-      integer :: joint = 0
-      !> Where the two contacts of the joint are: (2, 2) [m]
-      real(wp) :: contact(2, 2) = 0.0_wp
+      integer :: joint = 0                !! Number of the joint, from 1
+      real(wp) :: contact(2, 2) = 0.0_wp  !! Where the two contacts of the joint are: (2, 2) [m]
       !> Where the force acts; of no force, the middle of the joint: (2) [m]
       real(wp) :: point(2) = 0.0_wp
-      !> Force of the joint on its second block: (2) [N/m]
-      real(wp) :: force(2) = 0.0_wp
-      !> What the two contacts do, in a word each: (2)
-      character(len=8) :: state(2) = ""
+      real(wp) :: force(2) = 0.0_wp      !! Force of the joint on its second block: (2) [N/m]
+      character(len=8) :: state(2) = ""  !! What the two contacts do, in a word each: (2)
    end type frame_joint_row_t
 
    !> Names of the columns of frames.csv
@@ -44,12 +40,10 @@ contains
 
    !> Rows of one frame in frames.csv
    pure function frame_lines(stamp, first_vertex, point, absent) result(lines)
-      !> Case, frame, step and time
-      type(frame_stamp_t), intent(in) :: stamp
+      type(frame_stamp_t), intent(in) :: stamp  !! Case, frame, step and time
       !> First corner of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
-      !> Corners of all blocks: (2, n_vertex) [m]
-      real(wp), intent(in) :: point(:, :)
+      real(wp), intent(in) :: point(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
       !> Blocks that have no rows, as they are not there: (n_block)
       logical, intent(in), optional :: absent(:)
       character(len=:), allocatable :: lines
@@ -89,16 +83,12 @@ contains
 
    !> Rows of the measured points of one case in points.csv
    pure function point_lines(number, when, point, track, origin, speed) result(lines)
-      !> Number of the case
-      integer, intent(in) :: number
-      !> Step and time: (2, n) [-, s]
-      real(wp), intent(in) :: when(:, :)
+      integer, intent(in) :: number       !! Number of the case
+      real(wp), intent(in) :: when(:, :)  !! Step and time: (2, n) [-, s]
       !> Where the points are in the reference shape: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
-      !> Where they are in each step: (2, n_point, n) [m]
-      real(wp), intent(in) :: track(:, :, :)
-      !> Where the origin of the coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: track(:, :, :)  !! Where they are in each step: (2, n_point, n) [m]
+      real(wp), intent(in) :: origin(2)       !! Where the origin of the coordinates is: (2) [m]
       !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
       real(wp), intent(in), optional :: speed(:, :, :)
       character(len=:), allocatable :: lines

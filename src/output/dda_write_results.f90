@@ -40,62 +40,37 @@ module dda_write_results
 
    !> One row of results.csv
    type :: result_row_t
-      !> Name of the deck
-      character(len=:), allocatable :: deck
-      !> Number of the case, from 1
-      integer :: number = 0
+      character(len=:), allocatable :: deck  !! Name of the deck
+      integer :: number = 0                  !! Number of the case, from 1
       !> Values of the swept parameters that have no column of their own: (n)
       character(len=:), allocatable :: swept
-      !> Movable blocks
-      integer :: blocks = 0
-      !> Angle from the crown to a springing [deg]
-      type(number_t) :: half_angle_deg
-      !> Thickness over radius
-      type(number_t) :: thickness_ratio
-      !> Friction angle [deg]
-      type(number_t) :: friction_deg
-      !> static or dynamic
-      character(len=64) :: mode = ""
-      !> reference or current
-      character(len=64) :: geometry = ""
-      !> Answer of the case in a word
-      character(len=10) :: verdict = ""
-      !> Middle of the bracket
-      type(number_t) :: critical
-      !> Its lower end
-      type(number_t) :: critical_low
-      !> Its upper end
-      type(number_t) :: critical_high
-      !> low or high: the end that falls
-      character(len=4) :: collapses_at = ""
-      !> The exact value
-      type(number_t) :: exact
-      !> (critical - exact)/exact
-      type(number_t) :: relative_error
-      !> rotational, mixed, sliding or none
-      character(len=10) :: collapse_mode = ""
-      !> Slip over slip and opening
-      type(number_t) :: sliding_share
-      !> Hinges at the intrados [deg]: (n)
-      real(wp), allocatable :: intrados_hinge_deg(:)
-      !> Hinges at the extrados [deg]: (n)
-      real(wp), allocatable :: extrados_hinge_deg(:)
+      integer :: blocks = 0                           !! Movable blocks
+      type(number_t) :: half_angle_deg                !! Angle from the crown to a springing [deg]
+      type(number_t) :: thickness_ratio               !! Thickness over radius
+      type(number_t) :: friction_deg                  !! Friction angle [deg]
+      character(len=64) :: mode = ""                  !! static or dynamic
+      character(len=64) :: geometry = ""              !! reference or current
+      character(len=10) :: verdict = ""               !! Answer of the case in a word
+      type(number_t) :: critical                      !! Middle of the bracket
+      type(number_t) :: critical_low                  !! Its lower end
+      type(number_t) :: critical_high                 !! Its upper end
+      character(len=4) :: collapses_at = ""           !! low or high: the end that falls
+      type(number_t) :: exact                         !! The exact value
+      type(number_t) :: relative_error                !! (critical - exact)/exact
+      character(len=10) :: collapse_mode = ""         !! rotational, mixed, sliding or none
+      type(number_t) :: sliding_share                 !! Slip over slip and opening
+      real(wp), allocatable :: intrados_hinge_deg(:)  !! Hinges at the intrados [deg]: (n)
+      real(wp), allocatable :: extrados_hinge_deg(:)  !! Hinges at the extrados [deg]: (n)
       !> intrados, extrados or none; blank where there is no arch
       character(len=8) :: springing_hinge = ""
-      !> Time steps
-      integer :: steps = 0
+      integer :: steps = 0  !! Time steps
       !> Passes of the open-close loop
       integer :: open_close_iterations = 0
-      !> Factorisations
-      integer :: factorisations = 0
-      !> Wall time of the case [s]
-      real(wp) :: seconds = 0.0_wp
-      !> Unknowns of a block in the decisions
-      integer :: unknowns = 0
-      !> Associated limit of what is searched, proven from below
-      type(number_t) :: exact_low
-      !> Likewise, from above
-      type(number_t) :: exact_high
+      integer :: factorisations = 0  !! Factorisations
+      real(wp) :: seconds = 0.0_wp   !! Wall time of the case [s]
+      integer :: unknowns = 0        !! Unknowns of a block in the decisions
+      type(number_t) :: exact_low    !! Associated limit of what is searched, proven from below
+      type(number_t) :: exact_high   !! Likewise, from above
       !> Largest force or moment that the forces of the proof leave on a block, over the largest
       !> load
       type(number_t) :: imbalance
@@ -109,49 +84,36 @@ module dda_write_results
       type(number_t) :: thrust_min, thrust_max
       !> Time to which the histories of a static run were followed [s]
       type(number_t) :: path_time
-      !> Where the first axle of a vehicle is worst [m]
-      type(number_t) :: worst_position
-      !> Whether the table has a column of condition numbers
-      logical :: tells_condition = .false.
-      !> Estimated condition number of the last equations
-      type(number_t) :: condition
+      type(number_t) :: worst_position      !! Where the first axle of a vehicle is worst [m]
+      logical :: tells_condition = .false.  !! Whether the table has a column of condition numbers
+      type(number_t) :: condition           !! Estimated condition number of the last equations
    end type result_row_t
 
    !> One row of joints.csv
    type :: joint_row_t
-      !> Number of the case, from 1
-      integer :: number = 0
-      !> Number of the joint, from 1 at the left springing
-      integer :: joint = 0
+      integer :: number = 0  !! Number of the case, from 1
+      integer :: joint = 0   !! Number of the joint, from 1 at the left springing
       !> Angle from the crown, positive to the right; unknown where there is no arch [deg]
       type(number_t) :: angle_deg
-      !> Corner at the intrados: (2) [m]
-      real(wp) :: intrados(2) = 0.0_wp
-      !> Corner at the extrados: (2) [m]
-      real(wp) :: extrados(2) = 0.0_wp
-      !> Force on the joint, compression positive [N/m]
-      real(wp) :: normal_force = 0.0_wp
+      real(wp) :: intrados(2) = 0.0_wp   !! Corner at the intrados: (2) [m]
+      real(wp) :: extrados(2) = 0.0_wp   !! Corner at the extrados: (2) [m]
+      real(wp) :: normal_force = 0.0_wp  !! Force on the joint, compression positive [N/m]
       !> Force along the joint on its right block, towards the extrados [N/m]
       real(wp) :: shear_force = 0.0_wp
       !> Place of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force,
       !> and of a joint of one corner
       type(number_t) :: eccentricity_ratio
-      !> Opening at the intrados [m]
-      real(wp) :: opening_intrados = 0.0_wp
+      real(wp) :: opening_intrados = 0.0_wp  !! Opening at the intrados [m]
       !> Opening at the extrados; unknown of a joint of one corner [m]
       type(number_t) :: opening_extrados
       !> Motion of the right block along the joint, towards the extrados [m]
       real(wp) :: slip = 0.0_wp
-      !> What the joint does, in a word
-      character(len=14) :: state = ""
-      !> Its two blocks: (2)
-      integer :: block(2) = 0
+      character(len=14) :: state = ""  !! What the joint does, in a word
+      integer :: block(2) = 0          !! Its two blocks: (2)
       !> Where the force acts; of no force, the middle of the joint: (2) [m]
       real(wp) :: point(2) = 0.0_wp
-      !> Force on the second block: (2) [N/m]
-      real(wp) :: force(2) = 0.0_wp
-      !> What the joint does in the collapse, in a word
-      character(len=14) :: mechanism = "none"
+      real(wp) :: force(2) = 0.0_wp            !! Force on the second block: (2) [N/m]
+      character(len=14) :: mechanism = "none"  !! What the joint does in the collapse, in a word
       !> Unit vector in which the second block slides past the first, unknown where none slides: (2)
       type(number_t) :: slides(2)
    end type joint_row_t
@@ -207,15 +169,12 @@ contains
    !> Rows of one case
    pure function reaction_lines(number, time, support, reaction, origin) result(lines)
       integer, intent(in) :: number
-      !> The times: (n_time) [s]
-      real(wp), intent(in) :: time(:)
-      !> Block, and number of the held point or 0: (2, n)
-      integer, intent(in) :: support(:, :)
+      real(wp), intent(in) :: time(:)       !! The times: (n_time) [s]
+      integer, intent(in) :: support(:, :)  !! Block, and number of the held point or 0: (2, n)
       !> Force, and moment about the origin of the blocks' coordinates:
       !> (3, n, n_time) [N/m, N/m, N]
       real(wp), intent(in) :: reaction(:, :, :)
-      !> Where that origin is in coordinates of the user: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Where that origin is in coordinates of the user: (2) [m]
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       real(wp) :: moment
@@ -245,8 +204,7 @@ contains
    pure function results_header(swept, tells_condition) result(line)
       !> Names of the swept parameters that have no column of their own, each with a comma behind it
       character(len=*), intent(in) :: swept
-      !> Whether the table has a column of condition numbers
-      logical, intent(in) :: tells_condition
+      logical, intent(in) :: tells_condition  !! Whether the table has a column of condition numbers
       character(len=:), allocatable :: line
 
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &

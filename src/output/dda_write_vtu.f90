@@ -51,16 +51,13 @@ contains
 
    !> Write polygons; the file is whole when there is no error
    subroutine write_polygons(file, point, first_vertex, point_fields, cell_fields, error)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file; one that exists is replaced
       !> Corners of all polygons, one polygon after the other: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
       !> First corner of each polygon, and one beyond the last: (n_polygon + 1)
       integer, intent(in) :: first_vertex(:)
-      !> Fields with a value at each corner: (:)
-      type(field_t), intent(in) :: point_fields(:)
-      !> Fields with a value for each polygon: (:)
-      type(field_t), intent(in) :: cell_fields(:)
+      type(field_t), intent(in) :: point_fields(:)  !! Fields with a value at each corner: (:)
+      type(field_t), intent(in) :: cell_fields(:)   !! Fields with a value for each polygon: (:)
       !> Allocated if the arrays do not fit together or the file cannot be written
       type(error_t), allocatable, intent(out) :: error
       integer :: n
@@ -93,11 +90,9 @@ contains
    !> Write cells of one kind that own the points in their order
    subroutine write_grid(file, kind, point, next_point, point_fields, cell_fields, error)
       character(len=*), intent(in) :: file
-      !> One of cell_type
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind           !! One of cell_type
       real(wp), intent(in) :: point(:, :)
-      !> The point behind the last one of each cell: (n_cell)
-      integer, intent(in) :: next_point(:)
+      integer, intent(in) :: next_point(:)  !! The point behind the last one of each cell: (n_cell)
       type(field_t), intent(in) :: point_fields(:)
       !> Fields with a value for each cell: (:)
       type(field_t), intent(in) :: cell_fields(:)
@@ -199,8 +194,7 @@ contains
    !> Announce an array
    pure subroutine add_array(header, attributes, n_byte)
       type(header_t), intent(inout) :: header
-      !> What the array is
-      character(len=*), intent(in) :: attributes
+      character(len=*), intent(in) :: attributes  !! What the array is
       !> Its length in the file, without the number before it that tells the length
       integer(int64), intent(in) :: n_byte
       character(len=20) :: offset

@@ -36,8 +36,7 @@ contains
 
    !> The lines and fixed points of an arch
    pure subroutine arch_lines(deck, model, error)
-      !> The deck of a case, with an arch
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(in) :: deck  !! The deck of a case, with an arch
       type(line_model_t), intent(out) :: model
       !> Abutments that are too large to lie side by side
       type(error_t), allocatable, intent(out) :: error
@@ -76,12 +75,9 @@ contains
       type(block_system_t), intent(in) :: system
       !> Number of the springing block, whose fourth edge is the joint
       integer, intent(in) :: springing
-      !> Whether it is the right one
-      logical, intent(in) :: is_right
-      !> Its depth [m]
-      real(wp), intent(in) :: size
-      !> How far it reaches beyond the joint at either end [m]
-      real(wp), intent(in) :: overhang
+      logical, intent(in) :: is_right   !! Whether it is the right one
+      real(wp), intent(in) :: size      !! Its depth [m]
+      real(wp), intent(in) :: overhang  !! How far it reaches beyond the joint at either end [m]
       !> The corners: (2, 4) [m]
       real(wp) :: corner(2, 4)
       real(wp) :: direction(2), depth(2)

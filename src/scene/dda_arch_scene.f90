@@ -159,8 +159,7 @@ contains
       type(scene_plan_t), intent(in) :: plan
       !> Angle from the crown to a springing; a right angle for what is no arch [rad]
       real(wp), intent(in) :: half_angle
-      !> Joints of one half of an arch, or all joints
-      integer, intent(in) :: joints
+      integer, intent(in) :: joints  !! Joints of one half of an arch, or all joints
       real(wp) :: noise, rise
 
       settings%dynamic = plan%velocities

@@ -26,17 +26,14 @@ module dda_block_scene
 
    !> What the deck says of all blocks and joints
    type :: base_t
-      !> Material of the blocks
-      type(material_t) :: material
-      !> Weight per volume [N/m3]
-      real(wp) :: unit_weight = 0.0_wp
+      type(material_t) :: material      !! Material of the blocks
+      real(wp) :: unit_weight = 0.0_wp  !! Weight per volume [N/m3]
       !> Acceleration of gravity, for materials with a density of their own [m/s2]
       real(wp) :: gravity = 9.81_wp
       !> Friction angle, cohesion, tensile strength of the joints, friction angle of those that have
       !> slid, slip over which strength goes: (5) [deg, Pa, Pa, deg, m]
       real(wp) :: law(5) = [50.0_wp, 0.0_wp, 0.0_wp, 90.0_wp, 0.0_wp]
-      !> By how much all lines of heads have risen [m]
-      real(wp) :: water_rise = 0.0_wp
+      real(wp) :: water_rise = 0.0_wp  !! By how much all lines of heads have risen [m]
    end type base_t
 
    !> Friction angles count up to this one: a joint that is open must not hold by friction without
@@ -133,16 +130,12 @@ contains
       type(block_plan_t), intent(in) :: plan
       type(water_t), intent(in) :: water
       real(wp), intent(in) :: rise, time(:)
-      !> Ends of the part: (4) [m]
-      real(wp), intent(in) :: part(4)
-      !> Whether another block lies on it: a joint
-      logical, intent(in) :: covered
-      !> Ends of the edge: (4) [m]
-      real(wp), intent(in) :: edge(4)
+      real(wp), intent(in) :: part(4)  !! Ends of the part: (4) [m]
+      logical, intent(in) :: covered   !! Whether another block lies on it: a joint
+      real(wp), intent(in) :: edge(4)  !! Ends of the edge: (4) [m]
       !> Receives the force at the start of the edge: (2, n) [N/m]
       real(wp), intent(inout) :: at_start(:, :)
-      !> Receives that at its end: (2, n) [N/m]
-      real(wp), intent(inout) :: at_end(:, :)
+      real(wp), intent(inout) :: at_end(:, :)  !! Receives that at its end: (2, n) [N/m]
       real(wp) :: force(2, 2), share(2), along(2)
       integer :: i, k
 
@@ -294,8 +287,7 @@ contains
    pure subroutine materials_of(plan, base, material, unit_weight)
       type(block_plan_t), intent(in) :: plan
       type(base_t), intent(in) :: base
-      !> The materials: (n_material)
-      type(material_t), allocatable, intent(out) :: material(:)
+      type(material_t), allocatable, intent(out) :: material(:)  !! The materials: (n_material)
       !> Their weight per volume: (n_material) [N/m3]
       real(wp), allocatable, intent(out) :: unit_weight(:)
       integer :: i, n

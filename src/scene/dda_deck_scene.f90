@@ -24,18 +24,14 @@ module dda_deck_scene
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
-      !> The deck of one case
-      type(deck_t), allocatable :: deck
+      type(deck_t), allocatable :: deck  !! The deck of one case
       !> The parameter
       type(parameter_t) :: parameter
       !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
       logical :: chains = .false.
-      !> Then: what all of them need
-      type(scene_plan_t) :: plan
-      !> Then: what the arches are made from
-      type(arch_numbers_t) :: numbers
-      !> Settings of their runs
-      type(settings_t) :: settings
+      type(scene_plan_t) :: plan       !! Then: what all of them need
+      type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
+      type(settings_t) :: settings     !! Settings of their runs
       !> Angle of each joint from the crown: (n_joint) [deg]
       real(wp), allocatable :: joint_angle_deg(:)
       !> What does not depend on the thickness; made by the one who searches
@@ -61,20 +57,18 @@ module dda_deck_scene
       !> Make the chain of one thickness ratio
       pure module subroutine link_arch(family, value, settings, chain, linked)
          class(deck_family_t), intent(in) :: family
-         !> The thickness ratio
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value  !! The thickness ratio
          type(settings_t), intent(out) :: settings
          !> Any chain in, whose arrays are used again where they fit
          type(chain_t), intent(inout) :: chain
-         !> Whether the scenes are chains, and one has this value
-         logical, intent(out) :: linked
+         logical, intent(out) :: linked  !! Whether the scenes are chains, and one has this value
       end subroutine link_arch
 
       !> Put one value of the parameter into a deck
       pure module subroutine put_value(family, value, deck, error)
          class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value         !! The value
-         type(deck_t), intent(inout) :: deck   !! That of the family, or its values alone
+         real(wp), intent(in) :: value        !! The value
+         type(deck_t), intent(inout) :: deck  !! That of the family, or its values alone
          type(error_t), allocatable, intent(out) :: error
       end subroutine put_value
 

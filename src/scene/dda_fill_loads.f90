@@ -20,20 +20,15 @@ module dda_fill_loads
 
    !> The fill of a case
    type :: fill_t
-      !> Chords that it lies on: (n)
-      type(top_chord_t), allocatable :: chord(:)
+      type(top_chord_t), allocatable :: chord(:)  !! Chords that it lies on: (n)
       !> Where the extrados of each span turns from rising to falling, along x: (n_span) [m]
       real(wp), allocatable :: crown_x(:)
-      !> Height of its surface [m]
-      real(wp) :: surface = 0.0_wp
-      !> Weight per volume of fill and of backing: (2) [N/m3]
-      real(wp) :: unit_weight(2) = 0.0_wp
+      real(wp) :: surface = 0.0_wp         !! Height of its surface [m]
+      real(wp) :: unit_weight(2) = 0.0_wp  !! Weight per volume of fill and of backing: (2) [N/m3]
       !> Height of the surface of the backing; below all where there is none [m]
       real(wp) :: backing = -huge(1.0_wp)
-      !> How far axles spread to either side, over the depth
-      real(wp) :: spread = 0.0_wp
-      !> Largest horizontal pressure over the weight above
-      real(wp) :: passive = 0.0_wp
+      real(wp) :: spread = 0.0_wp   !! How far axles spread to either side, over the depth
+      real(wp) :: passive = 0.0_wp  !! Largest horizontal pressure over the weight above
       !> Whether it yields where blocks move, and its pressure over displacement then [N/m3]
       logical :: yields = .false.
       real(wp) :: stiffness = 0.0_wp
@@ -249,10 +244,8 @@ contains
    !> against it stretches its bar
    pure subroutine add_yielding(fill, force, height, scene)
       type(fill_t), intent(in) :: fill
-      !> Largest forces of the fill: (n)
-      type(bounded_force_t), intent(in) :: force(:)
-      !> Heights of their chords: (n) [m]
-      real(wp), intent(in) :: height(:)
+      type(bounded_force_t), intent(in) :: force(:)  !! Largest forces of the fill: (n)
+      real(wp), intent(in) :: height(:)              !! Heights of their chords: (n) [m]
       !> The scene; receives the bars behind those that it has
       type(scene_t), intent(inout) :: scene
       type(bar_t), allocatable :: bar(:)
@@ -286,10 +279,8 @@ contains
       type(fill_t), intent(in) :: fill
       !> Origin of the coordinates of the points: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> Loads, live ones among them: (n)
-      type(loaded_point_t), intent(in) :: loaded(:)
-      !> More of them: (m)
-      type(loaded_point_t), intent(in), optional :: more(:)
+      type(loaded_point_t), intent(in) :: loaded(:)          !! Loads, live ones among them: (n)
+      type(loaded_point_t), intent(in), optional :: more(:)  !! More of them: (m)
       real(wp) :: total(2), x
 
       total = 0.0_wp

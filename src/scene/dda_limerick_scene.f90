@@ -67,8 +67,7 @@ contains
    !> The arch that a deck describes, between its abutments
    pure subroutine arch_model(deck, scene, model)
       type(deck_t), intent(in) :: deck
-      !> Its scene; the springings are its last two blocks
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(in) :: scene  !! Its scene; the springings are its last two blocks
       !> The model; its parts but for the direction of the weight are set
       type(limerick_model_t), intent(inout) :: model
       integer :: b, i, n, nv
@@ -284,8 +283,7 @@ contains
    !> The plan's points, and those that hold its fixed blocks
    pure subroutine take_points(plan, load_factor, boundary)
       type(block_plan_t), intent(in) :: plan
-      !> What live loads are multiplied by
-      real(wp), intent(in) :: load_factor
+      real(wp), intent(in) :: load_factor  !! What live loads are multiplied by
       !> The points of the scene, which may be more than the plan's
       type(boundary_t), intent(inout) :: boundary
       type(held_point_t), allocatable :: held(:)

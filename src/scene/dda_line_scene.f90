@@ -36,8 +36,7 @@ contains
    pure subroutine cut_lines(deck, error)
       !> The deck; receives the blocks in place of the lines, and the points
       type(deck_t), intent(inout) :: deck
-      !> Lines that make no blocks
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Lines that make no blocks
 
       if (.not. allocated(deck%lines)) return
       allocate (deck%cut)

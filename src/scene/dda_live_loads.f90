@@ -27,8 +27,7 @@ contains
    !> Put the forces of &live and the axles of &vehicle on the blocks of a scene
    pure subroutine add_live_loads(deck, scene, fill)
       type(deck_t), intent(in) :: deck
-      !> The scene; forces in none of its blocks are left out
-      type(scene_t), intent(inout) :: scene
+      type(scene_t), intent(inout) :: scene  !! The scene; forces in none of its blocks are left out
       !> What lies on the blocks and spreads axles
       type(fill_t), intent(in), optional :: fill
       type(loaded_point_t), allocatable :: live(:)
@@ -73,10 +72,8 @@ contains
       type(deck_t), intent(in) :: deck
       !> Origin of the blocks' coordinates: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The points, seen from there: (2, n) [m]
-      real(wp), allocatable, intent(out) :: point(:, :)
-      !> The forces: (2, n) [N/m]
-      real(wp), allocatable, intent(out) :: force(:, :)
+      real(wp), allocatable, intent(out) :: point(:, :)  !! The points, seen from there: (2, n) [m]
+      real(wp), allocatable, intent(out) :: force(:, :)  !! The forces: (2, n) [N/m]
       integer :: n
 
       n = size(deck%value(live_x)%numbers)
@@ -127,8 +124,7 @@ contains
    !> Check that the forces of &live act on blocks that move
    pure subroutine check_live_points(deck, scene, error)
       type(deck_t), intent(in) :: deck
-      !> Its scene, with or without them
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(in) :: scene  !! Its scene, with or without them
       !> A point in no block, or in one that is fixed
       type(error_t), allocatable, intent(out) :: error
       type(loaded_point_t), allocatable :: axle(:)

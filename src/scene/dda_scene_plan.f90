@@ -25,22 +25,16 @@ module dda_scene_plan
 
    !> Why blocks have strains or not
    type :: strain_reason_enum
-      !> The deck says how many unknowns a block has
-      integer :: forced = 0
-      !> Equilibrium alone decides
-      integer :: none = 1
-      !> Blocks move, and strain moves their corners
-      integer :: moving = 2
-      !> Velocities are kept: the blocks' vibrations are part of the motion
-      integer :: dynamic = 3
+      integer :: forced = 0   !! The deck says how many unknowns a block has
+      integer :: none = 1     !! Equilibrium alone decides
+      integer :: moving = 2   !! Blocks move, and strain moves their corners
+      integer :: dynamic = 3  !! Velocities are kept: the blocks' vibrations are part of the motion
       !> Which joint breaks first follows from how the blocks share out the forces
       integer :: strength = 4
-      !> A displacement means collapse, and strain is part of it
-      integer :: displacement = 5
+      integer :: displacement = 5  !! A displacement means collapse, and strain is part of it
       !> The joint forces of a single decision are wanted, and strain shares them out
       integer :: forces = 6
-      !> Shi's scheme has strain
-      integer :: original = 7
+      integer :: original = 7  !! Shi's scheme has strain
       !> Blocks from files, whose joints have laws and whose states have stress of their own
       integer :: files = 8
    end type strain_reason_enum

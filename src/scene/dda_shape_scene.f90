@@ -213,8 +213,7 @@ contains
    !> distance from the axis. The weight acts where the depth has it: it is put there by a pair of
    !> forces, as that of a block acts at the centre of its face
    pure subroutine add_lune_weights(lune_deg, scene)
-      !> Angle of the lune [deg]
-      real(wp), intent(in) :: lune_deg
+      real(wp), intent(in) :: lune_deg  !! Angle of the lune [deg]
       !> The scene, its axis at x = 0; weights are set, and loads added
       type(scene_t), intent(inout) :: scene
       type(loaded_point_t) :: pair(2)

@@ -14,36 +14,26 @@ module dda_vehicle
 
    !> A vehicle
    type :: vehicle_t
-      !> Weight of each axle: (n) [N/m]
-      real(wp), allocatable :: axle(:)
-      !> Distance of each from the first, to the right: (n) [m]
-      real(wp), allocatable :: offset(:)
-      !> Length over which each is spread, about its middle [m]
-      real(wp) :: length = 0.0_wp
-      !> Where the first axle is [m]
-      real(wp) :: position = 0.0_wp
+      real(wp), allocatable :: axle(:)    !! Weight of each axle: (n) [N/m]
+      real(wp), allocatable :: offset(:)  !! Distance of each from the first, to the right: (n) [m]
+      real(wp) :: length = 0.0_wp         !! Length over which each is spread, about its middle [m]
+      real(wp) :: position = 0.0_wp       !! Where the first axle is [m]
       !> How far an axle spreads to either side, over the depth of the blocks below the surface
       real(wp) :: spread = 0.0_wp
-      !> Height of the surface that it stands on [m]
-      real(wp) :: surface = 0.0_wp
+      real(wp) :: surface = 0.0_wp  !! Height of the surface that it stands on [m]
    end type vehicle_t
 
    !> What axles stand on: edges of blocks that have their block below them
    type :: road_t
-      !> Left and right end of each: (2, n) [m]
-      real(wp), allocatable :: left(:, :), right(:, :)
-      !> Its block: (n)
-      integer, allocatable :: block(:)
-      !> Whether that moves: (n)
-      logical, allocatable :: moves(:)
+      real(wp), allocatable :: left(:, :), right(:, :)  !! Left and right end of each: (2, n) [m]
+      integer, allocatable :: block(:)                  !! Its block: (n)
+      logical, allocatable :: moves(:)                  !! Whether that moves: (n)
       !> Places between which one edge is the highest, rising: (m) [m]
       real(wp), allocatable :: corner(:)
       !> That edge, between each of them and the next; 0 where there is none: (0:m)
       integer, allocatable :: highest(:)
-      !> Where the edges of blocks that move begin and end: (2) [m]
-      real(wp) :: reach(2) = 0.0_wp
-      !> Size of all blocks [m]
-      real(wp) :: size = 0.0_wp
+      real(wp) :: reach(2) = 0.0_wp  !! Where the edges of blocks that move begin and end: (2) [m]
+      real(wp) :: size = 0.0_wp      !! Size of all blocks [m]
    end type road_t
 
    !> A corner no lower than the upper face by this share of the size of all is on it
@@ -127,8 +117,7 @@ contains
    pure function axle_loads(vehicle, road, origin) result(loaded)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
-      !> Origin of the coordinates of the blocks: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Origin of the coordinates of the blocks: (2) [m]
       !> The loads: (n)
       type(loaded_point_t), allocatable :: loaded(:)
       real(wp), allocatable :: cut(:), force(:), point(:, :)

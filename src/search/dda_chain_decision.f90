@@ -107,8 +107,7 @@ contains
    !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall
    pure subroutine show_mechanism(chain, force, beyond, decision)
       type(chain_t), intent(in) :: chain
-      !> Forces in balance with the loads: (3, n + 1) [N/m]
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: force(:, :)  !! Forces in balance with the loads: (3, n + 1) [N/m]
       !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
       real(wp), intent(in) :: beyond(:, :)
       type(decision_t), intent(inout) :: decision
@@ -143,12 +142,10 @@ contains
    pure subroutine concentrate(chain, beyond, face, opening, power)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: beyond(:, :)
-      !> The faces: (n + 1)
-      type(joint_face_t), intent(inout) :: face(:)
+      type(joint_face_t), intent(inout) :: face(:)  !! The faces: (n + 1)
       !> Opening 1, opening 2 and slip of each joint: (3, n + 1) [m]
       real(wp), intent(inout) :: opening(:, :)
-      !> Power of the loads on them
-      real(wp), intent(inout) :: power
+      real(wp), intent(inout) :: power  !! Power of the loads on them
       type(chain_mechanism_t) :: mechanism
       type(joint_face_t) :: admissible_face, few(size(face))
       real(wp) :: admissible(3), gap(0:size(face) + 1), all_power, noise
@@ -183,8 +180,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Opening 1, opening 2 and slip of each joint; those of the last are set: (3, n + 1) [m]
       real(wp), intent(inout) :: opening(:, :)
-      !> The motion: (3, n) [m, m, 1]
-      real(wp), allocatable, intent(out) :: motion(:, :)
+      real(wp), allocatable, intent(out) :: motion(:, :)  !! The motion: (3, n) [m, m, 1]
       real(wp) :: before(3), change(2), t(2), turn
       integer :: b, n
 
@@ -272,10 +268,8 @@ contains
    pure subroutine mirror(m, n, sign, value)
       !> Columns of the left half that count, with that on the plane of symmetry if there is one
       integer, intent(in) :: m
-      !> Columns of the whole
-      integer, intent(in) :: n
-      !> Signs of the mirror image: (3)
-      real(wp), intent(in) :: sign(3)
+      integer, intent(in) :: n         !! Columns of the whole
+      real(wp), intent(in) :: sign(3)  !! Signs of the mirror image: (3)
       !> The columns of the left half in, of the whole out, if there are any:
       !> (3, at least m), (3, n)
       real(wp), allocatable, intent(inout) :: value(:, :)

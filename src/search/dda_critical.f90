@@ -15,10 +15,8 @@ module dda_critical
 
    !> A collapse to be traced from one value of the parameter to another
    type :: frozen_mechanism_t
-      !> The joints: (n_joint)
-      type(joint_t), allocatable :: joint(:)
-      !> Faces of the joints in its last step: (n_joint)
-      type(joint_face_t), allocatable :: face(:)
+      type(joint_t), allocatable :: joint(:)      !! The joints: (n_joint)
+      type(joint_face_t), allocatable :: face(:)  !! Faces of the joints in its last step: (n_joint)
       !> Motion of its last step without strains: (3, n_equation)
       real(wp), allocatable :: motion(:, :)
       !> Length of a step long enough that elastic motion hides nothing, and short enough that
@@ -28,10 +26,8 @@ module dda_critical
 
    !> Where a frozen collapse stops
    type :: proposal_t
-      !> Whether it stops anywhere
-      logical :: usable = .false.
-      !> The value
-      real(wp) :: value = 0.0_wp
+      logical :: usable = .false.  !! Whether it stops anywhere
+      real(wp) :: value = 0.0_wp   !! The value
       !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
       !> coordinates can tell apart
       real(wp) :: half = 0.0_wp
@@ -47,24 +43,19 @@ module dda_critical
       !> alone, which is then measured by the mechanism's motion at the value where it was found
       pure module subroutine mechanism_power(mechanism, scene, power, noise, usable)
          type(frozen_mechanism_t), intent(in) :: mechanism
-         !> Scene of the value wanted
-         type(scene_t), intent(in) :: scene
-         !> Power: positive where the mechanism moves by itself
-         real(wp), intent(out) :: power
+         type(scene_t), intent(in) :: scene  !! Scene of the value wanted
+         real(wp), intent(out) :: power      !! Power: positive where the mechanism moves by itself
          !> What the rounding of the corners' coordinates alone makes of it
          real(wp), intent(out) :: noise
-         !> Whether the power could be found
-         logical, intent(out) :: usable
+         logical, intent(out) :: usable  !! Whether the power could be found
       end subroutine mechanism_power
 
       !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
       pure module subroutine foresee(family, search, critical, proposal, face)
          class(family_t), intent(in) :: family
          type(search_t), intent(in) :: search
-         !> New in; its chain and their forces out
-         type(critical_t), intent(inout) :: critical
-         !> Where it stops, usable if that is known
-         type(proposal_t), intent(out) :: proposal
+         type(critical_t), intent(inout) :: critical  !! New in; its chain and their forces out
+         type(proposal_t), intent(out) :: proposal    !! Where it stops, usable if that is known
          !> Faces of the joints of that collapse, where it is known: (n + 1)
          type(joint_face_t), allocatable, intent(out) :: face(:)
       end subroutine foresee
@@ -74,12 +65,10 @@ module dda_critical
       pure module subroutine trace(family, search, limit, critical, proposal)
          class(family_t), intent(in) :: family
          type(search_t), intent(in) :: search
-         !> The end of the range on the side that stands
-         real(wp), intent(in) :: limit
+         real(wp), intent(in) :: limit  !! The end of the range on the side that stands
          !> What was found so far; the factorisations are counted
          type(critical_t), intent(inout) :: critical
-         !> Where the collapse stops
-         type(proposal_t), intent(out) :: proposal
+         type(proposal_t), intent(out) :: proposal  !! Where the collapse stops
       end subroutine trace
 
       !> Give back what a search does not ask a kept decision for: its springs, and its blocks but

@@ -111,10 +111,8 @@ module dda_decision
          type(contacts_t), intent(in) :: contacts
          !> Where nothing slides, with the load that its forces balance
          type(coulomb_state_t), allocatable, intent(out) :: start
-         !> Whether there is a rest and joints slide in it
-         logical, intent(out) :: slides
-         !> Factorisations
-         integer, intent(out) :: n
+         logical, intent(out) :: slides  !! Whether there is a rest and joints slide in it
+         integer, intent(out) :: n       !! Factorisations
       end subroutine rest_under_dead_loads
 
       !> A path whose fall, before it has begun, counts

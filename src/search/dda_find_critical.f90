@@ -67,9 +67,8 @@ contains
    pure subroutine close_both(family, search, value, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      real(wp), intent(in) :: value  !! A value that stands, or one that falls
-      !> What was found so far
-      type(critical_t), intent(inout) :: critical
+      real(wp), intent(in) :: value                !! A value that stands, or one that falls
+      type(critical_t), intent(inout) :: critical  !! What was found so far
       type(search_t) :: part(2)
       type(critical_t) :: found(2)
       integer :: i, steps, passes, factorisations, first

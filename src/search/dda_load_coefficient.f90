@@ -146,8 +146,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in), optional :: value   !! The angle that gravity has, of one that tilts
-      real(wp) :: live(3, graph%n_block)        !! The loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in), optional :: value  !! The angle that gravity has, of one that tilts
+      real(wp) :: live(3, graph%n_block)       !! The loads: (3, n_block) [N/m, N/m, N]
       type(settings_t) :: none
       integer :: varied
 

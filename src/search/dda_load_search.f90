@@ -18,30 +18,22 @@ submodule (dda_critical) dda_load_search
 
    !> Where a structure falls on one side of the unloaded state
    type :: side_t
-      !> One of path_end
-      integer :: end = path_end%reached
+      integer :: end = path_end%reached  !! One of path_end
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
-      !> How far it may be off
-      real(wp) :: half = 0.0_wp
+      real(wp) :: half = 0.0_wp  !! How far it may be off
       !> The associated limit from below and from above, with the sign of the side
       real(wp) :: limit(2) = 0.0_wp
-      !> Whether it is known
-      logical :: has_limit = .false.
-      !> Forces that carry it from below: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
+      logical :: has_limit = .false.        !! Whether it is known
+      real(wp), allocatable :: force(:, :)  !! Forces that carry it from below: (3, n_joint) [N/m]
       !> Velocities that stop it from above: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
-      !> What grows: (3, n_block) [N/m, N/m, N]
-      real(wp), allocatable :: live(:, :)
+      real(wp), allocatable :: live(:, :)  !! What grows: (3, n_block) [N/m, N/m, N]
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
-      !> Whether the path leads further than its dead loads
-      logical :: stands_upright = .true.
-      !> Whether no forces balance the dead loads
-      logical :: falls_dead = .false.
-      !> How it falls, or stands at the end of the range
-      type(graph_verdict_t) :: proof
+      logical :: stands_upright = .true.  !! Whether the path leads further than its dead loads
+      logical :: falls_dead = .false.     !! Whether no forces balance the dead loads
+      type(graph_verdict_t) :: proof      !! How it falls, or stands at the end of the range
    end type side_t
 
    !> Share by which a limit is surpassed to see how the blocks move, or to find it
@@ -99,7 +91,7 @@ contains
    !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
    pure subroutine look_elsewhere(load, scene, graph, search, low, high, right, left, origin, &
       & may_stand, n)
-      integer, intent(in) :: load  !! One of searched_load
+      integer, intent(in) :: load        !! One of searched_load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
       type(search_t), intent(in) :: search
@@ -147,16 +139,13 @@ contains
 
    !> Follow the path to one side: limit analysis says how far it can lead at most
    pure subroutine follow_side(load, scene, graph, origin, last, outward, search, side)
-      !> One of searched_load
-      integer, intent(in) :: load
+      integer, intent(in) :: load  !! One of searched_load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
       !> Value from which the range is searched: 0, or one that stands where 0 does not
       real(wp), intent(in) :: origin
-      !> End of the range on this side
-      real(wp), intent(in) :: last
-      !> 1 to the right, -1 to the left
-      real(wp), intent(in) :: outward
+      real(wp), intent(in) :: last     !! End of the range on this side
+      real(wp), intent(in) :: outward  !! 1 to the right, -1 to the left
       type(search_t), intent(in) :: search
       type(side_t), intent(out) :: side
       type(load_stations_t) :: stations

@@ -61,8 +61,7 @@ contains
       type(scene_t), intent(in) :: scene
       !> Its decision; becomes that of the run under Coulomb friction if that one falls too
       type(decision_t), intent(inout) :: decision
-      !> Its pictures; become those of the other run with it
-      type(album_t), intent(inout) :: album
+      type(album_t), intent(inout) :: album  !! Its pictures; become those of the other run with it
       type(decision_t) :: other
       type(album_t) :: pictures
 

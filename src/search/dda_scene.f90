@@ -25,12 +25,9 @@ module dda_scene
 
    !> Blocks and contacts at the beginning, and how to run them
    type :: scene_t
-      !> Settings of the run
-      type(settings_t) :: settings
-      !> Blocks at the beginning
-      type(block_system_t) :: system
-      !> Contacts at the beginning
-      type(contacts_t) :: contacts
+      type(settings_t) :: settings    !! Settings of the run
+      type(block_system_t) :: system  !! Blocks at the beginning
+      type(contacts_t) :: contacts    !! Contacts at the beginning
       !> Where the origin of the blocks' coordinates is in those of the user: (2) [m]
       real(wp) :: origin(2) = 0.0_wp
       !> Angle of each joint from the crown, positive to the right; only for arches: (n_joint) [deg]
@@ -52,11 +49,9 @@ module dda_scene
       !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them
       logical :: decides_chains = .false.
-      !> Load coefficient that the parameter is, one of searched_load
-      integer :: load = 0
+      integer :: load = 0  !! Load coefficient that the parameter is, one of searched_load
    contains
-      !> Make the scene of one value
-      procedure(build_scene), deferred :: build
+      procedure(build_scene), deferred :: build  !! Make the scene of one value
       !> Make the scene of one value from that of another one
       procedure :: turn => turn_anew
       !> Make the scene of one value as a chain of rigid blocks, where it is one but for strain
@@ -130,8 +125,7 @@ contains
       type(settings_t), intent(out) :: settings
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
-      !> Whether there is one
-      logical, intent(out) :: linked
+      logical, intent(out) :: linked  !! Whether there is one
 
       chain = chain_t()
       ! what is asked of the arguments cannot be

@@ -13,21 +13,16 @@ module dda_search
 
    !> What is searched
    type :: search_t
-      !> Least value of the parameter
-      real(wp) :: low = 0.0_wp
-      !> Largest value of the parameter
-      real(wp) :: high = 1.0_wp
-      !> Where to begin, from low to high
-      real(wp) :: start = 0.0_wp
-      !> Width of the bracket over the critical value
-      real(wp) :: tolerance = 1.0e-8_wp
+      real(wp) :: low = 0.0_wp           !! Least value of the parameter
+      real(wp) :: high = 1.0_wp          !! Largest value of the parameter
+      real(wp) :: start = 0.0_wp         !! Where to begin, from low to high
+      real(wp) :: tolerance = 1.0e-8_wp  !! Width of the bracket over the critical value
       !> Relative change of the critical value that rounded coordinates can make, if it is known
       real(wp) :: resolution = 0.0_wp
       !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0
       !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
-      !> Whether its runs are dynamic
-      logical :: in_time = .false.
+      logical :: in_time = .false.  !! Whether its runs are dynamic
       !> Whether the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
@@ -35,85 +30,60 @@ module dda_search
 
    !> What was found
    type :: critical_t
-      !> found, or the verdict of both ends, or undecided
-      integer :: verdict = 0
+      integer :: verdict = 0  !! found, or the verdict of both ends, or undecided
       !> Why the last undecided value is; unallocated if none was
       character(len=:), allocatable :: reason
-      !> The last undecided value
-      real(wp) :: undecided_at = 0.0_wp
-      !> Value nearest to critical at which the structure falls
-      real(wp) :: falls = 0.0_wp
-      !> Value nearest to critical at which it stands
-      real(wp) :: stands = 0.0_wp
+      real(wp) :: undecided_at = 0.0_wp  !! The last undecided value
+      real(wp) :: falls = 0.0_wp         !! Value nearest to critical at which the structure falls
+      real(wp) :: stands = 0.0_wp        !! Value nearest to critical at which it stands
       !> Half the width that rounding and tolerance leave to the bracket
       real(wp) :: half = 0.0_wp
-      !> Where the last collapse stops, if it does
-      real(wp) :: stop = 0.0_wp
-      !> Whether that is known
-      logical :: stops = .false.
+      real(wp) :: stop = 0.0_wp   !! Where the last collapse stops, if it does
+      logical :: stops = .false.  !! Whether that is known
       !> Decision at falls, if there is one; without its blocks and springs
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
-      !> The chain that was looked at last
-      type(link_t) :: link
+      type(link_t) :: link  !! The chain that was looked at last
       !> Unknowns of its forces, where the next decision begins: (3) [N/m, N/m, N]
       real(wp) :: reaction(3) = 0.0_wp
-      !> Value at which it falls in the other direction
-      real(wp) :: other = 0.0_wp
-      !> Whether it does so within the range
-      logical :: has_other = .false.
-      !> Values that a search in time has run beside its bracket
-      integer :: others = 0
+      real(wp) :: other = 0.0_wp      !! Value at which it falls in the other direction
+      logical :: has_other = .false.  !! Whether it does so within the range
+      integer :: others = 0           !! Values that a search in time has run beside its bracket
       !> Neighbours between which the answer of a search in time changes too: (2, n)
       real(wp), allocatable :: other_change(:, :)
       !> The associated limit of a load coefficient, from below and from above
       real(wp) :: limit(2) = 0.0_wp
-      !> Whether it is known
-      logical :: has_limit = .false.
+      logical :: has_limit = .false.  !! Whether it is known
       !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
       real(wp), allocatable :: limit_force(:, :)
       !> Velocities of the mechanism that does not let pass the second: (3, n_block)
       real(wp), allocatable :: limit_velocity(:, :)
       !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: limit_live(:, :)
-      !> The scene of a value of the coefficient, whichever
-      type(scene_t), allocatable :: scene
-      !> Jumps on the loading path, at fixed load
-      integer :: jumps = 0
-      !> The largest of them [m]
-      real(wp) :: largest_jump = 0.0_wp
-      !> Whether the blocks move
-      logical :: current = .false.
-      !> Number of decisions
-      integer :: decisions = 0
-      !> Steps of all decisions
-      integer :: steps = 0
-      !> Passes of the open-close loop of all decisions
-      integer :: passes = 0
-      !> Factorisations of all decisions and proposals
-      integer :: factorisations = 0
+      type(scene_t), allocatable :: scene  !! The scene of a value of the coefficient, whichever
+      integer :: jumps = 0                 !! Jumps on the loading path, at fixed load
+      real(wp) :: largest_jump = 0.0_wp    !! The largest of them [m]
+      logical :: current = .false.         !! Whether the blocks move
+      integer :: decisions = 0             !! Number of decisions
+      integer :: steps = 0                 !! Steps of all decisions
+      integer :: passes = 0                !! Passes of the open-close loop of all decisions
+      integer :: factorisations = 0        !! Factorisations of all decisions and proposals
    end type critical_t
 
    !> A decided structure
    type :: decision_t
-      !> How the run ended; its counts are those of all runs
-      type(outcome_t) :: outcome
-      !> Blocks at the end
-      type(block_system_t) :: system
-      !> Contacts at the end
-      type(contacts_t) :: contacts
-      !> Flow rule of the run that gave them, one of flow_rule
-      integer :: flow = 1
-      !> Whether the joint graph has told how it falls
-      logical :: by_graph = .false.
+      type(outcome_t) :: outcome      !! How the run ended; its counts are those of all runs
+      type(block_system_t) :: system  !! Blocks at the end
+      type(contacts_t) :: contacts    !! Contacts at the end
+      integer :: flow = 1             !! Flow rule of the run that gave them, one of flow_rule
+      logical :: by_graph = .false.   !! Whether the joint graph has told how it falls
       !> What limit analysis says of the full load, where it was asked on the way
       type(load_decision_t), allocatable :: limit
       !> Whether outcome and contacts are those of the left half of a row, up to its plane of
       !> symmetry
       logical :: halved = .false.
-      !> Whether this plane runs through the last block
-      logical :: keystone = .false.
+      logical :: keystone = .false.  !! Whether this plane runs through the last block
    end type decision_t
 
    !> Proofs of a case and their figures

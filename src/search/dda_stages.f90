@@ -219,8 +219,7 @@ contains
    !> Which blocks and contacts there are from a time on
    pure subroutine enter_stage(settings, time, system, contacts)
       type(settings_t), intent(in) :: settings
-      !> The time [s]
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time  !! The time [s]
       type(block_system_t), intent(inout) :: system
       !> Their contacts, those of the stage before or of all blocks
       type(contacts_t), intent(inout) :: contacts

@@ -27,8 +27,7 @@ contains
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
    pure subroutine sum_loads(chain, load, turned)
       type(chain_t), intent(in) :: chain
-      !> The sums: (3, n + 1)
-      real(wp), intent(out) :: load(:, :)
+      real(wp), intent(out) :: load(:, :)  !! The sums: (3, n + 1)
       !> Matrix that the weights are turned by; none leaves them as they are: (2, 2)
       real(wp), intent(in), optional :: turned(2, 2)
       real(wp) :: total(3), weight(2)

@@ -25,8 +25,7 @@ module dda_chain_lack
 
    !> Four bounds, and what the forces between them lack
    type :: lack_t
-      !> The least s: positive where the chain falls [N/m]
-      real(wp) :: least = 0.0_wp
+      real(wp) :: least = 0.0_wp  !! The least s: positive where the chain falls [N/m]
       !> Joints of the bounds; 0 for one that only keeps the unknowns finite
       integer :: joint(4) = 0
       !> Which of their bounds: 1 and 2 at the corners, 3 and 4 of shear forces along the joint and
@@ -34,12 +33,9 @@ module dda_chain_lack
       integer :: bound(4) = 0
       !> Multipliers of the bounds, of the sum 1 but for shares of no mechanism
       real(wp) :: share(4) = 0.0_wp
-      !> The forces' unknowns: (3) [N/m, N/m, N]
-      real(wp) :: reaction(3) = 0.0_wp
-      !> Bounds that came in on the way from those that were given
-      integer :: exchanges = 0
-      !> Whether s was found
-      logical :: known = .false.
+      real(wp) :: reaction(3) = 0.0_wp  !! The forces' unknowns: (3) [N/m, N/m, N]
+      integer :: exchanges = 0          !! Bounds that came in on the way from those that were given
+      logical :: known = .false.        !! Whether s was found
    end type lack_t
 
    !> Most bounds that come in
@@ -53,12 +49,10 @@ module dda_chain_lack
 
    !> The joints of a collapse that are not stuck, frozen
    type :: chain_mechanism_t
-      !> Their numbers, rising: (m)
-      integer, allocatable :: joint(:)
+      integer, allocatable :: joint(:)  !! Their numbers, rising: (m)
       !> What their faces let open and slide: projectors (3, 3, m)
       real(wp), allocatable :: free(:, :, :)
-      !> Openings and slip: (3, m), the largest 1
-      real(wp), allocatable :: opening(:, :)
+      real(wp), allocatable :: opening(:, :)  !! Openings and slip: (3, m), the largest 1
    end type chain_mechanism_t
 
 contains
@@ -305,10 +299,8 @@ contains
       type(chain_t), intent(in) :: chain
       !> Power over the mass: positive where the mechanism moves by itself
       real(wp), intent(out) :: power
-      !> What rounding makes of it
-      real(wp), intent(out) :: noise
-      !> Whether there is a mechanism
-      logical, intent(out) :: usable
+      real(wp), intent(out) :: noise  !! What rounding makes of it
+      logical, intent(out) :: usable  !! Whether there is a mechanism
       real(wp) :: carried, force(3, size(chain%joint)), mass
       integer :: i, j
 
@@ -333,8 +325,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Forces of its joints; of the others not to the last digit: (3, n + 1) [N/m]
       real(wp), intent(out) :: force(3, size(chain%joint))
-      !> What rounding makes of one [N/m]
-      real(wp), intent(out) :: noise
+      real(wp), intent(out) :: noise  !! What rounding makes of one [N/m]
       real(wp) :: load(3, size(force, 2)), reaction(3), change(3)
       integer :: i, j
 
@@ -360,8 +351,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Forces of the joints; those of the mechanism count: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> The change: (3) [N/m, N/m, N]
-      real(wp), intent(out) :: change(3)
+      real(wp), intent(out) :: change(3)  !! The change: (3) [N/m, N/m, N]
       real(wp) :: free(3), g(3, 3), matrix(3, 3), slope(3)
       integer :: c, i, r
 

@@ -54,8 +54,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> New but for the reaction: that of a chain much like this one, or 0
       type(thrust_t), intent(inout) :: thrust
-      !> Sums of the loads, force and moment: (3, n + 1)
-      real(wp), intent(out) :: load(:, :)
+      real(wp), intent(out) :: load(:, :)  !! Sums of the loads, force and moment: (3, n + 1)
       type(chain_energy_t) :: glued
       integer, allocatable :: watched(:)
       real(wp) :: stuck(3)
@@ -209,10 +208,8 @@ contains
    !> Half the squared distance of a force from its cone, over the stiffness
    pure subroutine add_failing(chain, force, j, energy, beyond)
       type(chain_t), intent(in) :: chain
-      !> N1, N2, T [N/m]
-      real(wp), intent(in) :: force(3)
-      !> Number of the joint
-      integer, intent(in) :: j
+      real(wp), intent(in) :: force(3)  !! N1, N2, T [N/m]
+      integer, intent(in) :: j          !! Number of the joint
       type(chain_energy_t), intent(inout) :: energy
       !> The part of the force that the cone does not let pass [N/m]
       real(wp), intent(out) :: beyond(3)
@@ -246,16 +243,12 @@ contains
    !> rounding where admissible forces exist, and else a mechanism: openings that close the row
    pure subroutine approach_cones(chain, thrust, noise, force, beyond, passes)
       type(chain_t), intent(in) :: chain
-      !> Where the forces come from
-      type(thrust_t), intent(in) :: thrust
-      !> What counts as rounding [N/m]
-      real(wp), intent(in) :: noise
-      !> N1, N2, T of each joint: (3, n + 1) [N/m]
-      real(wp), intent(inout) :: force(:, :)
+      type(thrust_t), intent(in) :: thrust    !! Where the forces come from
+      real(wp), intent(in) :: noise           !! What counts as rounding [N/m]
+      real(wp), intent(inout) :: force(:, :)  !! N1, N2, T of each joint: (3, n + 1) [N/m]
       !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
-      !> Passes of Newton's method
-      integer, intent(out) :: passes
+      integer, intent(out) :: passes  !! Passes of Newton's method
       type(chain_energy_t) :: here, there
       real(wp) :: bracket(2), direction(3), fall, steepness(2), way
       real(wp) :: rest(3, size(force, 2)), tried(3, size(force, 2))
@@ -289,8 +282,7 @@ contains
    !> What of the forces lies beyond the cones, and half its square over the stiffness
    pure subroutine find_beyond(chain, force, beyond, energy)
       type(chain_t), intent(in) :: chain
-      !> Forces: (3, n + 1) [N/m]
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: force(:, :)  !! Forces: (3, n + 1) [N/m]
       !> The part that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
       type(chain_energy_t), intent(out) :: energy

@@ -42,8 +42,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Whether a run of steps tells how it falls
-      logical, intent(in) :: bare
+      logical, intent(in) :: bare  !! Whether a run of steps tells how it falls
       type(graph_verdict_t), intent(out) :: verdict
       !> The state in which a stage before has left these joints, with the load that they balance;
       !> without it the blocks begin unloaded
@@ -166,14 +165,10 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
-      !> Stations of the loading path
-      type(load_stations_t), intent(in) :: stations
-      !> The full load: (3, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Whether it is not asked how it falls
-      logical, intent(in) :: bare
-      !> The decision; its factorisations are all
-      type(load_decision_t), intent(out) :: decision
+      type(load_stations_t), intent(in) :: stations   !! Stations of the loading path
+      real(wp), intent(in) :: load(:, :)              !! The full load: (3, n_block)
+      logical, intent(in) :: bare                     !! Whether it is not asked how it falls
+      type(load_decision_t), intent(out) :: decision  !! The decision; its factorisations are all
       !> Whether it was decided on the way, so that what falls is in the mechanism in which it fell
       !> first
       logical, intent(out) :: on_way
@@ -273,8 +268,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
-      !> Forces of limit analysis: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: force(:, :)  !! Forces of limit analysis: (3, n_joint)
       !> A collapse; its mechanism and forces are set where one is found
       type(graph_verdict_t), intent(inout) :: verdict
       real(wp) :: falling(3, size(graph%kind))

@@ -77,8 +77,7 @@ contains
       type(graph_verdict_t), intent(in) :: verdict
       !> The blocks; their motions are set where they are known
       type(block_system_t), intent(inout) :: system
-      !> The contacts; forces, gaps and faces are set
-      type(contacts_t), intent(inout) :: contacts
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; forces, gaps and faces are set
       real(wp), allocatable :: force(:, :)
       integer :: b, j, n
 
@@ -121,10 +120,8 @@ contains
    !> Set strains and stresses of the blocks that can move: area*stress = moment of the forces
    pure subroutine strain_blocks(settings, time, force, pin_force, contacts, system)
       type(settings_t), intent(in) :: settings
-      !> Time of the histories [s]
-      real(wp), intent(in) :: time
-      !> N1, N2, T of each joint: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: time         !! Time of the histories [s]
+      real(wp), intent(in) :: force(:, :)  !! N1, N2, T of each joint: (3, n_joint) [N/m]
       !> Forces of the held points of blocks that can move, in their order: (3, n_pin) [N/m]
       real(wp), intent(in) :: pin_force(:, :)
       type(contacts_t), intent(in) :: contacts

@@ -18,12 +18,9 @@ module dda_load_clock
       !> Times at which the path begins, bends and ends, ascending; one where nothing is live:
       !> (n) [s]
       real(wp), allocatable :: bend(:)
-      !> Time of the loads in this step [s]
-      real(wp) :: now = 0.0_wp
-      !> Time at which the blocks were last at rest [s]
-      real(wp) :: rested = 0.0_wp
-      !> How far to go on from there [s]
-      real(wp) :: stride = huge(1.0_wp)
+      real(wp) :: now = 0.0_wp           !! Time of the loads in this step [s]
+      real(wp) :: rested = 0.0_wp        !! Time at which the blocks were last at rest [s]
+      real(wp) :: stride = huge(1.0_wp)  !! How far to go on from there [s]
       !> Earliest time at which they are known not to come to rest [s]
       real(wp) :: fails = huge(1.0_wp)
       !> Whether a first step at a new time that does not settle, or moves too far, asks for a

@@ -26,12 +26,9 @@ module dda_load_stations
       real(wp), allocatable :: tilt(:)
       !> Share of the weight: somewhat less than one where gravity tilts on a chord: (0:n_leg)
       real(wp), allocatable :: weight(:)
-      !> Horizontal coefficient: (0:n_leg)
-      real(wp), allocatable :: push(:)
-      !> Share of the live loads: (0:n_leg)
-      real(wp), allocatable :: live(:)
-      !> Time of the histories: (0:n_leg) [s]
-      real(wp), allocatable :: time(:)
+      real(wp), allocatable :: push(:)  !! Horizontal coefficient: (0:n_leg)
+      real(wp), allocatable :: live(:)  !! Share of the live loads: (0:n_leg)
+      real(wp), allocatable :: time(:)  !! Time of the histories: (0:n_leg) [s]
    end type load_stations_t
 
    !> Legs of gravity that tilts, whatever angle is asked for: a way ends on the chord on which a
@@ -103,14 +100,12 @@ contains
    !> Loads on the blocks and displacements of their supports at a station
    pure subroutine loads_at(stations, station, settings, system, graph, load, opening)
       type(load_stations_t), intent(in) :: stations
-      !> Number of the station, from 0
-      integer, intent(in) :: station
+      integer, intent(in) :: station  !! Number of the station, from 0
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       !> Their joints, then the pins of held points, then those of bounded forces
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N]
-      real(wp), intent(out) :: load(:, :)
+      real(wp), intent(out) :: load(:, :)  !! Loads: (n_dof, n_block) [N/m, N/m, N]
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
       real(wp), intent(out), optional :: opening(:, :)
       real(wp) :: direction(2), force(2), shaking(2), of_block(6), total(size(load, 2))

@@ -31,42 +31,32 @@ module dda_scene_graph
 
    !> A verdict and its proof
    type :: graph_verdict_t
-      !> One of path_end
-      integer :: end = 0
+      integer :: end = 0  !! One of path_end
       !> What limit analysis says of the full load, where it was asked of that alone
       type(load_decision_t), allocatable :: limit
-      !> Why it is undecided; unallocated otherwise
-      character(len=:), allocatable :: reason
+      character(len=:), allocatable :: reason  !! Why it is undecided; unallocated otherwise
       !> Flow rule that it was found under, one of flow_rule
       integer :: flow = flow_rule%associated
-      !> Velocities of the collapse: (3, n_block)
-      real(wp), allocatable :: mechanism(:, :)
-      !> Last state in balance under Coulomb friction
-      type(coulomb_state_t), allocatable :: state
+      real(wp), allocatable :: mechanism(:, :)     !! Velocities of the collapse: (3, n_block)
+      type(coulomb_state_t), allocatable :: state  !! Last state in balance under Coulomb friction
       !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
       !> Forces with which it goes on falling, where they are others: (3, n_joint) [N/m]
       real(wp), allocatable :: fall_force(:, :)
       !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
       logical :: is_told = .false.
-      !> Whether something live was followed to the state
-      logical :: on_path = .false.
+      logical :: on_path = .false.  !! Whether something live was followed to the state
       !> Whether steps may prove what limit analysis did not, as no path leads to the load
       logical :: unproven = .false.
       !> Whether forces balance the dead loads, and the path has found no state under them
       logical :: no_start = .false.
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0
-      !> Likewise
-      real(wp) :: share = 0.0_wp
-      !> Jumps on the path
-      integer :: n_jump = 0
-      !> The largest of them [m]
-      real(wp) :: largest_jump = 0.0_wp
-      !> Events on the path
-      integer :: n_event = 0
-      !> Factorisations
-      integer :: n_factorisation = 0
+      real(wp) :: share = 0.0_wp         !! Likewise
+      integer :: n_jump = 0              !! Jumps on the path
+      real(wp) :: largest_jump = 0.0_wp  !! The largest of them [m]
+      integer :: n_event = 0             !! Events on the path
+      integer :: n_factorisation = 0     !! Factorisations
    end type graph_verdict_t
 
 contains
@@ -267,8 +257,7 @@ contains
    !> What a pin sees of its block; one that holds along one axis alone does so with both forces
    pure function pin_rows(pin, centroid) result(row)
       type(held_point_t), intent(in) :: pin
-      !> Centre of gravity of its block: (2) [m]
-      real(wp), intent(in) :: centroid(2)
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of its block: (2) [m]
       !> Motion of the point that its two forces prevent; there is no second corner: (3, 3)
       real(wp) :: row(n_rigid, 3)
       real(wp) :: t(2, 6)

@@ -134,8 +134,7 @@ contains
       type(equations_t), intent(in) :: equations
       !> Sizes of the forces around each block: (n_dof, n_equation)
       real(wp), intent(in) :: around(:, :)
-      !> The step; the residue of its strains is set
-      type(step_context_t), intent(inout) :: step
+      type(step_context_t), intent(inout) :: step  !! The step; the residue of its strains is set
       real(wp) :: own, residue
       integer :: b, e
 

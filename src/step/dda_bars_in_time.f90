@@ -58,8 +58,7 @@ contains
    !> One bar as a joint
    pure subroutine make_joint(bars, i, j, springs, load)
       type(bar_springs_t), intent(in) :: bars
-      !> Numbers of the bar and of its joint
-      integer, intent(in) :: i, j
+      integer, intent(in) :: i, j  !! Numbers of the bar and of its joint
       type(joint_springs_t), intent(inout) :: springs
       !> Receives what the bar carries in the middle of its bounds: (n_dof, n_equation) [N/m]
       real(wp), intent(inout) :: load(:, :)

@@ -28,8 +28,7 @@ contains
    pure subroutine assemble_blocks(system, settings, dt, equations, time)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt  !! Length of the step [s]
       type(equations_t), intent(inout) :: equations
       !> Time at the beginning of a dynamic step, or of the loads in a static one; zero if it is
       !> left out [s]

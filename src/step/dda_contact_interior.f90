@@ -184,8 +184,8 @@ contains
    !> Lengthen a step by correctors that bring products back which a longer one would let stray
    pure subroutine lengthen(springs, goal, share, p, x, step, length)
       type(joint_springs_t), intent(in) :: springs
-      real(wp), intent(in) :: goal(:, :)       !! What the products are to be: (4, n_joint)
-      real(wp), intent(in) :: share            !! How much of the way to a bound may be gone
+      real(wp), intent(in) :: goal(:, :)  !! What the products are to be: (4, n_joint)
+      real(wp), intent(in) :: share       !! How much of the way to a bound may be gone
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(in) :: x
       type(interior_t), intent(inout) :: step
@@ -216,8 +216,7 @@ contains
       real(wp), intent(in) :: force(:, :), motion(:, :)
       !> How far off the bounds at the least, over the size of a force
       real(wp), intent(in) :: shallow
-      !> The problem; the size of a force is set
-      type(problem_t), intent(inout) :: p
+      type(problem_t), intent(inout) :: p  !! The problem; the size of a force is set
       type(interior_t), intent(out) :: x
       real(wp) :: opening(3, size(p%joint)), flow, least, unit
       integer :: i, k

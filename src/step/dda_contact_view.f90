@@ -68,8 +68,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Inverse of each block's equations: (n_dof, n_dof, n_equation)
       real(wp), intent(in) :: inverse(:, :, :)
-      !> Number of the joint
-      integer, intent(in) :: j
+      integer, intent(in) :: j  !! Number of the joint
       type(contact_view_t), intent(inout) :: view
       real(wp) :: sum_of(3)
       integer :: c, e, k, side

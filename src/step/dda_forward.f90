@@ -40,8 +40,7 @@ module dda_forward
          !> One of verdict; becomes undecided where the run goes on
          integer, intent(inout) :: answer
          type(error_t), allocatable, intent(inout) :: error
-         !> Pictures of the run
-         type(album_t), intent(inout), optional :: album
+         type(album_t), intent(inout), optional :: album  !! Pictures of the run
       end subroutine follow_path
 
       !> What the end of a run says

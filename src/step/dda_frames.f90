@@ -18,72 +18,54 @@ module dda_frames
 
    !> One picture
    type :: frame_t
-      !> Accepted steps before it
-      integer :: step = 0
+      integer :: step = 0  !! Accepted steps before it
       !> Sum of the lengths of these steps, or time on the path of a static run [s]
       real(wp) :: time = 0.0_wp
-      !> Farthest that a corner has moved [m]
-      real(wp) :: displacement = 0.0_wp
-      !> Corners of all blocks: (2, n_vertex) [m]
-      real(wp), allocatable :: moved(:, :)
+      real(wp) :: displacement = 0.0_wp     !! Farthest that a corner has moved [m]
+      real(wp), allocatable :: moved(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
       !> Motion of all blocks: (6, n_block) [m, m, rad, -, -, -]
       real(wp), allocatable :: motion(:, :)
-      !> Stress sx, sy, txy of all blocks: (3, n_block) [Pa]
-      real(wp), allocatable :: stress(:, :)
+      real(wp), allocatable :: stress(:, :)  !! Stress sx, sy, txy of all blocks: (3, n_block) [Pa]
       !> The joints, which come and go where they are searched: (n_joint)
       type(joint_t), allocatable :: joint(:)
-      !> Force N1, N2, T of all joints: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Slip of all joints in the last step: (n_joint) [m]
-      real(wp), allocatable :: slip(:)
-      !> Largest motion of a point in the last step [m]
-      real(wp) :: farthest = 0.0_wp
+      real(wp), allocatable :: force(:, :)  !! Force N1, N2, T of all joints: (3, n_joint) [N/m]
+      real(wp), allocatable :: slip(:)      !! Slip of all joints in the last step: (n_joint) [m]
+      real(wp) :: farthest = 0.0_wp         !! Largest motion of a point in the last step [m]
       !> Faces that the forces lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
       !> Blocks that are not there; unallocated where all are: (n_block)
       logical, allocatable :: absent(:)
-      !> The bars: (n_bar)
-      type(bar_state_t), allocatable :: bar(:)
+      type(bar_state_t), allocatable :: bar(:)  !! The bars: (n_bar)
    end type frame_t
 
    !> The pictures of a run
    type :: album_t
-      !> Displacement from one picture to the next; 0 to keep none [m]
-      real(wp) :: spacing = 0.0_wp
+      real(wp) :: spacing = 0.0_wp  !! Displacement from one picture to the next; 0 to keep none [m]
       !> Displacement to which a collapse goes on after its verdict, for the pictures of it; 0 to
       !> end there [m]
       real(wp) :: follow = 0.0_wp
-      !> Steps from one picture to the next, in time; 0 to go by displacement
-      integer :: every = 0
+      integer :: every = 0  !! Steps from one picture to the next, in time; 0 to go by displacement
       !> Time from one picture to the next; 0 to go by steps or displacement [s]
       real(wp) :: interval = 0.0_wp
-      !> Time from which that is counted [s]
-      real(wp) :: begin = 0.0_wp
-      !> Displacement or time at which the next one is due [m or s]
-      real(wp) :: due = 0.0_wp
-      !> Pictures kept
-      integer :: n = 0
+      real(wp) :: begin = 0.0_wp  !! Time from which that is counted [s]
+      real(wp) :: due = 0.0_wp    !! Displacement or time at which the next one is due [m or s]
+      integer :: n = 0            !! Pictures kept
       !> The pictures, the first n of them
       type(frame_t), allocatable :: frame(:)
-      !> Energies of a dynamic run
-      type(audit_t) :: audit
+      type(audit_t) :: audit  !! Energies of a dynamic run
       !> Points whose way is kept in every step: (n_point)
       type(measured_point_t), allocatable :: point(:)
-      !> Steps of which it is kept, the beginning among them
-      integer :: n_track = 0
+      integer :: n_track = 0  !! Steps of which it is kept, the beginning among them
       !> Step and time of each, the first n_track of them: (2, :) [-, s]
       real(wp), allocatable :: when(:, :)
-      !> Where the points are: (2, n_point, :) [m]
-      real(wp), allocatable :: track(:, :, :)
-      !> How fast they are, in time: (2, n_point, :) [m/s]
-      real(wp), allocatable :: speed(:, :, :)
+      real(wp), allocatable :: track(:, :, :)  !! Where the points are: (2, n_point, :) [m]
+      real(wp), allocatable :: speed(:, :, :)  !! How fast they are, in time: (2, n_point, :) [m/s]
       !> Supports whose reactions are kept in every step, as block and held point; unallocated where
       !> none are: (2, n)
       integer, allocatable :: support(:, :)
       !> Reactions of the last step: (3, n) [N/m, N/m, N]
       real(wp), allocatable :: reaction_now(:, :)
-      !> Those of all steps: (3, n, :)
-      real(wp), allocatable :: reaction(:, :, :)
+      real(wp), allocatable :: reaction(:, :, :)  !! Those of all steps: (3, n, :)
    end type album_t
 
    !> What is so near to being due is: sums of steps are rounded
@@ -122,14 +104,11 @@ contains
 
    !> Whether a picture is due
    pure logical function frame_is_due(step, time, displacement, last, album) result(is_due)
-      !> Accepted steps so far
-      integer, intent(in) :: step
-      !> Sum of their lengths [s]
-      real(wp), intent(in) :: time
+      integer, intent(in) :: step   !! Accepted steps so far
+      real(wp), intent(in) :: time  !! Sum of their lengths [s]
       !> Farthest that a corner has moved [m]
       real(wp), intent(in) :: displacement
-      !> Whether the run ends here, so that a picture is due anyway
-      logical, intent(in) :: last
+      logical, intent(in) :: last  !! Whether the run ends here, so that a picture is due anyway
       type(album_t), intent(in) :: album
 
       is_due = .false.

@@ -16,10 +16,8 @@ module dda_friction
 
    !> What is known of a fixed-point iteration
    type :: anderson_t
-      !> Number of remembered points
-      integer :: kept = 0
-      !> The points, the newest last: (n, kept or more)
-      real(wp), allocatable :: point(:, :)
+      integer :: kept = 0                   !! Number of remembered points
+      real(wp), allocatable :: point(:, :)  !! The points, the newest last: (n, kept or more)
       !> How the iteration would change each of them: (n, kept or more)
       real(wp), allocatable :: change(:, :)
    end type anderson_t

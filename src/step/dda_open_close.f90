@@ -53,8 +53,7 @@ contains
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: start(:, :)
+      real(wp), intent(in) :: start(:, :)  !! The motion: (n_dof, n_equation)
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face)), from(size(state%motion, 1), size(state%motion, 2))
@@ -261,10 +260,8 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The step; its motion is set, unless the factor is not usable
       type(step_state_t), intent(inout) :: state
-      !> Disagreement: (n_joint) [N/m]
-      real(wp), intent(out) :: gap(:)
-      !> Face that each joint ought to have: (n_joint)
-      type(joint_face_t), intent(out) :: wanted(:)
+      real(wp), intent(out) :: gap(:)               !! Disagreement: (n_joint) [N/m]
+      type(joint_face_t), intent(out) :: wanted(:)  !! Face that each joint ought to have: (n_joint)
 
       call solve_faces(equations, springs, state%cone, state%face, state%trial, state%motion)
       state%passes = state%passes + 1

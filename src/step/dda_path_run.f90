@@ -83,10 +83,8 @@ contains
    !> Go back to the last rest, from where the blocks do not come to rest, or have moved too far,
    !> for a shorter stride of the clock
    pure subroutine return_to_rest(run, falls, returned, album)
-      !> The run; its counts are kept
-      type(run_t), intent(inout) :: run
-      !> Whether they do not come to rest
-      logical, intent(in) :: falls
+      type(run_t), intent(inout) :: run  !! The run; its counts are kept
+      logical, intent(in) :: falls       !! Whether they do not come to rest
       !> Whether there is a shorter stride; otherwise nothing is changed
       logical, intent(out) :: returned
       type(album_t), intent(inout), optional :: album

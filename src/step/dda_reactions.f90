@@ -66,10 +66,8 @@ contains
    pure function forces_of_blocks(system, contacts, force, support) result(reaction)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Their forces N1, N2, T: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> The supports; points get nothing: (2, n)
-      integer, intent(in) :: support(:, :)
+      real(wp), intent(in) :: force(:, :)   !! Their forces N1, N2, T: (3, n_joint) [N/m]
+      integer, intent(in) :: support(:, :)  !! The supports; points get nothing: (2, n)
       !> Force, and moment about the origin of coordinates: (3, n) [N/m, N/m, N]
       real(wp) :: reaction(3, size(support, 2))
       integer :: i, j, number(size(system%equation)), side

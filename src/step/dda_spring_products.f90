@@ -71,8 +71,7 @@ contains
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)
       type(joint_springs_t), intent(in) :: springs
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
       real(wp) :: increment(3, size(springs%equation, 2))
       real(wp) :: seen(3)

@@ -16,26 +16,17 @@ module dda_step_context
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
    type :: energy_t
-      !> Time [s]
-      real(wp) :: time = 0.0_wp
-      !> Of motion
-      real(wp) :: kinetic = 0.0_wp
-      !> Of strained blocks
-      real(wp) :: elastic = 0.0_wp
-      !> Of the joints' springs, where blocks do not move
-      real(wp) :: contact = 0.0_wp
-      !> Of height, zero at the beginning
-      real(wp) :: gravity = 0.0_wp
+      real(wp) :: time = 0.0_wp     !! Time [s]
+      real(wp) :: kinetic = 0.0_wp  !! Of motion
+      real(wp) :: elastic = 0.0_wp  !! Of strained blocks
+      real(wp) :: contact = 0.0_wp  !! Of the joints' springs, where blocks do not move
+      real(wp) :: gravity = 0.0_wp  !! Of height, zero at the beginning
       !> Brought in by forces on points, led points and the shaking ground
       real(wp) :: work = 0.0_wp
-      !> Gone by sliding
-      real(wp) :: friction = 0.0_wp
-      !> Gone by damping
-      real(wp) :: damping = 0.0_wp
-      !> Gone by impacts
-      real(wp) :: impact = 0.0_wp
-      !> Gone by the time step
-      real(wp) :: numerical = 0.0_wp
+      real(wp) :: friction = 0.0_wp   !! Gone by sliding
+      real(wp) :: damping = 0.0_wp    !! Gone by damping
+      real(wp) :: impact = 0.0_wp     !! Gone by impacts
+      real(wp) :: numerical = 0.0_wp  !! Gone by the time step
    end type energy_t
 
    !> What the checks of a try say: whether the step counts, and if not what the next try changes
@@ -54,21 +45,16 @@ module dda_step_context
 
    !> One step
    type :: step_context_t
-      !> Length of the step [s]
-      real(wp) :: dt = 0.0_wp
-      !> Length of a step that nothing shortens [s]
-      real(wp) :: longest = 0.0_wp
-      !> Motion of the blocks and states of the joints
-      type(step_state_t) :: state
+      real(wp) :: dt = 0.0_wp       !! Length of the step [s]
+      real(wp) :: longest = 0.0_wp  !! Length of a step that nothing shortens [s]
+      type(step_state_t) :: state   !! Motion of the blocks and states of the joints
       !> Gaps at its end beyond those that the rows tell, where blocks move in time:
       !> (3, n_joint) [m]
       real(wp), allocatable :: curve(:, :)
-      !> Gaps at its end: (3, n_joint) [m]
-      real(wp), allocatable :: end_gap(:, :)
+      real(wp), allocatable :: end_gap(:, :)  !! Gaps at its end: (3, n_joint) [m]
       !> The blocks at its end, but for their velocities, likewise
       type(block_system_t) :: after
-      !> Where the joints are there: (n_joint)
-      type(joint_place_t), allocatable :: place(:)
+      type(joint_place_t), allocatable :: place(:)  !! Where the joints are there: (n_joint)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
       !> Mean forces of the joints, impacts among them, that change the velocities where blocks move
@@ -76,12 +62,9 @@ module dda_step_context
       real(wp), allocatable :: mean_force(:, :)
       !> Likewise those of the springs at held points: (n_spring) [N/m]
       real(wp), allocatable :: held_mean_force(:)
-      !> Energy that impacts took from the velocities [J/m]
-      real(wp) :: impact = 0.0_wp
-      !> Contacts that meet more slowly do not rebound [m/s]
-      real(wp) :: slowest_impact = 0.0_wp
-      !> Whether there are velocities for its end
-      logical :: has_velocity = .false.
+      real(wp) :: impact = 0.0_wp          !! Energy that impacts took from the velocities [J/m]
+      real(wp) :: slowest_impact = 0.0_wp  !! Contacts that meet more slowly do not rebound [m/s]
+      logical :: has_velocity = .false.    !! Whether there are velocities for its end
       !> How the corners are about to move, where contacts are searched: (2, n_vertex) [m]
       real(wp), allocatable :: travel(:, :)
       !> Whether the contacts must be placed, or searched, for the next try
@@ -92,26 +75,20 @@ module dda_step_context
       logical :: is_solved = .false.
       !> How often the separating axes were chosen by the motion of a try
       integer :: choices = 0
-      !> Whether the step counts
-      logical :: accepted = .false.
-      !> Whether a longer step did not settle
-      logical :: was_cut = .false.
+      logical :: accepted = .false.  !! Whether the step counts
+      logical :: was_cut = .false.   !! Whether a longer step did not settle
       !> Whether no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point, in it and in the try before: [m]
       real(wp) :: farthest = 0.0_wp, last_farthest = 0.0_wp
-      !> Largest acceleration of a point [m/s2]
-      real(wp) :: acceleration = 0.0_wp
+      real(wp) :: acceleration = 0.0_wp  !! Largest acceleration of a point [m/s2]
       !> Largest share that the inertia of a block's translation and rotation has of its load
       real(wp) :: residue = 0.0_wp
       !> Largest share that the inertia of a block's strains has of what strains it
       real(wp) :: strain_residue = 0.0_wp
-      !> Work of the loads [J/m]
-      real(wp) :: work = 0.0_wp
-      !> Twice the kinetic energy that the work was turned into [J/m]
-      real(wp) :: kinetic = 0.0_wp
-      !> Growth of the energy stored in blocks and springs [J/m]
-      real(wp) :: stored = 0.0_wp
+      real(wp) :: work = 0.0_wp     !! Work of the loads [J/m]
+      real(wp) :: kinetic = 0.0_wp  !! Twice the kinetic energy that the work was turned into [J/m]
+      real(wp) :: stored = 0.0_wp   !! Growth of the energy stored in blocks and springs [J/m]
    end type step_context_t
 
    !> What is carried from step to step beside blocks and contacts
@@ -185,28 +162,20 @@ module dda_step_context
 
    !> A rest on the path of a static run, to return to
    type :: rest_t
-      !> The run there
-      type(run_state_t) :: state
+      type(run_state_t) :: state  !! The run there
       !> Forces of the springs at held points: (n_spring) [N/m]
       real(wp), allocatable :: held_force(:)
-      !> Pictures kept so far
-      integer :: n_frame = 0
-      !> Steps so far of which the measured points are kept
-      integer :: n_track = 0
-      !> Displacement or time at which the next picture is due [m or s]
-      real(wp) :: due = 0.0_wp
+      integer :: n_frame = 0    !! Pictures kept so far
+      integer :: n_track = 0    !! Steps so far of which the measured points are kept
+      real(wp) :: due = 0.0_wp  !! Displacement or time at which the next picture is due [m or s]
    end type rest_t
 
    !> All that a run holds
    type, extends(run_state_t) :: run_t
-      !> How it goes
-      type(settings_t) :: settings
-      !> The equations of a step
-      type(equations_t) :: equations
-      !> The step
-      type(step_context_t) :: step
-      !> The last rest on a path; not allocated before the first
-      type(rest_t), allocatable :: rest
+      type(settings_t) :: settings       !! How it goes
+      type(equations_t) :: equations     !! The equations of a step
+      type(step_context_t) :: step       !! The step
+      type(rest_t), allocatable :: rest  !! The last rest on a path; not allocated before the first
       !> The pairs of blocks that touched at the beginning: (2, n_pair)
       integer, allocatable :: neighbours(:, :)
    end type run_t

@@ -25,8 +25,7 @@ contains
    pure function first_reach(system, settings, march) result(reach)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> The march, with the length of the step
-      type(march_t), intent(in) :: march
+      type(march_t), intent(in) :: march  !! The march, with the length of the step
       !> Most that the corners of each block are expected to move: (n_block) [m]
       real(wp) :: reach(size(system%area))
       real(wp) :: radius
@@ -112,8 +111,7 @@ contains
    !> Most that a corner of each block moves
    pure function corner_motion(system, motion) result(way)
       type(block_system_t), intent(in) :: system
-      !> Motion of the blocks: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_equation)
       !> The way of the corner that moves farthest: (n_block) [m]
       real(wp) :: way(size(system%area))
       real(wp) :: t(2, 6), centroid(2)

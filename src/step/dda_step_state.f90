@@ -134,12 +134,9 @@ contains
    !> How far the force that each joint's face gives is from the admissible one, beyond rounding
    pure subroutine disagreement(springs, state, gap, wanted)
       type(joint_springs_t), intent(in) :: springs
-      !> The step; its increments are set
-      type(step_state_t), intent(inout) :: state
-      !> Length of the difference: (n_joint) [N/m]
-      real(wp), intent(out) :: gap(:)
-      !> Face that each joint ought to have: (n_joint)
-      type(joint_face_t), intent(out) :: wanted(:)
+      type(step_state_t), intent(inout) :: state    !! The step; its increments are set
+      real(wp), intent(out) :: gap(:)               !! Length of the difference: (n_joint) [N/m]
+      type(joint_face_t), intent(out) :: wanted(:)  !! Face that each joint ought to have: (n_joint)
       real(wp) :: admissible(3), constant(3), held(3), shift(3), tangent(3, 3), trial(3)
       integer :: j
 

@@ -118,12 +118,10 @@ contains
    !> among them, or has moved by its own size and no chain of blocks that touched at the beginning,
    !> each still within its size of the next, ties it to a fixed block or to one that is held
    pure logical function has_fallen(system, pair, held)
-      !> The blocks, which have moved
-      type(block_system_t), intent(in) :: system
+      type(block_system_t), intent(in) :: system  !! The blocks, which have moved
       !> The pairs of blocks that touched at the beginning: (2, n_pair)
       integer, intent(in) :: pair(:, :)
-      !> Held and led points
-      type(held_point_t), intent(in), optional :: held(:)
+      type(held_point_t), intent(in), optional :: held(:)  !! Held and led points
       integer :: directions(size(system%area)), i, last
       logical :: far(size(system%area)), tied(size(system%area)), near
       real(wp) :: least, most

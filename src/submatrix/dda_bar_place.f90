@@ -31,13 +31,11 @@ contains
    !> Rows and elongation of one bar
    pure subroutine place_bar(system, current, bar, row, elongation, inverse_length)
       type(block_system_t), intent(in) :: system
-      !> Whether the bar goes with the blocks
-      logical, intent(in) :: current
+      logical, intent(in) :: current  !! Whether the bar goes with the blocks
       type(bar_t), intent(in) :: bar
       !> Rows along and across, for both blocks: (n_dof, 2, 2)
       real(wp), intent(out) :: row(:, :, :)
-      !> How much longer it is than at the beginning [m]
-      real(wp), intent(out) :: elongation
+      real(wp), intent(out) :: elongation  !! How much longer it is than at the beginning [m]
       !> One over its length where it turns with the blocks, else 0 [1/m]
       real(wp), intent(out) :: inverse_length
       real(wp) :: t(2, 6, 2), place(2, 2), axis(2), before(2), moved(2)

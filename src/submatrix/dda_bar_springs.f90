@@ -126,12 +126,10 @@ contains
    !> Add the bars to matrix and load of the blocks, or take them away
    pure subroutine add_bars(bars, sign, matrix, load)
       type(bar_springs_t), intent(in) :: bars
-      !> 1 to add, -1 to take away
-      real(wp), intent(in) :: sign
+      real(wp), intent(in) :: sign  !! 1 to add, -1 to take away
       !> Stiffness of the blocks: (n_dof, n_dof, n_equation)
       real(wp), intent(inout) :: matrix(:, :, :)
-      !> Loads: (n_dof, n_equation)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout) :: load(:, :)  !! Loads: (n_dof, n_equation)
       real(wp) :: stiffness(2)
       integer :: c, i, k, side
 
@@ -182,8 +180,7 @@ contains
    !> What the couplings of the bars make of a motion
    pure function bar_motion(bars, motion) result(force)
       type(bar_springs_t), intent(in) :: bars
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
       !> Coupling times motion: (n_dof, n_equation)
       real(wp) :: force(size(motion, 1), size(motion, 2))
       real(wp) :: stiffness(2)

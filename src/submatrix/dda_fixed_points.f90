@@ -26,22 +26,16 @@ module dda_fixed_points
 
    !> One spring for each direction in which a point of a movable block is held
    type :: fixed_points_t
-      !> Number of the held point: (n)
-      integer, allocatable :: point(:)
-      !> Direction, 1 or 2 for x or y: (n)
-      integer, allocatable :: axis(:)
-      !> Equation of its block: (n)
-      integer, allocatable :: equation(:)
+      integer, allocatable :: point(:)     !! Number of the held point: (n)
+      integer, allocatable :: axis(:)      !! Direction, 1 or 2 for x or y: (n)
+      integer, allocatable :: equation(:)  !! Equation of its block: (n)
       !> What the spring sees of the block's unknowns: (n_dof, n)
       real(wp), allocatable :: row(:, :)
       !> Stiffness: (n) [N/m per metre depth]
       real(wp), allocatable :: stiffness(:)
-      !> How far the point must go in the step: (n) [m]
-      real(wp), allocatable :: target(:)
-      !> How fast it must be at the end of the step: (n) [m/s]
-      real(wp), allocatable :: rate(:)
-      !> Force of the spring: (n) [N/m]
-      real(wp), allocatable :: force(:)
+      real(wp), allocatable :: target(:)  !! How far the point must go in the step: (n) [m]
+      real(wp), allocatable :: rate(:)    !! How fast it must be at the end of the step: (n) [m/s]
+      real(wp), allocatable :: force(:)   !! Force of the spring: (n) [N/m]
    end type fixed_points_t
 
 contains
@@ -106,12 +100,10 @@ contains
    !> Add the springs to matrix and load of the blocks
    pure subroutine add_fixed_springs(fixed, target, matrix, load)
       type(fixed_points_t), intent(in) :: fixed
-      !> How far the points must go: (n) [m]
-      real(wp), intent(in) :: target(:)
+      real(wp), intent(in) :: target(:)  !! How far the points must go: (n) [m]
       !> Receives the stiffness: (n_dof, n_dof, n_equation)
       real(wp), intent(inout) :: matrix(:, :, :)
-      !> Receives the forces: (n_dof, n_equation)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout) :: load(:, :)  !! Receives the forces: (n_dof, n_equation)
       integer :: c, i
 
       do i = 1, size(fixed%point)
@@ -128,17 +120,13 @@ contains
    !> is at the end. With all of it along the old row a pendulum would gain energy (Andersen 1983,
    !> J. Comput. Phys. 52:24)
    pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
+      type(block_system_t), intent(in) :: system  !! The blocks before the step
       type(settings_t), intent(in) :: settings
-      !> Number of the spring
-      integer, intent(in) :: i
-      !> Motion of its block in the step: (n_dof)
-      real(wp), intent(in) :: motion(:)
+      integer, intent(in) :: i                    !! Number of the spring
+      real(wp), intent(in) :: motion(:)           !! Motion of its block in the step: (n_dof)
       !> The springs; row and force of this one are changed
       type(fixed_points_t), intent(inout) :: fixed
-      !> Load of its block: (n_dof)
-      real(wp), intent(inout) :: load(:)
+      real(wp), intent(inout) :: load(:)  !! Load of its block: (n_dof)
       real(wp) :: end_motion(6), place(2), t(2, 6)
 
       load = load - fixed%force(i)/2.0_wp*fixed%row(:, i)
@@ -156,8 +144,7 @@ contains
    !> Let the points of a block without strain rate ask for no more than it can do: of the rates of
    !> a rigid block those nearest to what was asked for
    pure subroutine hold_rigidly(equation, fixed)
-      !> Equation of the block
-      integer, intent(in) :: equation
+      integer, intent(in) :: equation  !! Equation of the block
       !> The springs; rows and rates of the block's are changed
       type(fixed_points_t), intent(inout) :: fixed
       integer :: mine(count(fixed%equation == equation)), i
@@ -173,12 +160,9 @@ contains
    !> Add to the forces, and to the load, what the springs carry after a motion
    pure subroutine correct_fixed_forces(target, motion, fixed, load, change)
       real(wp), intent(in) :: target(:)
-      !> Motion of the blocks: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> The springs; their forces are corrected
-      type(fixed_points_t), intent(inout) :: fixed
-      !> The load of the blocks: (n_dof, n_equation)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(in) :: motion(:, :)          !! Motion of the blocks: (n_dof, n_equation)
+      type(fixed_points_t), intent(inout) :: fixed  !! The springs; their forces are corrected
+      real(wp), intent(inout) :: load(:, :)         !! The load of the blocks: (n_dof, n_equation)
       !> Largest correction, beyond what the rounding of a motion makes of a stiff spring [N/m]
       real(wp), intent(out) :: change
       real(wp) :: more, rounding

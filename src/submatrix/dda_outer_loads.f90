@@ -21,14 +21,10 @@ contains
       type(settings_t), intent(in) :: settings
       !> Time at the beginning of a dynamic step, or of the loads in a static one [s]
       real(wp), intent(in) :: time
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> Weight of the blocks: (n_dof, n_equation)
-      real(wp), intent(in) :: weight(:, :)
-      !> Sum of all loads: (n_dof, n_equation)
-      real(wp), intent(out) :: load(:, :)
-      !> Sum of their sizes: (n_dof, n_equation)
-      real(wp), intent(out) :: felt(:, :)
+      real(wp), intent(in) :: dt            !! Length of the step [s]
+      real(wp), intent(in) :: weight(:, :)  !! Weight of the blocks: (n_dof, n_equation)
+      real(wp), intent(out) :: load(:, :)   !! Sum of all loads: (n_dof, n_equation)
+      real(wp), intent(out) :: felt(:, :)   !! Sum of their sizes: (n_dof, n_equation)
       real(wp) :: of_block(6), shaking(2)
       integer :: b, e, i, nd
 

@@ -18,12 +18,9 @@ contains
 
    !> density * integral of T'T over the block, in closed form from its central second moments
    pure function mass_matrix(density, area, second) result(mass)
-      !> Mass per volume [kg/m3]
-      real(wp), intent(in) :: density
-      !> Area of the block [m2]
-      real(wp), intent(in) :: area
-      !> Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
-      real(wp), intent(in) :: second(3)
+      real(wp), intent(in) :: density    !! Mass per volume [kg/m3]
+      real(wp), intent(in) :: area       !! Area of the block [m2]
+      real(wp), intent(in) :: second(3)  !! Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
       !> Symmetric matrix of the unknowns u0, v0, r0, ex, ey, gxy: (6, 6)
       real(wp) :: mass(6, 6)
       real(wp) :: sxx, syy, sxy
@@ -84,12 +81,9 @@ contains
 
    !> Force at a point of the block
    pure function point_load(force, point, centroid, motion) result(load)
-      !> Force: (2) [N/m]
-      real(wp), intent(in) :: force(2)
-      !> Where it acts: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Centre of gravity of the block: (2) [m]
-      real(wp), intent(in) :: centroid(2)
+      real(wp), intent(in) :: force(2)     !! Force: (2) [N/m]
+      real(wp), intent(in) :: point(2)     !! Where it acts: (2) [m]
+      real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
       !> How the block has moved to where point and centre are; not at all if it is left out: (6)
       real(wp), intent(in), optional :: motion(6)
       !> Generalised load: (6)
@@ -104,10 +98,8 @@ contains
    !> Forces of the dashpots on the blocks per unit rate of the unknowns
    pure function dashpot_matrices(system, boundary, n_dof) result(matrix)
       type(block_system_t), intent(in) :: system
-      !> Where their faces let waves out
-      type(boundary_t), intent(in) :: boundary
-      !> Unknowns of a block
-      integer, intent(in) :: n_dof
+      type(boundary_t), intent(in) :: boundary  !! Where their faces let waves out
+      integer, intent(in) :: n_dof              !! Unknowns of a block
       !> The matrices, without entries where no face does: (n_dof, n_dof, n_equation or 0)
       real(wp), allocatable :: matrix(:, :, :)
       real(wp) :: t(2, 6)

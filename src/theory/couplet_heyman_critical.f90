@@ -156,12 +156,9 @@ contains
    !> limits of the solution, alpha/sqrt(2) at small angles and the square root of A - A_limit; the
    !> coefficients are a fit.
    elemental function first_guess(deficit, excess, which) result(beta)
-      !> 2 - A
-      real(wp), intent(in) :: deficit
-      !> A - A_limit
-      real(wp), intent(in) :: excess
-      !> One of `theory`, but not Heyman
-      integer, intent(in) :: which
+      real(wp), intent(in) :: deficit  !! 2 - A
+      real(wp), intent(in) :: excess   !! A - A_limit
+      integer, intent(in) :: which     !! One of `theory`, but not Heyman
       !> Inner hinge [rad]
       real(wp) :: beta
       !> w0^2 of CCR and Milankovitch

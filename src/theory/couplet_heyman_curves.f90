@@ -20,10 +20,8 @@ contains
 
    !> A(beta) - A(alpha), exact to the last digits for any two angles
    elemental real(wp) function embrace_difference(beta, alpha, alpha_tail) result(difference)
-      !> One angle, (0, pi) [rad]
-      real(wp), intent(in) :: beta
-      !> The other, (0, pi) [rad]
-      real(wp), intent(in) :: alpha
+      real(wp), intent(in) :: beta   !! One angle, (0, pi) [rad]
+      real(wp), intent(in) :: alpha  !! The other, (0, pi) [rad]
       !> What alpha is short of the meant angle by; 0 where it is meant as it is [rad]
       real(wp), intent(in) :: alpha_tail
       real(wp) :: s, d
@@ -68,16 +66,11 @@ contains
 
    !> Smallest positive root of excess + d eta - p eta^2 + c eta^3, close to a first guess
    elemental subroutine settle_cubic(excess, d, p, c, eta)
-      !> Coefficient of 1, not negative
-      real(wp), intent(in) :: excess
-      !> Coefficient of eta
-      real(wp), intent(in) :: d
-      !> Coefficient of -eta^2
-      real(wp), intent(in) :: p
-      !> Coefficient of eta^3
-      real(wp), intent(in) :: c
-      !> First guess, the root for c = 0; then the root
-      real(wp), intent(inout) :: eta
+      real(wp), intent(in) :: excess  !! Coefficient of 1, not negative
+      real(wp), intent(in) :: d       !! Coefficient of eta
+      real(wp), intent(in) :: p       !! Coefficient of -eta^2
+      real(wp), intent(in) :: c       !! Coefficient of eta^3
+      real(wp), intent(inout) :: eta  !! First guess, the root for c = 0; then the root
       !> Newton's method doubles the digits: 3 to 6 are needed
       integer, parameter :: most_steps = 30
       real(wp) :: change, last_change

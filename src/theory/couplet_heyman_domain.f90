@@ -15,10 +15,8 @@ contains
 
    !> Name the first element that is not valid, unless another argument has been blamed already
    pure subroutine blame(argument, valid, fault)
-      !> Place of the argument in the call, from 1
-      integer, intent(in) :: argument
-      !> Whether each of its elements is valid: (:)
-      logical, intent(in) :: valid(:)
+      integer, intent(in) :: argument  !! Place of the argument in the call, from 1
+      logical, intent(in) :: valid(:)  !! Whether each of its elements is valid: (:)
       !> Argument and element, 0 and 0 where all is well so far: (2)
       integer, intent(inout) :: fault(2)
 

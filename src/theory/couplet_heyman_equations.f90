@@ -29,13 +29,11 @@ module couplet_heyman_equations
 
    !> Names of the theories
    type :: theory_enum
-      !> Resultant tangent to the intrados, weight along the centre line
-      integer :: heyman = 1
+      integer :: heyman = 1  !! Resultant tangent to the intrados, weight along the centre line
       !> Line of thrust tangent to the intrados, weight along the centre line (Cocchetti, Colasante,
       !> Rizzi)
       integer :: ccr = 2
-      !> Line of thrust tangent to the intrados, weight where it is
-      integer :: milankovitch = 3
+      integer :: milankovitch = 3  !! Line of thrust tangent to the intrados, weight where it is
    end type theory_enum
 
    !> The names in use
@@ -45,24 +43,15 @@ module couplet_heyman_equations
    type :: limits_t
       !> Greatest half angle of embrace; the thrust vanishes there [rad]
       real(wp) :: alpha_limit
-      !> What alpha_limit is short of the true angle by [rad]
-      real(wp) :: alpha_limit_tail
-      !> A there, eq. (9)
-      real(wp) :: embrace_limit
-      !> Thickness ratio there
-      real(wp) :: eta_limit
-      !> Inner hinge there [rad]
-      real(wp) :: beta_limit
-      !> Farthest inner hinge of all half angles [rad]
-      real(wp) :: beta_max
-      !> Half angle that has it [rad]
-      real(wp) :: alpha_beta_max
-      !> A there
-      real(wp) :: embrace_beta_max
-      !> Thickness ratio there
-      real(wp) :: eta_beta_max
-      !> Thrust there
-      real(wp) :: h_beta_max
+      real(wp) :: alpha_limit_tail  !! What alpha_limit is short of the true angle by [rad]
+      real(wp) :: embrace_limit     !! A there, eq. (9)
+      real(wp) :: eta_limit         !! Thickness ratio there
+      real(wp) :: beta_limit        !! Inner hinge there [rad]
+      real(wp) :: beta_max          !! Farthest inner hinge of all half angles [rad]
+      real(wp) :: alpha_beta_max    !! Half angle that has it [rad]
+      real(wp) :: embrace_beta_max  !! A there
+      real(wp) :: eta_beta_max      !! Thickness ratio there
+      real(wp) :: h_beta_max        !! Thrust there
    end type limits_t
 
    !> Half angle at which A = 1: eta(beta) starts from 0 up to here, from eta_0 > 0 beyond, eq. (26)
@@ -136,8 +125,7 @@ contains
 
    !> p(x) = x - sin x: what an arc of the unit circle is longer than its half chord
    elemental real(wp) function arc_excess(x)
-      !> Angle [rad]
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x  !! Angle [rad]
       !> Ratios of the series, 1/(2i (2i + 1))
       real(wp), parameter :: ratio(terms) = &
          1.0_wp/real([20, 42, 72, 110, 156, 210, 272, 342, 420, 506, 600], wp)

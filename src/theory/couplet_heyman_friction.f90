@@ -28,16 +28,12 @@ module couplet_heyman_friction
 
    !> Least friction coefficients of an arch
    type :: friction_limits_t
-      !> From here on the arch collapses by rotation alone
-      real(wp) :: mu_rotational
-      !> Below here no thickness admits equilibrium
-      real(wp) :: mu_mixed
-      !> Thrust at mu_mixed [w r]
-      real(wp) :: h_mixed
+      real(wp) :: mu_rotational  !! From here on the arch collapses by rotation alone
+      real(wp) :: mu_mixed       !! Below here no thickness admits equilibrium
+      real(wp) :: h_mixed        !! Thrust at mu_mixed [w r]
       !> Joint of the haunch that slides at mu_mixed, from the crown [rad]
       real(wp) :: beta_slip
-      !> Inner hinge there [rad], and thickness ratio
-      real(wp) :: beta_mixed, eta_mixed
+      real(wp) :: beta_mixed, eta_mixed  !! Inner hinge there [rad], and thickness ratio
       !> Whether at mu_rotational the springing slides first, rather than the haunch
       logical :: springing_slides
    end type friction_limits_t
@@ -104,10 +100,10 @@ contains
    elemental subroutine limit_rotation(alpha, which, beta, eta, h, x, mu, springing_slides)
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-      real(wp), intent(in) :: beta, eta, h       !! Critical hinge, thickness and thrust
-      real(wp), intent(out) :: x                 !! That thrust, as asin(sqrt(1 - h)) [rad]
-      real(wp), intent(out) :: mu                !! The coefficient
-      logical, intent(out) :: springing_slides   !! Whether there the springing slides first
+      real(wp), intent(in) :: beta, eta, h      !! Critical hinge, thickness and thrust
+      real(wp), intent(out) :: x                !! That thrust, as asin(sqrt(1 - h)) [rad]
+      real(wp), intent(out) :: mu               !! The coefficient
+      logical, intent(out) :: springing_slides  !! Whether there the springing slides first
       real(wp) :: springing, haunch
 
       x = asin(sqrt(rotational_deficit(alpha, which, beta, eta, h)))
@@ -189,13 +185,11 @@ contains
    !> hinge has reached the crown and opens there outwards: beta is 0.
    elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
       real(wp), intent(in) :: alpha
-      !> 1 - h
-      real(wp), intent(in) :: deficit
+      real(wp), intent(in) :: deficit  !! 1 - h
       !> Whether the line passes the extrados at the crown, rather than at the springing
       logical, intent(in) :: through_crown
       integer, intent(in) :: which
-      !> A first guess of the inner hinge; then the hinge [rad]
-      real(wp), intent(inout) :: beta
+      real(wp), intent(inout) :: beta  !! A first guess of the inner hinge; then the hinge [rad]
       real(wp), intent(out) :: eta
       real(wp) :: ratio, change
       integer :: step

@@ -16,34 +16,23 @@ module couplet_heyman_ring
 
    !> One half of an arch, joint by joint; nothing here depends on eta
    type :: ring_t
-      !> Cosine of the joint's angle: (:)
-      real(wp), allocatable :: cosine(:)
-      !> 1 - cosine: (:)
-      real(wp), allocatable :: versine(:)
+      real(wp), allocatable :: cosine(:)   !! Cosine of the joint's angle: (:)
+      real(wp), allocatable :: versine(:)  !! 1 - cosine: (:)
       !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
       real(wp), allocatable :: form(:)
-      !> M, moment of the weights above the joint: (:)
-      real(wp), allocatable :: moment(:)
-      !> n, normal force at the joint for H = 1: (:)
-      real(wp), allocatable :: normal(:)
-      !> Angle less weight above the joint, t - W: (:)
-      real(wp), allocatable :: lightness(:)
-      !> Deficits that friction allows: from lowest
-      real(wp) :: lowest = -huge(1.0_wp)
-      !> ... to highest
-      real(wp) :: highest = huge(1.0_wp)
-      !> Joint whose friction sets lowest; 0 if none
-      integer :: lowest_joint = 0
-      !> Joint whose friction sets highest; 0 if none
-      integer :: highest_joint = 0
+      real(wp), allocatable :: moment(:)     !! M, moment of the weights above the joint: (:)
+      real(wp), allocatable :: normal(:)     !! n, normal force at the joint for H = 1: (:)
+      real(wp), allocatable :: lightness(:)  !! Angle less weight above the joint, t - W: (:)
+      real(wp) :: lowest = -huge(1.0_wp)     !! Deficits that friction allows: from lowest
+      real(wp) :: highest = huge(1.0_wp)     !! ... to highest
+      integer :: lowest_joint = 0            !! Joint whose friction sets lowest; 0 if none
+      integer :: highest_joint = 0           !! Joint whose friction sets highest; 0 if none
    end type ring_t
 
    !> Where the gap is widest at one eta, and the joints that keep it from being wider
    type :: pinch_t
-      !> Deficit of the thrust there
-      real(wp) :: deficit = 0.0_wp
-      !> The gap there
-      real(wp) :: gap = 0.0_wp
+      real(wp) :: deficit = 0.0_wp  !! Deficit of the thrust there
+      real(wp) :: gap = 0.0_wp      !! The gap there
       !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
       logical :: unbounded = .false.
       !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
@@ -51,16 +40,14 @@ module couplet_heyman_ring
       !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
       !> sliding joint: (2)
       integer :: right(2) = 0
-      !> Joint whose friction holds the deficit; 0 if none
-      integer :: sliding = 0
+      integer :: sliding = 0  !! Joint whose friction holds the deficit; 0 if none
    end type pinch_t
 
 contains
 
    !> Shape of the ring from its joints; docs/theory.md has the identity behind the steps of form
    pure subroutine make_ring(joint_angle, facets, ring)
-      !> Joints of one half, from the crown: (n) [rad]
-      real(wp), intent(in) :: joint_angle(:)
+      real(wp), intent(in) :: joint_angle(:)  !! Joints of one half, from the crown: (n) [rad]
       !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
       integer, intent(in) :: facets(:)
       type(ring_t), intent(out) :: ring
@@ -136,14 +123,10 @@ contains
    !>
    !> The deficit at equality is 1 - W cot x = (k(x) + (x - W) cos x)/sin x, a sum of small terms
    pure subroutine limit_deficit(x, excess, side, joint, ring)
-      !> Angle of the joint, plus or minus that of friction [rad]
-      real(wp), intent(in) :: x
-      !> x - W
-      real(wp), intent(in) :: excess
-      !> +1 or -1: the sense of the inequality
-      integer, intent(in) :: side
-      !> Index of the joint
-      integer, intent(in) :: joint
+      real(wp), intent(in) :: x       !! Angle of the joint, plus or minus that of friction [rad]
+      real(wp), intent(in) :: excess  !! x - W
+      integer, intent(in) :: side     !! +1 or -1: the sense of the inequality
+      integer, intent(in) :: joint    !! Index of the joint
       !> The ring: its limits of the deficit are narrowed
       type(ring_t), intent(inout) :: ring
       real(wp) :: bound

@@ -24,20 +24,13 @@ contains
    !> Critical solution by the stable kernels
    subroutine critical(n, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
-      !> Number of elements
-      integer, intent(in) :: n
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Theory
-      integer, intent(in) :: which
-      !> Inner hinge: (n) [rad]
-      real(wp), intent(out) :: beta(n)
-      !> Thickness ratio: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> Thrust: (n) [w r]
-      real(wp), intent(out) :: h(n)
-      !> First fault: (2)
-      integer, intent(out) :: fault(2)
+      integer, intent(in) :: n          !! Number of elements
+      real(wp), intent(in) :: alpha(n)  !! Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      integer, intent(in) :: which      !! Theory
+      real(wp), intent(out) :: beta(n)  !! Inner hinge: (n) [rad]
+      real(wp), intent(out) :: eta(n)   !! Thickness ratio: (n) [-]
+      real(wp), intent(out) :: h(n)     !! Thrust: (n) [w r]
+      integer, intent(out) :: fault(2)  !! First fault: (2)
 
       call critical_solution(alpha, which, beta, eta, h)
       fault = 0
@@ -76,8 +69,7 @@ contains
    subroutine critical_near_limit(n, distance, which, beta, eta, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
-      !> alpha_limit - alpha, [0, alpha_limit): (n) [rad]
-      real(wp), intent(in) :: distance(n)
+      real(wp), intent(in) :: distance(n)  !! alpha_limit - alpha, [0, alpha_limit): (n) [rad]
       integer, intent(in) :: which
       real(wp), intent(out) :: beta(n), eta(n), h(n)
       integer, intent(out) :: fault(2)
@@ -93,8 +85,7 @@ contains
    subroutine curve(n, beta, alpha, which, eta, fault)
       !f2py threadsafe
       integer, intent(in) :: n
-      !> Inner hinge, [0, alpha]: (n) [rad]
-      real(wp), intent(in) :: beta(n)
+      real(wp), intent(in) :: beta(n)  !! Inner hinge, [0, alpha]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
       integer, intent(in) :: which
       real(wp), intent(out) :: eta(n)
@@ -126,8 +117,7 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: beta(n), alpha(n)
       integer, intent(in) :: which
-      !> d eta/d beta: (n) [1/rad]
-      real(wp), intent(out) :: rate(n)
+      real(wp), intent(out) :: rate(n)  !! d eta/d beta: (n) [1/rad]
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -140,15 +130,11 @@ contains
    subroutine line(n, beta, alpha, eta, which, ratio, fault)
       !f2py threadsafe
       integer, intent(in) :: n
-      !> Angle of the joint, [0, alpha]: (n) [rad]
-      real(wp), intent(in) :: beta(n)
-      !> Half angle of embrace, (0, pi): (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Thickness ratio, (0, 2), with a thrust h2 > 0: (n) [-]
-      real(wp), intent(in) :: eta(n)
+      real(wp), intent(in) :: beta(n)    !! Angle of the joint, [0, alpha]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)   !! Half angle of embrace, (0, pi): (n) [rad]
+      real(wp), intent(in) :: eta(n)     !! Thickness ratio, (0, 2), with a thrust h2 > 0: (n) [-]
       integer, intent(in) :: which
-      !> 2e/t: (n)
-      real(wp), intent(out) :: ratio(n)
+      real(wp), intent(out) :: ratio(n)  !! 2e/t: (n)
       integer, intent(out) :: fault(2)
 
       fault = 0

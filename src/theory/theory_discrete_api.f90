@@ -17,28 +17,20 @@ contains
    subroutine friction_range(n, alpha, which, rotational, mixed, h, slip, springing, beta, &
                              eta, fault)
       !f2py threadsafe
-      !> Number of elements
-      integer, intent(in) :: n
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Theory
-      integer, intent(in) :: which
+      integer, intent(in) :: n          !! Number of elements
+      real(wp), intent(in) :: alpha(n)  !! Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      integer, intent(in) :: which      !! Theory
       !> Least coefficient for a collapse by rotation alone: (n)
       real(wp), intent(out) :: rotational(n)
-      !> Least coefficient for any equilibrium: (n)
-      real(wp), intent(out) :: mixed(n)
-      !> Thrust at the latter: (n) [w r]
-      real(wp), intent(out) :: h(n)
-      !> Joint of the haunch that slides there: (n) [rad]
-      real(wp), intent(out) :: slip(n)
+      real(wp), intent(out) :: mixed(n)  !! Least coefficient for any equilibrium: (n)
+      real(wp), intent(out) :: h(n)      !! Thrust at the latter: (n) [w r]
+      real(wp), intent(out) :: slip(n)   !! Joint of the haunch that slides there: (n) [rad]
       !> 1 where the springing slides first, 0 where the haunch does: (n)
       integer, intent(out) :: springing(n)
       !> Inner hinge at the least coefficient for any equilibrium: (n) [rad]
       real(wp), intent(out) :: beta(n)
-      !> Thickness ratio there: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> First fault: (2)
-      integer, intent(out) :: fault(2)
+      real(wp), intent(out) :: eta(n)   !! Thickness ratio there: (n) [-]
+      integer, intent(out) :: fault(2)  !! First fault: (2)
       type(friction_limits_t) :: limits
       integer :: i
 
@@ -61,8 +53,7 @@ contains
    subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
-      !> Friction coefficient, [mu_mixed, infinity]: (n)
-      real(wp), intent(in) :: mu(n)
+      real(wp), intent(in) :: mu(n)  !! Friction coefficient, [mu_mixed, infinity]: (n)
       real(wp), intent(in) :: alpha(n)
       integer, intent(in) :: which
       real(wp), intent(out) :: beta(n)
@@ -81,28 +72,20 @@ contains
    subroutine discrete_equal(n, voussoirs, alpha, facet, friction, no_slip, &
                              status, eta, h, joint, role, fault)
       !f2py threadsafe
-      !> Number of arches
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of arches
       !> Number of voussoirs of the whole arch, 1 to 10 000 000: (n)
       integer, intent(in) :: voussoirs(n)
-      !> Half angle of embrace, (0, pi): (n) [rad]
-      real(wp), intent(in) :: alpha(n)
+      real(wp), intent(in) :: alpha(n)  !! Half angle of embrace, (0, pi): (n) [rad]
       !> Greatest span of a chord, 0 for one chord a voussoir: (n) [rad]
       real(wp), intent(in) :: facet(n)
       !> Friction angle, pi/2 or more for joints that cannot slide: (n) [rad]
       real(wp), intent(in) :: friction(n)
-      !> Not 0: the springings cannot slide
-      integer, intent(in) :: no_slip
-      !> Outcome, one of discrete_status: (n)
-      integer, intent(out) :: status(n)
-      !> Critical thickness ratio, 0 unless found: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> Thrust there: (n) [gamma r^2 eta]
-      real(wp), intent(out) :: h(n)
-      !> Angles of the joints that bind: (5, n) [rad]
-      real(wp), intent(out) :: joint(5, n)
-      !> What each does, one of joint_role, 0 for none: (5, n)
-      integer, intent(out) :: role(5, n)
+      integer, intent(in) :: no_slip        !! Not 0: the springings cannot slide
+      integer, intent(out) :: status(n)     !! Outcome, one of discrete_status: (n)
+      real(wp), intent(out) :: eta(n)       !! Critical thickness ratio, 0 unless found: (n) [-]
+      real(wp), intent(out) :: h(n)         !! Thrust there: (n) [gamma r^2 eta]
+      real(wp), intent(out) :: joint(5, n)  !! Angles of the joints that bind: (5, n) [rad]
+      integer, intent(out) :: role(5, n)    !! What each does, one of joint_role, 0 for none: (5, n)
       integer, intent(out) :: fault(2)
       integer, parameter :: most_voussoirs = 10000000
       integer :: i, no_fault(2)
@@ -126,25 +109,18 @@ contains
    subroutine discrete_joints(n, joints, facet, friction, no_slip, &
                               status, eta, h, joint, role, fault)
       !f2py threadsafe
-      !> Number of joints
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of joints
       !> Joints from the crown, strictly increasing, in [0, pi): (n) [rad]
       real(wp), intent(in) :: joints(n)
-      !> Greatest span of a chord, 0 for one chord a voussoir [rad]
-      real(wp), intent(in) :: facet
+      real(wp), intent(in) :: facet  !! Greatest span of a chord, 0 for one chord a voussoir [rad]
       !> Friction angle, pi/2 or more for joints that cannot slide [rad]
       real(wp), intent(in) :: friction
       integer, intent(in) :: no_slip
-      !> Outcome, one of discrete_status
-      integer, intent(out) :: status
-      !> Critical thickness ratio, 0 unless found [-]
-      real(wp), intent(out) :: eta
-      !> Thrust there [gamma r^2 eta]
-      real(wp), intent(out) :: h
-      !> Angles of the joints that bind: (5) [rad]
-      real(wp), intent(out) :: joint(5)
-      !> What each does, one of joint_role, 0 for none: (5)
-      integer, intent(out) :: role(5)
+      integer, intent(out) :: status     !! Outcome, one of discrete_status
+      real(wp), intent(out) :: eta       !! Critical thickness ratio, 0 unless found [-]
+      real(wp), intent(out) :: h         !! Thrust there [gamma r^2 eta]
+      real(wp), intent(out) :: joint(5)  !! Angles of the joints that bind: (5) [rad]
+      integer, intent(out) :: role(5)    !! What each does, one of joint_role, 0 for none: (5)
       integer, intent(out) :: fault(2)
       type(discrete_solution_t) :: solution
       integer :: i

@@ -14,22 +14,14 @@ contains
    !> Eq. (10): eccentricity of the thrust at a joint
    subroutine joint_eccentricity(n, beta, alpha, eta, h, which, ratio, fault)
       !f2py threadsafe
-      !> Number of elements
-      integer, intent(in) :: n
-      !> Angle of the joint, [0, alpha]: (n) [rad]
-      real(wp), intent(in) :: beta(n)
-      !> Half angle of embrace, (0, pi): (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Thickness ratio, (0, 2): (n) [-]
-      real(wp), intent(in) :: eta(n)
-      !> Thrust, > 0: (n) [w r]
-      real(wp), intent(in) :: h(n)
-      !> Theory
-      integer, intent(in) :: which
-      !> 2e/t: (n)
-      real(wp), intent(out) :: ratio(n)
-      !> First fault: (2)
-      integer, intent(out) :: fault(2)
+      integer, intent(in) :: n           !! Number of elements
+      real(wp), intent(in) :: beta(n)    !! Angle of the joint, [0, alpha]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)   !! Half angle of embrace, (0, pi): (n) [rad]
+      real(wp), intent(in) :: eta(n)     !! Thickness ratio, (0, 2): (n) [-]
+      real(wp), intent(in) :: h(n)       !! Thrust, > 0: (n) [w r]
+      integer, intent(in) :: which       !! Theory
+      real(wp), intent(out) :: ratio(n)  !! 2e/t: (n)
+      integer, intent(out) :: fault(2)   !! First fault: (2)
 
       fault = 0
       call blame(2, is_half_angle(alpha), fault)
@@ -44,8 +36,7 @@ contains
       !f2py threadsafe
       integer, intent(in) :: n
       real(wp), intent(in) :: alpha(n)
-      !> alpha cot(alpha/2): (n)
-      real(wp), intent(out) :: a(n)
+      real(wp), intent(out) :: a(n)  !! alpha cot(alpha/2): (n)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -57,10 +48,8 @@ contains
    subroutine thrust_at_joint(n, beta, ratio, eta, which, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
-      !> Angle of the joint, (0, pi): (n) [rad]
-      real(wp), intent(in) :: beta(n)
-      !> 2e/t of the point, [-1, 1]: (n)
-      real(wp), intent(in) :: ratio(n)
+      real(wp), intent(in) :: beta(n)   !! Angle of the joint, (0, pi): (n) [rad]
+      real(wp), intent(in) :: ratio(n)  !! 2e/t of the point, [-1, 1]: (n)
       real(wp), intent(in) :: eta(n)
       integer, intent(in) :: which
       real(wp), intent(out) :: h(n)
@@ -79,8 +68,7 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: alpha(n), eta(n)
       integer, intent(in) :: which
-      !> Thrust, negative where none can: (n) [w r]
-      real(wp), intent(out) :: h(n)
+      real(wp), intent(out) :: h(n)  !! Thrust, negative where none can: (n) [w r]
       integer, intent(out) :: fault(2)
 
       fault = 0
