@@ -14,7 +14,8 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs, unit_of_length
+   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs, take_over
+   public :: unit_of_length
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -124,6 +125,27 @@ contains
       graph%pull = graph%pull(:, k)
       graph%cohesion = graph%cohesion(:, k)
    end subroutine keep_joints
+
+   !> Take the joints of a graph over: what is left of it tells of kinds and of blocks alone
+   pure subroutine take_over(from, to)
+      type(joint_graph_t), intent(inout) :: from
+      type(joint_graph_t), intent(out) :: to
+
+      to%n_block = from%n_block
+      to%n_dof = from%n_dof
+      to%kind = from%kind
+      if (allocated(from%bound)) to%bound = from%bound
+      call move_alloc(from%block, to%block)
+      call move_alloc(from%row, to%row)
+      call move_alloc(from%friction, to%friction)
+      call move_alloc(from%length, to%length)
+      call move_alloc(from%crush, to%crush)
+      call move_alloc(from%pull, to%pull)
+      call move_alloc(from%cohesion, to%cohesion)
+      call move_alloc(from%compliance, to%compliance)
+      call move_alloc(from%gap, to%gap)
+      call move_alloc(from%mass, to%mass)
+   end subroutine take_over
 
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)

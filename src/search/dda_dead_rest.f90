@@ -32,6 +32,7 @@ contains
       if (.not. (proof%no_start .and. is_balanced)) return
       call rest_under_dead_loads(settings, system, contacts, start, slides, n)
       if (allocated(start)) then
+         call scene_graph(settings, system, contacts, graph)
          call follow_stations(settings, system, graph, stations, proof, start)
       else
          proof%end = path_end%undecided

@@ -98,7 +98,7 @@ module dda_decision
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
          type(contacts_t), intent(in) :: contacts
-         type(joint_graph_t), intent(in) :: graph
+         type(joint_graph_t), intent(inout) :: graph    !! Their joints, which the path takes over
          type(load_stations_t), intent(in) :: stations
          logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
          type(graph_verdict_t), intent(inout) :: proof  !! How the path went

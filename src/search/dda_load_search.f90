@@ -93,7 +93,7 @@ contains
       & may_stand, n)
       integer, intent(in) :: load        !! One of searched_load
       type(scene_t), intent(in) :: scene
-      type(joint_graph_t), intent(in) :: graph
+      type(joint_graph_t), intent(inout) :: graph
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: low, high  !! The range
       type(side_t), intent(inout) :: right, left
@@ -141,7 +141,7 @@ contains
    pure subroutine follow_side(load, scene, graph, origin, last, outward, search, side)
       integer, intent(in) :: load  !! One of searched_load
       type(scene_t), intent(in) :: scene
-      type(joint_graph_t), intent(in) :: graph
+      type(joint_graph_t), intent(inout) :: graph  !! Its joints, made anew behind a path
       !> Value from which the range is searched: 0, or one that stands where 0 does not
       real(wp), intent(in) :: origin
       real(wp), intent(in) :: last     !! End of the range on this side
@@ -173,6 +173,7 @@ contains
          stations = load_stations(settings, .true.)
          call follow_from_rest(settings, scene%system, scene%contacts, graph, stations, &
             & side%has_limit .or. limit%state == limit_state%unbounded, proof)
+         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%falls_dead = proof%no_start
          side%stands_upright = .not. proof%no_start
@@ -184,7 +185,7 @@ contains
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed
             side%value = far
-            proof%mechanism = limit%velocity
+            proof%mechanism = side%velocity
             proof%is_told = .true.
             proof%flow = flow_rule%associated
          end if
@@ -213,7 +214,7 @@ contains
       real(wp), intent(in) :: origin, last  !! Where it begins, and from there the end of the range
       type(search_t), intent(in) :: search
       type(side_t), intent(inout) :: side
-      type(limit_load_t), intent(out) :: limit
+      type(limit_load_t), intent(out) :: limit  !! The limit, whose proofs the side has
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), tolerance
 
       if (breaks(graph) .or. load == searched_load%tilt .and. .not. &
@@ -223,13 +224,13 @@ contains
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
+      call move_alloc(limit%force, side%force)
+      call move_alloc(limit%velocity, side%velocity)
       side%has_limit = limit%state == limit_state%found
       if (limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
       if (.not. side%has_limit) return
       side%beyond = dead + (1.0_wp + nudge)*limit%upper*live
       side%limit = sign(1.0_wp, last)*[limit%lower, limit%upper]
-      allocate (side%force, source=limit%force)
-      allocate (side%velocity, source=limit%velocity)
       allocate (side%live, source=live)
       if (load /= searched_load%tilt) return
       ! gravity that tilts is as large as before
@@ -259,7 +260,7 @@ contains
          end if
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
-            proof%mechanism = limit%velocity
+            proof%mechanism = side%velocity
             proof%is_told = limit%state == limit_state%found
          case (limit_state%unbounded)
             side%end = path_end%reached
@@ -271,8 +272,7 @@ contains
             & side%end = path_end%reached
          if (side%end == path_end%reached) side%value = last
          proof%end = side%end
-         proof%force = limit%force
-         if (allocated(side%force)) proof%force = side%force
+         proof%force = side%force
          ! the path has left this state before the limit
          if (allocated(proof%state)) deallocate (proof%state)
       end associate

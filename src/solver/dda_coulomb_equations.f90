@@ -26,6 +26,8 @@ module dda_coulomb_equations
 
    !> Answers that are kept: more cost as much as a new factor
    integer, parameter :: max_answer = 32
+   !> Of many blocks fewer are, so that they take no more numbers than this; at least so many
+   integer, parameter :: most_numbers = 40000, least_answers = 12
 
    !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, of soft
    !> assemblies more, in motion nearly all; results are the same from 1e-12 to 1e-9
@@ -57,11 +59,11 @@ module dda_coulomb_equations
       real(wp), allocatable :: difference(:, :, :)
       !> Number of the answer to a unit force along each of their parts, or 0: (3, max_answer)
       integer, allocatable :: answer(:, :)
-      !> Number of answers
-      integer :: n_answer = 0
+      !> Number of answers, and the most that are kept
+      integer :: n_answer = 0, most_answers = max_answer
       !> Place and part that each belongs to: (2, max_answer)
       integer, allocatable :: origin(:, :)
-      !> Motion of all blocks: (n_dof, n_block, max_answer)
+      !> Motion of all blocks: (n_dof, n_block, most_answers)
       real(wp), allocatable :: response(:, :, :)
       !> The largest of it: (max_answer)
       real(wp) :: reach(max_answer) = 0.0_wp
@@ -93,6 +95,8 @@ contains
 
       n_joint = size(joints%shear_role)
       call new_matrix(joints, equations%base)
+      equations%most_answers = max(least_answers, min(max_answer, &
+         & most_numbers/(joints%graph%n_dof*max(1, joints%graph%n_block))))
       allocate (equations%base_face(3, n_joint), equations%place(n_joint), source=0)
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
@@ -186,8 +190,8 @@ contains
             & .and. equations%answer(:, c) == 0
       end do
       ! an answer costs as much as a solution: none is looked for where a new factor will be
-      if (count(is_new(:, :equations%n_change)) > min(max_answer - equations%n_answer, max_new)) &
-         & return
+      if (count(is_new(:, :equations%n_change)) > min(max_new, &
+         & equations%most_answers - equations%n_answer)) return
       do c = 1, equations%n_change
          do k = 1, 3
             if (is_new(k, c)) call find_answer(equations, joints, c, k)
@@ -206,7 +210,7 @@ contains
 
       ! a load at once that stands asks for none
       if (.not. allocated(equations%response)) allocate (equations%response( &
-         & joints%graph%n_dof, joints%graph%n_block, max_answer))
+         & joints%graph%n_dof, joints%graph%n_block, equations%most_answers))
       equations%n_answer = equations%n_answer + 1
       a = equations%n_answer
       equations%answer(part, place) = a
@@ -366,11 +370,11 @@ contains
 
    !> Take answers from a motion; flat and four at once, so that the motion is read and written less
    pure subroutine subtract_answers(n, response, active, y, x)
-      integer, intent(in) :: n                         !! Unknowns of all blocks
-      real(wp), intent(in) :: response(n, max_answer)  !! Answers
-      integer, intent(in) :: active(:)                 !! Those in use: (n_active)
-      real(wp), intent(in) :: y(:)                     !! How much of each: (n_active)
-      real(wp), intent(inout) :: x(n)                  !! The motion
+      integer, intent(in) :: n                !! Unknowns of all blocks
+      real(wp), intent(in) :: response(n, *)  !! Answers
+      integer, intent(in) :: active(:)        !! Those in use: (n_active)
+      real(wp), intent(in) :: y(:)            !! How much of each: (n_active)
+      real(wp), intent(inout) :: x(n)         !! The motion
       integer :: i
 
       do i = 1, size(y) - 3, 4

@@ -35,12 +35,11 @@ module dda_coulomb_interior
       real(wp), allocatable :: flow(:, :)    !! Opening or slip at each face: (4, n_joint)
    end type coulomb_interior_t
 
-   !> What an iterate leaves of the equations, and what a step is to change of the products
+   !> What an iterate leaves of the equations
    type :: rest_t
       real(wp), allocatable :: balance(:, :)  !! Of the balance of the blocks: (n_dof, n_block)
       real(wp), allocatable :: opening(:, :)  !! Of the opening of the joints: (3, n_joint)
-      real(wp), allocatable :: slack(:, :)    !! Of the slacks: (4, n_joint)
-      real(wp), allocatable :: product(:, :)  !! Change of slack times flow: (4, n_joint)
+      real(wp) :: slack = 0.0_wp              !! The most of the slacks
    end type rest_t
 
 contains
@@ -77,8 +76,7 @@ contains
          call find_rest(joints, load, damping, face, x, rest)
          mean = sum(x%slack*x%flow, face)/real(max(1, n_face), wp)
          gap = mean*real(n_face, wp)/max(abs(sum(load*x%motion)), nothing)
-         merit = max(gap, max(maxval(abs(rest%balance)), &
-            & maxval(abs(rest%slack)))/maxval(abs(load)), &
+         merit = max(gap, max(maxval(abs(rest%balance)), rest%slack)/maxval(abs(load)), &
             & maxval(abs(rest%opening))/max(maxval(abs(x%motion)), nothing))
          waited = merge(0, waited + 1, merit < 0.9_wp*best)
          best = min(best, merit)
@@ -86,10 +84,10 @@ contains
             & .or. .not. merit <= huge(1.0_wp)) exit
          call factor_springs(joints, matrix, damping, face, x)
          if (.not. matrix%factor%usable) exit
-         rest%product = -x%slack*x%flow
+         step%flow = -x%slack*x%flow
          call find_step(joints, matrix, damping, face, x, rest, step)
          length = longest(face, x, step, 1.0_wp)
-         rest%product = rest%product - step%slack*step%flow + mean*min(1.0_wp, &
+         step%flow = -x%slack*x%flow - step%slack*step%flow + mean*min(1.0_wp, &
             & (sum((x%slack + length*step%slack)*(x%flow + length*step%flow), face) &
             & /(real(max(1, n_face), wp)*mean))**3)
          call find_step(joints, matrix, damping, face, x, rest, step)
@@ -119,7 +117,7 @@ contains
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(out) :: x
       real(wp) :: push
-      integer :: n_joint
+      integer :: j, n_joint
 
       n_joint = size(face, 2)
       push = max(1.0_wp, sqrt(sum(abs(load))))
@@ -127,7 +125,9 @@ contains
       allocate (x%force(3, n_joint), source=0.0_wp)
       allocate (x%slack(4, n_joint), x%flow(4, n_joint), source=1.0_wp)
       where (face(:2, :)) x%force(:2, :) = push
-      call add_faces(joints, x%force, x%slack)
+      do j = 1, n_joint
+         x%slack(:, j) = slack_of(joints, x%force(:, j), j)
+      end do
       where (face)
          x%slack = max(x%slack, 1.0e-3_wp*push)
       elsewhere
@@ -136,17 +136,16 @@ contains
       end where
    end subroutine begin
 
-   !> Distance of forces from the faces
-   pure subroutine add_faces(joints, force, slack)
+   !> Distance of the forces of a joint from its faces
+   pure function slack_of(joints, force, j) result(slack)
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: force(:, :)   !! N1, N2, T: (3, n_joint)
-      real(wp), intent(out) :: slack(:, :)  !! Distances: (4, n_joint)
+      real(wp), intent(in) :: force(3)  !! N1, N2, T
+      integer, intent(in) :: j          !! Number of the joint
+      real(wp) :: slack(4), bound
 
-      slack(:2, :) = force(:2, :)
-      slack(3, :) = joints%graph%friction*(force(1, :) + force(2, :))
-      slack(4, :) = slack(3, :) - force(3, :)
-      slack(3, :) = slack(3, :) + force(3, :)
-   end subroutine add_faces
+      bound = joints%graph%friction(j)*(force(1) + force(2))
+      slack = [force(:2), bound + force(3), bound - force(3)]
+   end function slack_of
 
    !> What an iterate leaves of the equations
    pure subroutine find_rest(joints, load, damping, face, x, rest)
@@ -155,13 +154,11 @@ contains
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       type(rest_t), intent(inout) :: rest
-      integer :: n_joint
+      integer :: j, n_joint
 
       n_joint = size(face, 2)
-      if (.not. allocated(rest%balance)) then
-         allocate (rest%balance(size(load, 1), size(load, 2)), rest%opening(3, n_joint))
-         allocate (rest%slack(4, n_joint), rest%product(4, n_joint))
-      end if
+      if (.not. allocated(rest%balance)) &
+         & allocate (rest%balance(size(load, 1), size(load, 2)), rest%opening(3, n_joint))
       call imbalance(joints, load - damping*joints%graph%mass*x%motion, x%force, rest%balance)
       call joint_motion(joints%graph, x%motion, rest%opening)
       rest%opening = -rest%opening - joints%graph%compliance*x%force
@@ -169,9 +166,22 @@ contains
       rest%opening(3, :) = rest%opening(3, :) + x%flow(3, :) - x%flow(4, :)
       where (joints%end_role == end_role%absent) rest%opening(:2, :) = 0.0_wp
       where (joints%shear_role == shear_role%absent) rest%opening(3, :) = 0.0_wp
-      call add_faces(joints, x%force, rest%slack)
-      rest%slack = merge(rest%slack - x%slack, 0.0_wp, face)
+      rest%slack = 0.0_wp
+      do j = 1, n_joint
+         rest%slack = max(rest%slack, maxval(abs(lack_of(joints, face, x, j))))
+      end do
    end subroutine find_rest
+
+   !> What an iterate leaves of the slacks of a joint
+   pure function lack_of(joints, face, x, j) result(lack)
+      type(coulomb_joints_t), intent(in) :: joints
+      logical, intent(in) :: face(:, :)
+      type(coulomb_interior_t), intent(in) :: x
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: lack(4)       !! Distance of its forces from each face less the slack: (4)
+
+      lack = merge(slack_of(joints, x%force(:, j), j) - x%slack(:, j), 0.0_wp, face(:, j))
+   end function lack_of
 
    !> Assemble the springs of an iterate and factor their equations
    pure subroutine factor_springs(joints, matrix, damping, face, x)
@@ -211,6 +221,7 @@ contains
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       type(rest_t), intent(in) :: rest
+      !> The step; its flow is what it is to change of the products of slack and flow before
       type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
       real(wp), parameter :: rounding = 1.0e-15_wp
@@ -220,14 +231,14 @@ contains
       integer :: j, turn
 
       do j = 1, size(face, 2)
-         source = merge(rest%product(:, j)/x%slack(:, j) - ratio_of(x, face, j)*rest%slack(:, j), &
+         step%slack(:, j) = lack_of(joints, face, x, j)
+         source = merge(step%flow(:, j)/x%slack(:, j) - ratio_of(x, face, j)*step%slack(:, j), &
             & 0.0_wp, face(:, j))
          drive(:2, j) = rest%opening(:2, j) + source(:2)
          drive(3, j) = rest%opening(3, j) + source(3) - source(4)
       end do
       step%motion = 0.0_wp
       step%force = 0.0_wp
-      step%slack = merge(rest%slack, 0.0_wp, face)
       left = rest%balance
       last = huge(1.0_wp)
       do turn = 0, max_correction
@@ -246,7 +257,7 @@ contains
          if (.not. maxval(abs(left)) < 0.5_wp*last .or. maxval(abs(left)) < rounding) exit
          last = maxval(abs(left))
       end do
-      step%flow = merge((rest%product - x%flow*step%slack)/x%slack, 0.0_wp, face)
+      step%flow = merge((step%flow - x%flow*step%slack)/x%slack, 0.0_wp, face)
    end subroutine find_step
 
    !> Forces of the springs under a drive, and what they add to the slacks, as sums that cancel

@@ -5,13 +5,14 @@
 !> of a joint and the mean mass of a block are 1, so that every threshold of a path is a plain
 !> number. An elastic displacement is of order 1.
 module dda_coulomb_joints
-   use dda_joint_graph, only : breaks, joint_graph_t, joint_kind
+   use dda_joint_graph, only : breaks, joint_graph_t, joint_kind, take_over
    use dda_kinds, only : wp
    implicit none
    private
 
    public :: coulomb_joints_t, end_role, end_role_enum, shear_role, shear_role_enum
-   public :: new_coulomb_joints, set_force_unit, in_units, in_newtons, in_motion_units, in_metres
+   public :: new_coulomb_joints, take_coulomb_joints
+   public :: set_force_unit, in_units, in_newtons, in_motion_units, in_metres
 
    !> What a corner of a joint can do
    type :: end_role_enum
@@ -48,21 +49,34 @@ module dda_coulomb_joints
 
 contains
 
-   !> Joints in units of their own
+   !> Joints in units of their own, of a graph that is kept
    pure subroutine new_coulomb_joints(graph, load, joints)
       type(joint_graph_t), intent(in) :: graph
       !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The same in units of their own
       type(coulomb_joints_t), intent(out) :: joints
+      type(joint_graph_t) :: taken
+
+      taken = graph
+      call take_coulomb_joints(taken, load, joints)
+   end subroutine new_coulomb_joints
+
+   !> Joints in units of their own, taken over from a graph
+   pure subroutine take_coulomb_joints(graph, load, joints)
+      type(joint_graph_t), intent(inout) :: graph
+      !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> The same in units of their own
+      type(coulomb_joints_t), intent(out) :: joints
       real(wp) :: compliance, mass
 
-      joints%graph = graph
-      joints%arm_unit = positive_or_one(0.5_wp*mean(graph%length))
-      compliance = typical(sum(graph%compliance, 1)/3.0_wp)
-      mass = positive_or_one(mean(graph%mass(1, :)))
-      joints%motion_unit = compliance
+      call take_over(graph, joints%graph)
       associate (scaled => joints%graph)
+         joints%arm_unit = positive_or_one(0.5_wp*mean(scaled%length))
+         compliance = typical(sum(scaled%compliance, 1)/3.0_wp)
+         mass = positive_or_one(mean(scaled%mass(1, :)))
+         joints%motion_unit = compliance
          scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
          scaled%length = scaled%length/joints%arm_unit
          scaled%compliance = scaled%compliance/compliance
@@ -73,7 +87,7 @@ contains
       call set_force_unit(joints, load)
       call drop_faint_strength(joints)
       call set_roles(joints)
-   end subroutine new_coulomb_joints
+   end subroutine take_coulomb_joints
 
    !> Strength that no force feels is none: dry joints have a start of their own
    pure subroutine drop_faint_strength(joints)

@@ -81,29 +81,24 @@ contains
       logical, intent(out) :: stands  !! Whether its forces balance the load
       integer, parameter :: most_passes = 12
       real(wp), parameter :: least = 1.0e-13_wp
-      type(coulomb_state_t) :: unloaded
       type(coulomb_interior_t) :: inner
       real(wp) :: damping, left, last
       integer :: passes, rounds
       logical :: settled
 
-      unloaded = unloaded_state(joints)
-      state = unloaded
-      call take_interior(joints, equations, load, first, enough, unloaded, inner, state, settled)
+      call take_interior(joints, equations, load, first, enough, inner, state, settled)
       stands = .false.
       if (.not. settled) return
       damping = first
       last = huge(1.0_wp)
       rounds = 0
       do while (damping >= 0.5_wp*least)
-         call settle_faces(joints, equations, load, damping, most_passes, unloaded, state, &
-            & left, passes)
+         call settle_faces(joints, equations, load, damping, most_passes, state, left, passes)
          if (passes == 0) then
             if (damping < first) inner = coulomb_interior_t()
-            call take_interior(joints, equations, load, damping, sharp, unloaded, inner, state, &
-               & settled)
-            if (settled) call settle_faces(joints, equations, load, damping, most_passes, &
-               & unloaded, state, left, passes)
+            call take_interior(joints, equations, load, damping, sharp, inner, state, settled)
+            if (settled) call settle_faces(joints, equations, load, damping, most_passes, state, &
+               & left, passes)
          end if
          if (passes == 0) return
          rounds = rounds + 1
@@ -116,8 +111,8 @@ contains
       state%load = load
    end subroutine try_interior
 
-   !> One damped step to a load: faces are chosen until they agree with the motion
-   pure subroutine settle_faces(joints, equations, load, damping, most, before, after, left, passes)
+   !> One damped step to a load from nothing: faces are chosen until they agree with the motion
+   pure subroutine settle_faces(joints, equations, load, damping, most, after, left, passes)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :)
@@ -125,8 +120,6 @@ contains
       real(wp), intent(in) :: damping
       !> Passes at most
       integer, intent(in) :: most
-      !> State before the step
-      type(coulomb_state_t), intent(in) :: before
       !> In: the faces to begin with; out: the state after the step
       type(coulomb_state_t), intent(inout) :: after
       !> What the forces leave of the load
@@ -134,23 +127,24 @@ contains
       !> Number of passes, 0 if the faces did not settle
       integer, intent(out) :: passes
       real(wp), parameter :: rounding = 1.0e-13_wp
-      real(wp) :: change(3, size(before%slip)), rest(size(load, 1), size(load, 2))
-      real(wp) :: step(size(load, 1), size(load, 2)), first(size(load, 1), size(load, 2))
-      integer :: faces(3, size(before%slip)), pass
+      type(coulomb_state_t) :: before
+      real(wp) :: change(3, size(after%slip)), rest(size(load, 1), size(load, 2))
+      real(wp) :: step(size(load, 1), size(load, 2))
+      integer :: faces(3, size(after%slip)), pass
 
       passes = 0
       left = huge(1.0_wp)
-      call imbalance(joints, load, before%force, first)
+      before = unloaded_state(joints)
       faces = after%face
       do pass = 1, most
          call use_faces(equations, joints, faces, damping)
          if (.not. equations%usable) return
          call force_faces(joints, before, faces, change)
-         call imbalance(joints, first, change, rest)
+         call imbalance(joints, load, change, rest)
          call solve_equations(equations, joints, rest, step, change)
          if (.not. (equations%usable .and. all(abs(step) <= huge(1.0_wp)))) return
          call apply_law(joints, before, change, after)
-         after%motion = before%motion + step
+         after%motion = step
          call imbalance(joints, load, after%force, rest)
          left = maxval(abs(rest))
          if (all(after%face == faces) .or. maxval(abs(rest - damping*joints%graph%mass*step)) &
@@ -163,21 +157,23 @@ contains
    end subroutine settle_faces
 
    !> Faces by interior springs
-   pure subroutine take_interior(joints, equations, load, damping, tolerance, unloaded, inner, &
-      & state, settled)
+   pure subroutine take_interior(joints, equations, load, damping, tolerance, inner, state, settled)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :), damping
       real(wp), intent(in) :: tolerance                 !! Tolerance of the interior springs
-      type(coulomb_state_t), intent(in) :: unloaded
       type(coulomb_interior_t), intent(inout) :: inner  !! The iterate, from which it goes on
-      type(coulomb_state_t), intent(inout) :: state
+      type(coulomb_state_t), intent(out) :: state
       logical, intent(out) :: settled                   !! Whether the interior springs have settled
-      real(wp) :: opening(3, size(unloaded%slip))
+      type(coulomb_state_t) :: unloaded
+      real(wp), allocatable :: opening(:, :)
 
       equations%usable = .false.
       call interior_motion(joints, equations%base, load, damping, tolerance, inner, settled)
+      unloaded = unloaded_state(joints)
+      state = unloaded
       state%motion = inner%motion
+      allocate (opening, mold=state%force)
       call joint_motion(joints%graph, state%motion, opening)
       call apply_law(joints, unloaded, opening, state)
    end subroutine take_interior

@@ -137,30 +137,32 @@ contains
 
    !> Find rates that agree with their faces. Where no faces do, friction lets the forces of the
    !> assembly drop however slowly the load grows: there are none
-   pure subroutine find_rates(joints, equations, state, load_rate, opening_rate, viscosity, &
-      & rates, found)
+   pure subroutine find_rates(joints, equations, state, load_rate, viscosity, rates, found, &
+      & opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
       !> Rate of the load: (n_dof, n_block)
       real(wp), intent(in), contiguous :: load_rate(:, :)
-      !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in), contiguous :: opening_rate(:, :)
       !> Damping at the joints, as a multiple of their stiffness
       real(wp), intent(in) :: viscosity
+      !> The rates, for which room is made where there is none
       type(rates_t), intent(inout) :: rates
       !> Whether they agree with their faces
       logical, intent(out) :: found
+      !> Rates of opening that are prescribed, none if absent: (3, n_joint)
+      real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
       type(rate_law_t) :: law
       real(wp) :: damped(size(load_rate, 1), size(load_rate, 2))
       integer :: target(3, size(state%face, 2)), seen(3, size(state%face, 2)), n_wrong, pass
 
       found = .false.
       call set_rate_law(joints, state, law)
+      if (.not. allocated(rates%face)) rates = new_rates(state)
       rates%face = state%face
       do pass = 1, most_passes
-         call solve_rates(joints, equations, load_rate, opening_rate, viscosity, rates)
+         call solve_rates(joints, equations, load_rate, viscosity, rates, opening_rate)
          if (.not. equations%usable) return
          rates%still = no_rate(rates%motion, rates%opening)
          target = rates%face
@@ -176,8 +178,8 @@ contains
          rates%face = target
       end do
       if (.not. found) then
-         call pivot_to_load(joints, equations, law, load_rate, opening_rate, rates%motion, &
-            & rates%opening, rates%face, found)
+         call pivot_to_load(joints, equations, law, load_rate, rates%motion, rates%opening, &
+            & rates%face, found, opening_rate)
          rates%still = no_rate(rates%motion, rates%opening)
       end if
       call spring_forces(joints, rates%face, rates%opening, rates%force)
@@ -225,34 +227,41 @@ contains
    end subroutine undamp_rates
 
    !> Rates while the faces stay
-   pure subroutine solve_rates(joints, equations, load_rate, opening_rate, viscosity, rates)
+   pure subroutine solve_rates(joints, equations, load_rate, viscosity, rates, opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      real(wp), intent(in), contiguous :: load_rate(:, :), opening_rate(:, :)
+      real(wp), intent(in), contiguous :: load_rate(:, :)
       real(wp), intent(in) :: viscosity
       type(rates_t), intent(inout) :: rates
+      real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
       real(wp) :: load(size(load_rate, 1), size(load_rate, 2))
 
       call use_faces(equations, joints, rates%face, equations%rest_damping, viscosity)
       if (.not. equations%usable) return
-      call add_drive(joints, rates%face, opening_rate, load_rate, load)
+      call add_drive(joints, rates%face, load_rate, load, opening_rate)
       rates%drive = max(maxval(abs(load)), maxval(abs(load_rate)))
       call solve_equations(equations, joints, load, rates%motion, rates%opening)
       if (.not. equations%usable) return
-      rates%opening = rates%opening + opening_rate
+      if (present(opening_rate)) rates%opening = rates%opening + opening_rate
    end subroutine solve_rates
 
    !> A load with the forces that prescribed openings make
-   pure subroutine add_drive(joints, faces, opening, load, driven)
+   pure subroutine add_drive(joints, faces, load, driven, opening)
       type(coulomb_joints_t), intent(in) :: joints
-      integer, intent(in), contiguous :: faces(:, :)     !! What corners and joints do: (3, n_joint)
-      real(wp), intent(in), contiguous :: opening(:, :)  !! The openings: (3, n_joint)
-      real(wp), intent(in) :: load(:, :)                 !! The load: (n_dof, n_block)
-      real(wp), intent(out), contiguous :: driven(:, :)  !! Both: (n_dof, n_block)
-      real(wp) :: force(3, size(opening, 2))
+      !> What corners and joints do: (3, n_joint)
+      integer, intent(in), contiguous :: faces(:, :)
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Both: (n_dof, n_block)
+      real(wp), intent(out), contiguous :: driven(:, :)
+      !> The openings: (3, n_joint)
+      real(wp), intent(in), contiguous, optional :: opening(:, :)
+      real(wp), allocatable :: force(:, :)
 
       driven = load
+      if (.not. present(opening)) return
       if (.not. any(abs(opening) > 0.0_wp)) return
+      allocate (force, mold=opening)
       call spring_forces(joints, faces, opening, force)
       call imbalance(joints, load, force, driven)
    end subroutine add_drive
@@ -263,14 +272,12 @@ contains
    !> pieces. At a bend of the law one face changes, and the motion goes on as the new face allows:
    !> towards the load, or back (Katzenelson 1965; Lemke's method). It ends at the load, or never
    !> returns: then there are no rates
-   pure subroutine pivot_to_load(joints, equations, law, load, drive, motion, opening, faces, found)
+   pure subroutine pivot_to_load(joints, equations, law, load, motion, opening, faces, found, drive)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       type(rate_law_t), intent(in) :: law
       !> The load that is asked for: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in), contiguous :: drive(:, :)
       !> Any motion in, the rates out: (n_dof, n_block)
       real(wp), intent(inout) :: motion(:, :)
       !> How the joints open with it and with the drive: (3, n_joint)
@@ -279,6 +286,8 @@ contains
       integer, intent(inout), contiguous :: faces(:, :)
       !> Whether the load was reached
       logical, intent(out) :: found
+      !> Rates of opening that are prescribed, none if absent: (3, n_joint)
+      real(wp), intent(in), contiguous, optional :: drive(:, :)
       type(break_t) :: break
       real(wp) :: ahead(size(load, 1), size(load, 2)), wide(3, size(opening, 2))
       real(wp) :: rest(size(load, 1), size(load, 2)), sense, still
@@ -291,10 +300,10 @@ contains
          call use_faces(equations, joints, faces, equations%damping, equations%viscosity)
          if (.not. equations%usable) return
          ! the way to the load while the faces stay
-         call add_drive(joints, faces, drive, load, rest)
+         call add_drive(joints, faces, load, rest, drive)
          call solve_equations(equations, joints, rest, ahead, wide)
          if (.not. equations%usable) return
-         wide = wide + drive
+         if (present(drive)) wide = wide + drive
          still = no_rate(ahead, wide)
          ahead = ahead - motion
          wide = wide - opening
@@ -304,7 +313,8 @@ contains
             if (.not. abs(sense) > 0.0_wp) return
             sense = merge(1.0_wp, -1.0_wp, sense > 0.0_wp .eqv. break%rises)
          end if
-         break = next_break(joints, law, still, faces, opening, sense*wide)
+         wide = sense*wide
+         break = next_break(joints, law, still, faces, opening, wide)
          if (sense > 0.0_wp .and. break%distance >= 1.0_wp) then
             motion = motion + ahead
             opening = opening + wide
@@ -314,7 +324,7 @@ contains
             return
          end if
          motion = motion + (sense*break%distance)*ahead
-         opening = opening + (sense*break%distance)*wide
+         opening = opening + break%distance*wide
          call cross_break(joints, law, break, opening, faces)
       end do
    end subroutine pivot_to_load

@@ -7,7 +7,7 @@ module dda_load_jump
    use dda_coulomb_equations, only : coulomb_equations_t
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
-   use dda_event_rates, only : find_rates, new_rates, rates_t, weak_force
+   use dda_event_rates, only : find_rates, rates_t, weak_force
    use dda_kinds, only : wp
    use dda_path_event, only : event_kind, event_t, hold_forces, move_on, next_event
    implicit none
@@ -86,14 +86,12 @@ contains
    !> Raise the load by a little and let the blocks move; where they fall, by the least, too: to see
    !> a fall takes long. The way is the same wherever it is to end, unless that is next to nothing:
    !> where it leads beyond, a smaller one may end there
-   pure subroutine nudge_to_balance(joints, equations, load_rate, opening_rate, width, left, &
-      & state, jump, gained, end)
+   pure subroutine nudge_to_balance(joints, equations, load_rate, width, left, state, jump, &
+      & gained, end, opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       !> What grows of the load: (n_dof, n_block)
       real(wp), intent(in) :: load_rate(:, :)
-      !> Openings that grow with it: (3, n_joint)
-      real(wp), intent(in) :: opening_rate(:, :)
       !> By how much
       real(wp), intent(in) :: width
       !> How much is asked for
@@ -105,6 +103,8 @@ contains
       real(wp), intent(out) :: gained
       !> How the motion ends, one of motion_end
       integer, intent(out) :: end
+      !> Openings that grow with the load, none if absent: (3, n_joint)
+      real(wp), intent(in), optional :: opening_rate(:, :)
       type(coulomb_state_t) :: moved, last
       integer :: fall, last_end, most_factorisations, most_pivots
       logical :: least
@@ -116,21 +116,21 @@ contains
          & equations%base%n_factorisation + most_of_jump)
       gained = merge(left, width, left < nudge)
       least = gained <= nudge
-      call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+      call try_nudge(joints, equations, load_rate, gained, state, jump, moved, end, opening_rate)
       if (end == motion_end%unsettled) then
          gained = wider*gained
-         call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+         call try_nudge(joints, equations, load_rate, gained, state, jump, moved, end, opening_rate)
       end if
       if (end /= motion_end%balanced .and. end /= motion_end%unsettled .and. .not. least) then
          fall = end
          gained = nudge
-         call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+         call try_nudge(joints, equations, load_rate, gained, state, jump, moved, end, opening_rate)
          ! what does not settle falls as it does by a little more
          if (end == motion_end%unsettled) end = fall
       end if
       if (end == motion_end%balanced .and. gained > left) then
-         call try_nudge(joints, equations, load_rate, opening_rate, left, state, jump, last, &
-            & last_end)
+         call try_nudge(joints, equations, load_rate, left, state, jump, last, last_end, &
+            & opening_rate)
          if (last_end == motion_end%balanced) moved = last
       end if
       if (end == motion_end%balanced) state = moved
@@ -146,16 +146,14 @@ contains
       integer, parameter :: max_turn = 3
       type(event_t) :: event
       type(rates_t) :: rates
-      real(wp) :: rest(size(state%load, 1), size(state%load, 2)), closed(3, size(state%slip))
+      real(wp) :: rest(size(state%load, 1), size(state%load, 2))
       integer :: turn
       logical :: found
 
-      closed = 0.0_wp
-      rates = new_rates(state)
       do turn = 1, max_turn
          call imbalance(joints, state%load, state%force, rest)
          if (.not. maxval(abs(rest)) > exact) return
-         call find_rates(joints, equations, state, rest, closed, 0.0_wp, rates, found)
+         call find_rates(joints, equations, state, rest, 0.0_wp, rates, found)
          if (.not. found .or. rates%unbalanced > moves_unbalanced) return
          event = next_event(joints, state, rates, 1.0_wp)
          call move_on(joints, rates, event, state)
@@ -178,20 +176,25 @@ contains
    end subroutine share_anew
 
    !> Let the blocks move at a load that is somewhat larger
-   pure subroutine try_nudge(joints, equations, load_rate, opening_rate, more, state, jump, &
-      & moved, end)
+   pure subroutine try_nudge(joints, equations, load_rate, more, state, jump, moved, end, &
+      & opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      real(wp), intent(in) :: load_rate(:, :), opening_rate(:, :)
+      real(wp), intent(in) :: load_rate(:, :)
       real(wp), intent(in) :: more  !! By how much
       type(coulomb_state_t), intent(in) :: state
       type(jump_t), intent(inout) :: jump
       type(coulomb_state_t), intent(out) :: moved
       integer, intent(out) :: end
+      real(wp), intent(in), optional :: opening_rate(:, :)
 
       jump%tolerance = max(rounding*max(1.0_wp, maxval(abs(state%force))), nudge_left*more)
       moved = state
-      call apply_law(joints, state, more*opening_rate, moved)
+      if (present(opening_rate)) then
+         call apply_law(joints, state, more*opening_rate, moved)
+      else
+         call apply_law(joints, state, 0.0_wp*state%force, moved)
+      end if
       call jump_to_balance(joints, equations, state%load + more*load_rate, moved, jump, end)
    end subroutine try_nudge
 
@@ -212,12 +215,11 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: viscosity, firm, still(3, size(state%slip))
+      real(wp) :: viscosity, firm
       real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2)), far
       integer :: i, most, standstill
       logical :: calm, found, pushed, whole
 
-      still = 0.0_wp
       start = state%motion
       standstill = 0
       pushed = .false.
@@ -225,19 +227,18 @@ contains
       firm = first_firm
       calm = .false.
       whole = .false.
-      rates = new_rates(state)
       far = jump%far
       most = least_patience + patience*size(state%slip)
       do i = 1, most
          call imbalance(joints, load, state%force, rest)
          if (i > most/brief) far = driven*jump%far
-         call see_end(joints, equations, rest, start, state, far, whole, jump, end)
+         call see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
          if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
          call leave_minor(rest)
          if (calm) viscosity = merge(calmer*viscosity, 0.0_wp, calmer*viscosity > weakest)
-         call find_rates(joints, equations, state, rest, still, viscosity, rates, found)
+         call find_rates(joints, equations, state, rest, viscosity, rates, found)
          if (.not. found) then
             if (viscosity > strongest) return
             calm = .false.
@@ -308,7 +309,7 @@ contains
 
    !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
    !> blocks have fallen by all that it went
-   pure subroutine see_end(joints, equations, rest, start, state, far, whole, jump, end)
+   pure subroutine see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: rest(:, :)
@@ -317,11 +318,11 @@ contains
       real(wp), intent(in) :: far          !! A motion beyond this is far
       !> Whether the last step was to bring balance: then only forces that are none may be left
       logical, intent(in) :: whole
+      !> Rates, other ones where the motion is far
+      type(rates_t), intent(inout) :: rates
       type(jump_t), intent(inout) :: jump
       integer, intent(out) :: end
-      type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: still(3, size(state%slip))
       logical :: found
 
       end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= &
@@ -333,9 +334,7 @@ contains
          call keep_mechanism(state%motion - start, jump)
          return
       end if
-      still = 0.0_wp
-      rates = new_rates(state)
-      call find_rates(joints, equations, state, rest, still, 0.0_wp, rates, found)
+      call find_rates(joints, equations, state, rest, 0.0_wp, rates, found)
       if (found .and. rates%unbalanced > moves_unbalanced) &
          & call see_ray(joints, state, rest, rates, event, jump, end)
       if (end == motion_end%endless) return

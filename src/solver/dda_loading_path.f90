@@ -16,9 +16,9 @@
 module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
-      & in_units, new_coulomb_joints, set_force_unit
+      & in_units, set_force_unit, take_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, imbalance, unloaded_state
-   use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
+   use dda_event_rates, only : find_rates, rates_t, undamp_rates
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
    use dda_load_jump, only : balance_rest, far_factor, jump_t, motion_end, moves_unbalanced, &
@@ -28,7 +28,7 @@ module dda_loading_path
    private
 
    public :: loading_path_t, path_rate_t, path_result_t, path_reason, path_reason_enum
-   public :: begin_path, follow_path, new_path, new_rate, load_at_once
+   public :: apply_dead_load, begin_path, follow_path, new_path, new_rate, load_at_once
 
    !> What proves a collapse, or prevents a decision
    type :: path_reason_enum
@@ -59,7 +59,7 @@ module dda_loading_path
    type :: path_rate_t
       !> Load: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), allocatable :: load(:, :)
-      !> Opening 1, opening 2 and slip that moving supports prescribe: (3, n_joint) [m]
+      !> Opening 1, opening 2 and slip where supports move, else unallocated: (3, n_joint) [m]
       real(wp), allocatable :: opening(:, :)
    end type path_rate_t
 
@@ -138,21 +138,35 @@ contains
 
    !> What is made once for an assembly
    pure subroutine new_path(graph, load, path)
-      type(joint_graph_t), intent(in) :: graph
+      !> Its joints, which the path takes over
+      type(joint_graph_t), intent(inout) :: graph
       !> A load that it carries, for the scale of forces: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
       type(loading_path_t), intent(out) :: path
 
-      call new_coulomb_joints(graph, load, path%joints)
+      call take_coulomb_joints(graph, load, path%joints)
       call new_coulomb_equations(path%joints, path%equations)
    end subroutine new_path
 
-   !> The state under the dead load
+   !> A path and the state under the dead load, of joints that are kept
    pure subroutine begin_path(graph, dead_load, path, state, result)
       type(joint_graph_t), intent(in) :: graph
-      !> Load that is there from the beginning: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead_load(:, :)
+      real(wp), intent(in) :: dead_load(:, :)  !! The load: (n_dof, n_block)
       type(loading_path_t), intent(out) :: path
+      type(coulomb_state_t), intent(out) :: state
+      type(path_result_t), intent(out) :: result
+      type(joint_graph_t) :: taken
+
+      taken = graph
+      call new_path(taken, dead_load, path)
+      call apply_dead_load(dead_load, path, state, result)
+   end subroutine begin_path
+
+   !> The state under the dead load, with which a path begins
+   pure subroutine apply_dead_load(dead_load, path, state, result)
+      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead_load(:, :)
+      type(loading_path_t), intent(inout) :: path
       !> The state, where one was reached
       type(coulomb_state_t), intent(out) :: state
       !> How it went; "reached" is 1 for the whole load
@@ -161,13 +175,11 @@ contains
       type(path_rate_t) :: rate
       integer :: end
 
-      call new_path(graph, dead_load, path)
       if (breaks(path%joints%graph)) then
          ! what breaks, and when, depends on how the load grows
-         call new_rate(graph, rate)
          rate%load = dead_load
          state = unloaded_state(path%joints)
-         state%gap = graph%gap
+         state%gap = path%joints%graph%gap*path%joints%motion_unit
          call follow_path(path, state, rate, 1.0_wp, result)
          path%softness = 0.0_wp
          return
@@ -180,7 +192,7 @@ contains
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
       if (result%end == path_end%reached) call balance_rest(path%joints, path%equations, state)
       call finish(path, state, result)
-   end subroutine begin_path
+   end subroutine apply_dead_load
 
    !> Follow a load, or supports that move, from a state in balance
    pure subroutine follow_path(path, state, rate, h_end, result)
@@ -204,19 +216,23 @@ contains
       state%gap = state%gap/path%joints%motion_unit
       state%slip = state%slip/path%joints%motion_unit
       way%load = in_units(path%joints, rate%load)
-      way%opening = rate%opening/path%joints%motion_unit
-      strength = max(maxval(abs(way%load)), maxval(abs(way%opening/path%joints%graph%compliance)))
+      strength = maxval(abs(way%load))
+      if (allocated(rate%opening)) then
+         way%opening = rate%opening/path%joints%motion_unit
+         strength = max(strength, maxval(abs(way%opening/path%joints%graph%compliance)))
+      end if
       if (strength > 0.0_wp) then
          target = state%load + h_end*way%load
          way%load = plain(way%load/strength)
-         way%opening = plain(way%opening/strength)
+         if (allocated(way%opening)) way%opening = plain(way%opening/strength)
       end if
       if (.not. path%softness > 0.0_wp) then
          path%softness = max(1.0_wp, &
             & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
          path%given = maxval(state%gap)
       end if
-      path%given = path%given + strength*h_end*maxval(abs(way%opening))
+      if (allocated(way%opening)) &
+         & path%given = path%given + strength*h_end*maxval(abs(way%opening))
       result%end = path_end%reached
       if (strength > 0.0_wp) then
          call see_softness(path%joints, path%equations, way%load, state)
@@ -238,7 +254,7 @@ contains
       plain = anint(x*2.0_wp**40)*2.0_wp**(-40)
    end function plain
 
-   !> From event to event, with jumps where no rates go on
+   !> From event to event, with jumps, which have rates of their own, where no rates go on
    pure subroutine follow(path, state, way, h_end, result)
       type(loading_path_t), intent(inout) :: path
       type(coulomb_state_t), intent(inout) :: state
@@ -259,12 +275,11 @@ contains
       standstill = 0
       last_jump = -1.0_wp
       width = nudge
-      rates = new_rates(state)
       do i = 1, least_patience + patience*size(state%slip)
          if (result%reached >= h_end) return
          if (result%n_jump > max_jump) exit
-         call find_rates(path%joints, path%equations, state, way%load, way%opening, 0.0_wp, rates, &
-            & found)
+         call find_rates(path%joints, path%equations, state, way%load, 0.0_wp, rates, found, &
+            & way%opening)
          found = found .and. rates%unbalanced <= moves_unbalanced .and. standstill <= max_standstill
          if (found) call undamp_rates(path%joints, path%equations, way%load, rates)
          if (found .and. rates%unbalanced <= rests_unbalanced) then
@@ -291,6 +306,7 @@ contains
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
             last_jump = result%reached
             standstill = 0
+            rates = rates_t()
             call jump_on(path, state, way, width, h_end, result)
             if (result%end /= path_end%reached) return
          end if
@@ -326,8 +342,8 @@ contains
 
       jump%far = far_of(path, state)
       before = state%motion
-      call nudge_to_balance(path%joints, path%equations, way%load, way%opening, width, &
-         & h_end - result%reached, state, jump, gained, end)
+      call nudge_to_balance(path%joints, path%equations, way%load, width, h_end - result%reached, &
+         & state, jump, gained, end, way%opening)
       if (end == motion_end%balanced) then
          result%n_jump = result%n_jump + 1
          result%largest_jump = max(result%largest_jump, maxval(abs(state%motion - before)))

@@ -97,51 +97,70 @@ contains
 
    !> The first bend of the law on a line of rates of opening
    module procedure next_break
-      real(wp), dimension(4, size(law%loose)) :: far, rate, last
-      real(wp) :: beyond(2), sense
-      integer :: at(2), i, j, k
+      real(wp) :: far(4), rate(4), reach, fastest
+      integer :: i, j, k
 
-      ! far: how far each is from where it changes; rate: how fast it comes there
-      far = 0.0_wp
-      rate = 0.0_wp
+      ! what rounding makes may be left behind: of those in reach the fastest decides
+      reach = huge(1.0_wp)
+      do k = 1, size(law%loose)
+         call see_bends(joints, law, law%loose(k), faces, opening, change, far, rate)
+         do i = 1, 4
+            if (rate(i) > 0.0_wp) reach = min(reach, far(i) + still/rate(i))
+         end do
+      end do
+      next_break%distance = huge(1.0_wp)
+      fastest = 0.0_wp
       do k = 1, size(law%loose)
          j = law%loose(k)
-         do i = 1, 2
-            if (.not. law%weak(i, j)) cycle
-            sense = merge(1.0_wp, -1.0_wp, faces(i, j) == face%closed)
-            far(i, k) = -sense*opening(i, j)
-            rate(i, k) = sense*change(i, j)
+         call see_bends(joints, law, j, faces, opening, change, far, rate)
+         do i = 1, 4
+            if (.not. rate(i) > fastest .or. far(i) > reach) cycle
+            fastest = rate(i)
+            next_break = break_t(far(i), j, i, rises=.true.)
+            if (i > 2) then
+               next_break%rises = faces(3, j) /= merge(face%slides, face%slides_back, i == 3)
+            else
+               next_break%rises = faces(i, j) /= face%closed
+            end if
          end do
-         if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
+      end do
+   end procedure next_break
+
+   !> Where a joint bends the law on a line of rates of opening
+   pure subroutine see_bends(joints, law, j, faces, opening, change, far, rate)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(rate_law_t), intent(in) :: law
+      !> Number of the joint
+      integer, intent(in) :: j
+      integer, intent(in) :: faces(:, :)
+      real(wp), intent(in) :: opening(:, :), change(:, :)
+      !> How far off it is that corner 1, corner 2, positive and negative sliding change, and how
+      !> fast they come there; a rate of zero where nothing changes
+      real(wp), intent(out) :: far(4), rate(4)
+      real(wp) :: beyond(2), sense
+      integer :: i
+
+      far = 0.0_wp
+      rate = 0.0_wp
+      do i = 1, 2
+         if (.not. law%weak(i, j)) cycle
+         sense = merge(1.0_wp, -1.0_wp, faces(i, j) == face%closed)
+         far(i) = -sense*opening(i, j)
+         rate(i) = sense*change(i, j)
+      end do
+      if (faces(3, j) /= face%free) then
          do i = 1, 2
             if (.not. law%limit(i, j)) cycle
             sense = joints%graph%compliance(3, j)*merge(1.0_wp, -1.0_wp, &
                & faces(3, j) == merge(face%slides, face%slides_back, i == 1))
             beyond = sense*beyond_limit(joints, j, faces(:2, j), opening(:, j))
-            far(i + 2, k) = beyond(i)
+            far(i + 2) = beyond(i)
             beyond = -sense*beyond_limit(joints, j, faces(:2, j), change(:, j))
-            rate(i + 2, k) = beyond(i)
+            rate(i + 2) = beyond(i)
          end do
-      end do
-      next_break%distance = huge(1.0_wp)
-      if (.not. any(rate > 0.0_wp)) return
-      ! what rounding makes may be left behind: of those in reach the fastest decides
-      last = huge(1.0_wp)
-      where (rate > 0.0_wp)
-         far = max(0.0_wp, far)/rate
-         last = far + still/rate
-      end where
-      at = maxloc(rate, rate > 0.0_wp .and. far <= minval(last))
-      associate (part => at(1), k => at(2))
-         j = law%loose(k)
-         next_break = break_t(far(part, k), j, part, rises=.true.)
-         if (part > 2) then
-            next_break%rises = faces(3, j) /= merge(face%slides, face%slides_back, part == 3)
-         else
-            next_break%rises = faces(part, j) /= face%closed
-         end if
-      end associate
-   end procedure next_break
+      end if
+      where (rate > 0.0_wp) far = max(0.0_wp, far)/rate
+   end subroutine see_bends
 
    !> How fast what decides a bend rises along a line
    module procedure break_rate

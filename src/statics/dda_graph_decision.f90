@@ -44,8 +44,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       logical, intent(in) :: bare  !! Whether a run of steps tells how it falls
       type(graph_verdict_t), intent(out) :: verdict
-      !> The state in which a stage before has left these joints, with the load that they balance;
-      !> without it the blocks begin unloaded
+      !> State in which a stage before has left these joints, with its load; else they are unloaded
       type(coulomb_state_t), intent(in), optional :: start
       type(joint_graph_t) :: graph
       type(load_stations_t) :: stations
@@ -55,8 +54,10 @@ contains
       logical :: dead_alone, on_way
 
       call scene_graph(settings, system, contacts, graph)
-      if (breaks(graph)) call follow_breaking(settings, system, graph, verdict)
-      if (breaks(graph)) return
+      if (breaks(graph)) then
+         call follow_breaking(settings, system, contacts, graph, verdict)
+         return
+      end if
       allocate (load(3, graph%n_block))
       stations = stations_of(settings, system, graph, present(start))
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
@@ -80,14 +81,16 @@ contains
       end if
       dead_alone = ubound(stations%tilt, 1) == 0 .and. .not. present(start)
       verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
-      ! what blocks that are built carry is known of the path alone
+      ! what blocks that are built carry is known of the path alone, which has its own forces
       if (settings%verdict_flow == flow_rule%associated .or. .not. (has_friction(graph) &
          & .or. allocated(settings%boundary%change))) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
+      decision = load_decision_t()
+      if (allocated(verdict%force)) deallocate (verdict%force)
       call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
-      if (path%no_start .and. .not. dead_alone) call see_dead_fall(settings, system, graph, &
+      if (path%no_start .and. .not. dead_alone) call see_dead_fall(settings, system, contacts, &
          & stations, path)
       if (path%no_start .and. (dead_alone .or. verdict%end == path_end%reached)) then
          path%end = path_end%undecided
@@ -101,34 +104,40 @@ contains
    !> Follow joints that break: no limit analysis knows them, so that the path alone decides.
    !> Gravity acts as it is where it points upwards, as on what hangs, or where the blocks fall
    !> upright
-   pure subroutine follow_breaking(settings, system, graph, verdict)
+   pure subroutine follow_breaking(settings, system, contacts, graph, verdict)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      type(joint_graph_t), intent(in) :: graph
+      type(contacts_t), intent(in) :: contacts
+      type(joint_graph_t), intent(inout) :: graph  !! Its joints, which the path takes over
       type(graph_verdict_t), intent(out) :: verdict
 
       logical :: upright
 
       upright = cos(settings%tilt) > 0.0_wp
       call follow_stations(settings, system, graph, load_stations(settings, upright), verdict)
-      if (verdict%no_start .and. upright .and. abs(settings%tilt) > 0.0_wp) &
-         & call follow_stations(settings, system, graph, load_stations(settings, .false.), verdict)
+      if (verdict%no_start .and. upright .and. abs(settings%tilt) > 0.0_wp) then
+         call scene_graph(settings, system, contacts, graph)
+         call follow_stations(settings, system, graph, load_stations(settings, .false.), verdict)
+      end if
       verdict%no_start = .false.
       verdict%is_told = .true.
       verdict%unproven = verdict%end == path_end%undecided
    end subroutine follow_breaking
 
    !> Blocks that fall by their dead loads fall before what is live could hold them
-   pure subroutine see_dead_fall(settings, system, graph, stations, path)
+   pure subroutine see_dead_fall(settings, system, contacts, stations, path)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      type(joint_graph_t), intent(in) :: graph
+      type(contacts_t), intent(in) :: contacts
       type(load_stations_t), intent(in) :: stations
       !> A path that finds no state under the dead loads
       type(graph_verdict_t), intent(inout) :: path
+      type(joint_graph_t) :: graph
       type(load_decision_t) :: decision
-      real(wp) :: dead(3, graph%n_block)
+      real(wp), allocatable :: dead(:, :)
 
+      call scene_graph(settings, system, contacts, graph)
+      allocate (dead(3, graph%n_block))
       call loads_at(stations, 0, settings, system, graph, dead)
       call decide_load(graph, dead, decision)
       path%n_factorisation = path%n_factorisation + decision%n_factorisation

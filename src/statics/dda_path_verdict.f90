@@ -6,11 +6,11 @@
 module dda_path_verdict
    use dda_block_system, only : block_system_t
    use dda_coulomb_law, only : coulomb_state_t
-   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_graph, only : crushes, joint_graph_t, take_over
    use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
    use dda_kinds, only : wp
    use dda_load_stations, only : load_stations_t, loads_at
-   use dda_loading_path, only : begin_path, follow_path, loading_path_t, new_path, new_rate, &
+   use dda_loading_path, only : apply_dead_load, follow_path, loading_path_t, new_path, &
       & path_rate_t, path_reason, path_result_t
    use dda_path_event, only : path_end
    use dda_scene_graph, only : graph_verdict_t
@@ -32,7 +32,8 @@ contains
    pure subroutine follow_stations(settings, system, graph, stations, verdict, start)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      type(joint_graph_t), intent(in) :: graph
+      !> The joints, without rows afterwards unless they crush: the path takes them over
+      type(joint_graph_t), intent(inout) :: graph
       type(load_stations_t), intent(in) :: stations
       type(graph_verdict_t), intent(out) :: verdict
       !> State that a stage before has left, with the load that it balances; the path begins there.
@@ -45,8 +46,8 @@ contains
       logical :: touched
 
       if (.not. crushes(graph)) then
-         allocate (couple(3, graph%n_block), source=0.0_wp)
-         call follow_joints(settings, system, graph, graph, couple, stations, verdict, start)
+         call take_over(graph, layered)
+         call follow_joints(settings, system, graph, layered, couple, stations, verdict, start)
          return
       end if
       layers = no_layers()
@@ -76,17 +77,22 @@ contains
       !> Their joints without layers
       type(joint_graph_t), intent(in) :: graph
       !> Loads by the couples of the layers: (3, n_block of layered)
-      real(wp), intent(in) :: couple(:, :)
+      real(wp), intent(in), optional :: couple(:, :)
       !> Loads: (3, n_block of layered) [N/m, N/m, N]
       real(wp), intent(out) :: load(:, :)
       !> Openings: (3, n_joint of layered) [m]
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out), optional :: opening(:, :)
 
-      load = couple
-      opening = 0.0_wp
       associate (b => graph%n_block, n => size(graph%kind))
-         call loads_at(stations, station, settings, system, graph, load(:, :b), opening(:, :n))
+         if (present(opening)) then
+            opening = 0.0_wp
+            call loads_at(stations, station, settings, system, graph, load(:, :b), opening(:, :n))
+         else
+            call loads_at(stations, station, settings, system, graph, load(:, :b))
+         end if
+         if (.not. present(couple)) return
          load(:, :b) = load(:, :b) + couple(:, :b)
+         load(:, b + 1:) = couple(:, b + 1:)
       end associate
    end subroutine load_joints
 
@@ -111,8 +117,10 @@ contains
    pure subroutine follow_joints(settings, system, graph, layered, couple, stations, verdict, start)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      type(joint_graph_t), intent(in) :: graph, layered
-      real(wp), intent(in) :: couple(:, :)
+      type(joint_graph_t), intent(in) :: graph
+      !> The joints with their layers; the path takes them over
+      type(joint_graph_t), intent(inout) :: layered
+      real(wp), intent(in), optional :: couple(:, :)
       type(load_stations_t), intent(in) :: stations
       type(graph_verdict_t), intent(out) :: verdict
       type(coulomb_state_t), intent(in), optional :: start
@@ -120,33 +128,33 @@ contains
       type(coulomb_state_t) :: state
       type(path_rate_t) :: rate
       type(path_result_t) :: result
-      real(wp) :: load(3, layered%n_block), opening(3, size(layered%kind))
+      type(path_rate_t) :: there
       integer :: i, n
 
       verdict%flow = flow_rule%coulomb
       n = ubound(stations%tilt, 1)
       verdict%on_path = n > 0
-      call new_rate(layered, rate)
-      call load_joints(stations, 0, settings, system, graph, couple, load, opening)
+      allocate (there%load(3, layered%n_block))
+      if (allocated(settings%boundary%held)) allocate (there%opening(3, size(layered%kind)))
+      call load_joints(stations, 0, settings, system, graph, couple, there%load, there%opening)
+      call new_path(layered, there%load, path)
       if (present(start)) then
          ! what was taken away leaves its neighbours, and what was built gets its weight
          state = start
-         call new_path(layered, load, path)
-         rate%load = load - state%load
+         rate%load = there%load - state%load
          call follow_path(path, state, rate, 1.0_wp, result)
          verdict%on_path = .true.
       else
-         call begin_path(layered, load, path, state, result)
+         call apply_dead_load(there%load, path, state, result)
       end if
       call count_up(result, verdict)
       verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
       do i = 1, n
          if (result%end /= path_end%reached) exit
-         rate%load = -load
-         rate%opening = -opening
-         call load_joints(stations, i, settings, system, graph, couple, load, opening)
-         rate%load = rate%load + load
-         rate%opening = rate%opening + opening
+         rate = there
+         call load_joints(stations, i, settings, system, graph, couple, there%load, there%opening)
+         rate%load = there%load - rate%load
+         if (allocated(rate%opening)) rate%opening = there%opening - rate%opening
          call follow_path(path, state, rate, 1.0_wp, result)
          call count_up(result, verdict)
          verdict%station = i - 1
