@@ -13,7 +13,7 @@ module dda_interior_direction
    private
 
    public :: turn_t
-   public :: direct, direct_again, refine_direction, find_balance, respond_to_live_load
+   public :: direct, direct_again, refine_direction, find_balance, respond_to_live_load, see_rest
 
    !> What one turn works on
    type :: turn_t
@@ -96,7 +96,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
-      turn%dv = 0.0_wp
+      call clear(size(turn%dv), turn%dv)
       turn%dfactor = 0.0_wp
       ! rates less what velocities make of them are to go
       call ray_rates(graph, path%length, point%v, turn%rate)
@@ -104,6 +104,7 @@ contains
          & - ((point%s - path%compliance*point%x)*path%bounded - turn%rate)
       turn%dx = turn%aim - springs%stiffness*turn%ds
       turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
+      call see_rest(graph, path, turn)
       call balance_direction(graph, path, point, springs, turn)
       call refine_direction(graph, path, point, enough, springs, turn)
    end subroutine find_direction
@@ -137,11 +138,25 @@ contains
       type(load_path_t), intent(in) :: path
       type(turn_t), intent(inout) :: turn  !! The direction; receives the rest
 
-      turn%rest = -turn%lack + turn%dfactor*path%live - path%mass*turn%dv
+      call begin_rest(size(turn%rest), turn%lack, turn%dfactor, path%live, path%mass, turn%dv, &
+         & turn%rest)
       call add_ray_forces(graph, path%length, turn%dx, turn%rest)
    end subroutine see_rest
 
-   !> Correct a direction by the motion that balances what it leaves
+   !> What loads and masses alone leave. Arrays are flat here and below, so that a loop is one
+   pure subroutine begin_rest(n, lack, factor, live, mass, dv, rest)
+      integer, intent(in) :: n             !! Numbers of each array
+      real(wp), intent(in) :: lack(n)      !! What balance lacks
+      real(wp), intent(in) :: factor       !! Change of the factor
+      real(wp), intent(in) :: live(n)      !! The live load
+      real(wp), intent(in) :: mass(n)      !! The masses
+      real(wp), intent(in) :: dv(n)        !! The direction of v
+      real(wp), intent(out) :: rest(n)     !! What is left
+
+      rest = -lack + factor*live - mass*dv
+   end subroutine begin_rest
+
+   !> Correct a direction by the motion that balances the rest that it leaves
    pure subroutine balance_direction(graph, path, point, springs, turn)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
@@ -154,9 +169,9 @@ contains
       turn%dx = turn%dx - springs%stiffness*turn%rate
    end subroutine balance_direction
 
-   !> The motion that balances what a direction leaves, and its rates: of the direction all but the
-   !> changes of x and s by these. The power of the rest on the
-   !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
+   !> The motion that balances the rest that a direction leaves, and its rates: of the direction all
+   !> but the changes of x and s by these. The power of the rest on the mechanism is the factor's
+   !> alone: taken out first, it leads to no large motion that would have
    !> to cancel
    pure subroutine find_balance(graph, path, point, springs, turn)
       type(joint_graph_t), intent(in) :: graph
@@ -165,17 +180,46 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
       real(wp) :: step, taken
+      integer :: n
 
-      call see_rest(graph, path, turn)
+      n = size(turn%dv)
       taken = 0.0_wp
-      if (turn%lack_of_power < 0.5_wp) taken = sum(turn%rest*point%v)/(1.0_wp - turn%lack_of_power)
-      turn%rest = turn%rest - taken*path%live
+      if (turn%lack_of_power < 0.5_wp) &
+         & taken = power_of(n, turn%rest, point%v)/(1.0_wp - turn%lack_of_power)
+      call add_multiple(n, -taken, path%live, turn%rest)
       call solve_springs(graph, springs, turn%rest, turn%response, turn%rate)
-      step = (turn%lack_of_power - sum(path%live*turn%dv) - sum(path%live*turn%response)) &
-         & /turn%flexibility
-      turn%response = turn%response + step*turn%unit_response
+      step = (turn%lack_of_power - power_of(n, path%live, turn%dv) &
+         & - power_of(n, path%live, turn%response))/turn%flexibility
+      call add_multiple(n, step, turn%unit_response, turn%response)
       turn%dfactor = turn%dfactor + step - taken
-      turn%dv = turn%dv + turn%response
-      turn%rate = turn%rate + step*turn%unit_rate
+      call add_multiple(n, 1.0_wp, turn%response, turn%dv)
+      call add_multiple(size(turn%rate), step, turn%unit_rate, turn%rate)
    end subroutine find_balance
+
+   !> Power of forces on velocities
+   pure real(wp) function power_of(n, force, velocity) result(power)
+      integer, intent(in) :: n            !! Numbers of each
+      real(wp), intent(in) :: force(n)    !! The forces
+      real(wp), intent(in) :: velocity(n) !! The velocities
+
+      power = sum(force*velocity)
+   end function power_of
+
+   !> sum = sum + factor*more
+   pure subroutine add_multiple(n, factor, more, sum)
+      integer, intent(in) :: n           !! How many
+      real(wp), intent(in) :: factor     !! The factor
+      real(wp), intent(in) :: more(n)    !! What is added
+      real(wp), intent(inout) :: sum(n)  !! What it is added to
+
+      sum = sum + factor*more
+   end subroutine add_multiple
+
+   !> Numbers that are zero
+   pure subroutine clear(n, number)
+      integer, intent(in) :: n             !! How many
+      real(wp), intent(out) :: number(n)   !! The numbers
+
+      number = 0.0_wp
+   end subroutine clear
 end module dda_interior_direction

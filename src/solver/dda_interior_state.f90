@@ -37,6 +37,8 @@ module dda_interior_state
       integer(int8), allocatable :: bounded(:, :)
       !> One for rays of any sign: (n_side, n_joint)
       integer(int8), allocatable :: free(:, :)
+      !> Whether there are rays of other kinds than bounded ones
+      logical :: has_others = .false.
       !> Number of bounded rays, or one
       real(wp) :: n_bounded = 1.0_wp
       !> Unit of length: [m]
@@ -109,6 +111,7 @@ contains
       type(load_path_t), intent(out) :: path
 
       call bound_rays(graph, path%bounded, path%free)
+      path%has_others = any(path%bounded == 0_int8)
       path%n_bounded = real(max(1, count(path%bounded > 0)), wp)
       path%length = unit_of_length(graph)
       allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))

@@ -3,12 +3,13 @@
 !> Equation (M6) of docs/method.md
 module dda_interior_turn
    use dda_interior_direction, only : direct, direct_again, find_balance, refine_direction, &
-      & respond_to_live_load, turn_t
+      & respond_to_live_load, see_rest, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : add_ray_forces, n_side, ray_rates
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs
+   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -89,9 +90,9 @@ contains
          & abs(point%factor)*path%largest_live, 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
       call ray_rates(graph, path%length, point%v, turn%rate)
       power = maxval(abs(point%v))
-      against = max(maxval(-turn%rate*path%bounded), maxval(abs(turn%rate*path%free)))
+      against = against_all(path, turn%rate)
       point%violation = against/max(power, tiny(power))
-      turn%barrier = sum(point%x*point%s*path%bounded)/path%n_bounded
+      turn%barrier = sum(point%x*point%s, path%bounded > 0)/path%n_bounded
       power = sum(path%live*point%v)
       turn%lack_of_power = 1.0_wp - power
       point%upper = no_limit
@@ -121,10 +122,35 @@ contains
       do j = 1, size(rate, 2)
          rounding = epsilon(rounding)*max(maxval(abs(point%v(:, graph%block(1, j)))), &
             & maxval(abs(point%v(:, graph%block(2, j)))))
-         power = power + sum(abs(point%x(:, j))*(rounding + max(-rate(:, j)*path%bounded(:, j), &
-            & abs(rate(:, j)*path%free(:, j)))))
+         power = power + sum(abs(point%x(:, j))*(rounding + against_ray(path, rate, j)))
       end do
    end function power_against
+
+   !> Rates that forces along the rays of a joint forbid
+   pure function against_ray(path, rate, j) result(against)
+      type(load_path_t), intent(in) :: path
+      real(wp), intent(in) :: rate(:, :)
+      integer, intent(in) :: j       !! Number of the joint
+      real(wp) :: against(n_side)
+
+      if (path%has_others) then
+         against = max(-rate(:, j)*path%bounded(:, j), abs(rate(:, j)*path%free(:, j)))
+      else
+         against = max(-rate(:, j), 0.0_wp)
+      end if
+   end function against_ray
+
+   !> The largest of all rates that forces forbid
+   pure real(wp) function against_all(path, rate) result(largest)
+      type(load_path_t), intent(in) :: path
+      real(wp), intent(in) :: rate(:, :)
+      integer :: j
+
+      largest = 0.0_wp
+      do j = 1, size(rate, 2)
+         largest = max(largest, maxval(against_ray(path, rate, j)))
+      end do
+   end function against_all
 
    !> Factor the springs and find the direction to x*s = 0
    pure subroutine predict(graph, path, springs, point, turn)
@@ -183,7 +209,7 @@ contains
       wish%kind = centring%inwards
       wish%product = half*turn%barrier
       if (minval(reach) < short) call add_correction(graph, path, wish, springs, point, turn, reach)
-      call refine_direction(graph, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
+      call refine_direction(graph, path, point, 1.0e-12_wp*path%largest_dead, springs, turn)
       call direct_again(graph, path, point, springs, turn)
    end subroutine correct
 
@@ -207,24 +233,29 @@ contains
       product = share*turn%barrier
    end function aimed_product
 
-   !> Change of x that a correction aims at on one ray
-   elemental real(wp) function change_of_aim(wish, x, s, dx, ds, aim) result(change)
+   !> Change of x that a correction aims at on the rays of a joint
+   pure function change_of_aim(path, wish, point, turn, dx, j) result(change)
+      type(load_path_t), intent(in) :: path
       type(centring_t), intent(in) :: wish
-      real(wp), intent(in) :: x, s    !! Force and rate
-      real(wp), intent(in) :: dx, ds  !! The direction before
-      real(wp), intent(in) :: aim     !! Change of x that it aims at
+      type(interior_point_t), intent(in) :: point
+      type(turn_t), intent(in) :: turn         !! Has the direction of s before, and the aim
+      real(wp), intent(in) :: dx(n_side)       !! The direction of x before
+      integer, intent(in) :: j                 !! Number of the joint
+      real(wp) :: change(n_side)
 
-      select case (wish%kind)
-      case (centring%equal)
-         change = (wish%product - dx*ds)/s
-      case (centring%within)
-         change = (x + wish%further(1)*dx)*(s + wish%further(2)*ds)
-         change = max(-largest_product*wish%product, min(max(change, &
-            & least_product*wish%product), largest_product*wish%product) - change)
-         change = change/s
-      case default
-         change = wish%product/s - x - aim
-      end select
+      associate (x => point%x(:, j), s => point%s(:, j), ds => turn%ds(:, j))
+         select case (wish%kind)
+         case (centring%equal)
+            change = (wish%product - dx*ds)/s
+         case (centring%within)
+            change = (x + wish%further(1)*dx)*(s + wish%further(2)*ds)
+            change = max(-largest_product*wish%product, min(max(change, &
+               & least_product*wish%product), largest_product*wish%product) - change)/s
+         case default
+            change = wish%product/s - x - turn%aim(:, j)
+         end select
+      end associate
+      if (path%has_others) change = change*path%bounded(:, j)
    end function change_of_aim
 
    !> Change the aim of a direction, and take as much of that as makes the steps longest
@@ -245,10 +276,10 @@ contains
       dv = turn%dv
       dfactor = turn%dfactor
       do j = 1, size(dx, 2)
-         turn%dx(:, j) = dx(:, j) + change_of_aim(wish, point%x(:, j), point%s(:, j), dx(:, j), &
-            & turn%ds(:, j), turn%aim(:, j))*path%bounded(:, j) &
+         turn%dx(:, j) = dx(:, j) + change_of_aim(path, wish, point, turn, dx(:, j), j) &
             & *(1.0_wp - path%compliance*springs%stiffness(:, j))
       end do
+      call see_rest(graph, path, turn)
       call find_balance(graph, path, point, springs, turn)
       ! the rates are not needed any more and make room for what s would change by
       do j = 1, size(dx, 2)
@@ -265,14 +296,24 @@ contains
       reach = steps(:, best)
       share = real(best, wp)/real(n_share, wp)
       do j = 1, size(dx, 2)
-         turn%aim(:, j) = turn%aim(:, j) + share*change_of_aim(wish, point%x(:, j), &
-            & point%s(:, j), dx(:, j), turn%ds(:, j), turn%aim(:, j))*path%bounded(:, j)
+         turn%aim(:, j) = turn%aim(:, j) &
+            & + share*change_of_aim(path, wish, point, turn, dx(:, j), j)
       end do
-      turn%dx = dx + share*(turn%dx - dx)
-      turn%ds = turn%ds + share*(turn%rate - turn%ds)
-      turn%dv = dv + share*(turn%dv - dv)
+      call take_share(size(dx), 1.0_wp - share, dx, turn%dx)
+      call take_share(size(dx), share, turn%rate, turn%ds)
+      call take_share(size(dv), 1.0_wp - share, dv, turn%dv)
       turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
    end subroutine add_correction
+
+   !> Go a share of the way to other numbers
+   pure subroutine take_share(n, share, other, number)
+      integer, intent(in) :: n              !! How many
+      real(wp), intent(in) :: share         !! The share
+      real(wp), intent(in) :: other(n)      !! The others
+      real(wp), intent(inout) :: number(n)  !! The numbers
+
+      number = number + share*(other - number)
+   end subroutine take_share
 
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the
    !> turn changed is taken
@@ -283,22 +324,35 @@ contains
       type(turn_t), intent(in) :: turn
       real(wp), intent(in) :: dx(:, :)  !! The direction of x before: (n_side, n_joint)
       real(wp) :: steps(2, n_share)     !! Steps of forces and of rates: (2, n_share)
-      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2), per(n_side, 2)
-      integer :: i, j
+      real(wp) :: hurry(n_share, 2)
+      integer :: j, k
 
       hurry = share_of_way
       do j = 1, size(dx, 2)
-         per = one_over(path, point, j)
-         from(:, 1) = -dx(:, j)*per(:, 1)
-         from(:, 2) = -turn%ds(:, j)*per(:, 2)
-         more(:, 1) = -turn%dx(:, j)*per(:, 1) - from(:, 1)
-         more(:, 2) = -turn%rate(:, j)*per(:, 2) - from(:, 2)
-         do i = 1, n_share
-            hurry(:, :, i) = max(hurry(:, :, i), from + real(i, wp)/real(n_share, wp)*more)
+         do k = 1, n_side
+            ! most are far from their bounds with any part
+            if (min(dx(k, j), turn%dx(k, j)) < -share_of_way*point%x(k, j)) call hurry_by( &
+               & path%bounded(k, j), point%x(k, j), dx(k, j), turn%dx(k, j), hurry(:, 1))
+            if (min(turn%ds(k, j), turn%rate(k, j)) < -share_of_way*point%s(k, j)) call hurry_by( &
+               & path%bounded(k, j), point%s(k, j), turn%ds(k, j), turn%rate(k, j), hurry(:, 2))
          end do
       end do
-      steps = 1.0_wp/maxval(hurry, dim=1)
+      steps = 1.0_wp/transpose(hurry)
    end function steps_of_shares
+
+   !> How much of a way a ray goes in one step at least, with each part of a change of its direction
+   pure subroutine hurry_by(bounded, from, before, after, hurry)
+      integer(int8), intent(in) :: bounded     !! One if it has a bound
+      real(wp), intent(in) :: from             !! Its force, or its rate
+      real(wp), intent(in) :: before, after    !! The direction without the change, and with all
+      real(wp), intent(inout) :: hurry(:)      !! One over the longest steps: (n_share)
+      integer :: i
+
+      if (bounded == 0_int8) return
+      do i = 1, n_share
+         hurry(i) = max(hurry(i), -(before + real(i, wp)/real(n_share, wp)*(after - before))/from)
+      end do
+   end subroutine hurry_by
 
    !> Longest steps of forces and of rates along the direction, at most 1, that keep them inside
    !> their bounds
@@ -307,30 +361,20 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
       real(wp) :: reach(2)  !! Steps
-      real(wp) :: hurry(n_side, 2), per(n_side, 2)
-      integer :: j
+      real(wp) :: hurry(2)
+      integer :: j, k
 
       hurry = share_of_way
       do j = 1, size(turn%dx, 2)
-         per = one_over(path, point, j)
-         hurry(:, 1) = max(hurry(:, 1), -turn%dx(:, j)*per(:, 1))
-         hurry(:, 2) = max(hurry(:, 2), -turn%ds(:, j)*per(:, 2))
+         do k = 1, n_side
+            if (turn%dx(k, j) < -hurry(1)*point%x(k, j) .and. path%bounded(k, j) > 0) &
+               & hurry(1) = max(hurry(1), -turn%dx(k, j)/point%x(k, j))
+            if (turn%ds(k, j) < -hurry(2)*point%s(k, j) .and. path%bounded(k, j) > 0) &
+               & hurry(2) = max(hurry(2), -turn%ds(k, j)/point%s(k, j))
+         end do
       end do
-      reach = 1.0_wp/maxval(hurry, dim=1)
+      reach = 1.0_wp/hurry
    end function longest_steps
-
-   !> One over forces and over rates of the bounded rays of a joint, none of others
-   pure function one_over(path, point, j) result(per)
-      type(load_path_t), intent(in) :: path
-      type(interior_point_t), intent(in) :: point
-      integer, intent(in) :: j      !! Number of the joint
-      real(wp) :: per(n_side, 2)    !! Of forces, of rates: (n_side, 2)
-      logical :: is_bounded(n_side)
-
-      is_bounded = path%bounded(:, j) > 0
-      per(:, 1) = path%bounded(:, j)/merge(point%x(:, j), 1.0_wp, is_bounded)
-      per(:, 2) = path%bounded(:, j)/merge(point%s(:, j), 1.0_wp, is_bounded)
-   end function one_over
 
    !> Move along the direction, almost to the border
    pure subroutine move(path, turn, point)

@@ -64,8 +64,10 @@ contains
       shape = kind
       part = 1.0_wp
       if (kind /= joint_kind%contact .and. kind /= joint_kind%corner) return
-      if (friction > 0.0_wp) then
-         part = [1.0_wp, friction]/max(1.0_wp, friction)
+      if (friction > 1.0_wp) then
+         part(1) = 1.0_wp/friction
+      else if (friction > 0.0_wp) then
+         part(2) = friction
       else
          shape = merge(smooth_contact, smooth_corner, kind == joint_kind%contact)
       end if
@@ -118,6 +120,10 @@ contains
       integer :: shape
 
       call ray_shape(kind, friction, shape, part)
+      if (shape == joint_kind%contact) then
+         force = [part(1)*(x(1) + x(2)), part(1)*(x(3) + x(4)), part(2)*(x(1) - x(2) + x(3) - x(4))]
+         return
+      end if
       associate (p => press(:, shape), s => shear(:, shape))
          force(1) = part(1)*(p(1)*x(1) + p(2)*x(2))
          force(2) = part(1)*(p(3)*x(3) + p(4)*x(4))
@@ -179,7 +185,12 @@ contains
          end do
          call ray_shape(graph%kind(j), graph%friction(j), shape, part)
          opening = opening*[part(1), part(1), part(2)]
-         rate(:, j) = press(:, shape)*opening([1, 1, 2, 2]) + shear(:, shape)*opening(3)
+         if (shape == joint_kind%contact) then
+            rate(:, j) = [opening(1) + opening(3), opening(1) - opening(3), &
+               & opening(2) + opening(3), opening(2) - opening(3)]
+         else
+            rate(:, j) = press(:, shape)*opening([1, 1, 2, 2]) + shear(:, shape)*opening(3)
+         end if
       end do
    end subroutine ray_rates
 

@@ -165,7 +165,7 @@ contains
             do side = 1, 2
                if (graph%block(side, j) == 0) cycle
                pushed(:, :, side) = matmul(row(:, :, side), spring)
-               call add_product(pushed(:, :, side), row(:, :, side), &
+               call add_lower(pushed(:, :, side), row(:, :, side), &
                   & number(springs%diagonal(graph%block(side, j))))
             end do
             if (springs%coupling(j) == 0) cycle
@@ -175,6 +175,17 @@ contains
          end do
       end associate
    end subroutine assemble
+
+   !> sum = sum + a b', the lower triangle alone: no more is looked at of a diagonal block
+   pure subroutine add_lower(a, b, sum)
+      real(wp), intent(in) :: a(3, 3)       !! First factor
+      real(wp), intent(in) :: b(3, 3)       !! Second factor, transposed
+      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
+
+      sum(:, 1) = sum(:, 1) + (a(:, 1)*b(1, 1) + a(:, 2)*b(1, 2) + a(:, 3)*b(1, 3))
+      sum(2:, 2) = sum(2:, 2) + (a(2:, 1)*b(2, 1) + a(2:, 2)*b(2, 2) + a(2:, 3)*b(2, 3))
+      sum(3, 3) = sum(3, 3) + (a(3, 1)*b(3, 1) + a(3, 2)*b(3, 2) + a(3, 3)*b(3, 3))
+   end subroutine add_lower
 
    !> sum = sum + a b'
    pure subroutine add_product(a, b, sum)
@@ -193,9 +204,9 @@ contains
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
       !> Loads: (3, 0:n_block)
-      real(wp), intent(in) :: load(:, 0:)
+      real(wp), intent(in) :: load(3, 0:graph%n_block)
       !> Motion, none of what cannot move: (3, 0:n_block)
-      real(wp), intent(out) :: motion(:, 0:)
+      real(wp), intent(out) :: motion(3, 0:graph%n_block)
       !> Rates at which it opens the rays: (n_side, n_joint)
       real(wp), intent(out), contiguous :: rate(:, :)
 
