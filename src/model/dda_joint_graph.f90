@@ -57,7 +57,8 @@ module dda_joint_graph
       real(wp), allocatable :: cohesion(:, :)
       !> Displacement by unit force at corner 1, corner 2 and along the joint: (3, n_joint) [m2/N]
       real(wp), allocatable :: compliance(:, :)
-      !> Opening of the corners where nothing has moved: (2, n_joint) [m]
+      !> Opening of the corners where nothing has moved, unallocated where there is none:
+      !> (2, n_joint) [m]
       real(wp), allocatable :: gap(:, :)
       !> Mass and moment of inertia of each block, for motion damped by mass: (n_dof, n_block)
       real(wp), allocatable :: mass(:, :)
@@ -119,7 +120,7 @@ contains
       graph%friction = graph%friction(k)
       graph%length = graph%length(k)
       graph%compliance = graph%compliance(:, k)
-      graph%gap = graph%gap(:, k)
+      if (allocated(graph%gap)) graph%gap = graph%gap(:, k)
       if (allocated(graph%crush)) graph%crush = graph%crush(k)
       if (.not. breaks(graph)) return
       graph%pull = graph%pull(:, k)

@@ -8,10 +8,10 @@
 submodule (dda_decision) dda_dead_rest
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
    use dda_coulomb_law, only : face, shear_face, unloaded_state
+   use dda_error, only : error_t
    use dda_forward, only : run_to_verdict
    use dda_graph_decision, only : no_start
    use dda_joint_graph, only : add_joint_forces
-   use dda_kinds, only : wp
    use dda_load_stations, only : history_times, leads_at_once
    use dda_path_event, only : path_end
    use dda_path_verdict, only : follow_stations
@@ -25,15 +25,19 @@ contains
    !> Follow the path from its dead loads
    module procedure follow_from_rest
       type(coulomb_state_t), allocatable :: start
+      type(error_t), allocatable :: error
       integer :: n
       logical :: slides
 
-      call follow_stations(settings, system, graph, stations, proof)
+      deallocate (scene%contacts%joint)
+      call follow_stations(settings, scene%system, graph, stations, proof)
+      call family%build(value, scene, error)
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       if (.not. (proof%no_start .and. is_balanced)) return
-      call rest_under_dead_loads(settings, system, contacts, start, slides, n)
+      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, slides, n)
       if (allocated(start)) then
-         call scene_graph(settings, system, contacts, graph)
-         call follow_stations(settings, system, graph, stations, proof, start)
+         call follow_stations(settings, scene%system, graph, stations, proof, start)
+         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       else
          proof%end = path_end%undecided
          proof%reason = no_start

@@ -14,7 +14,6 @@ submodule (dda_decision) dda_decide
    use dda_frames, only : blank_album, keep_pictures
    use dda_graph_decision, only : decide_graph
    use dda_graph_report, only : show_mechanism, show_state
-   use dda_kinds, only : wp
    use dda_material, only : weakens
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph

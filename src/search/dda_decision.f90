@@ -8,7 +8,8 @@ module dda_decision
    use dda_frames, only : album_t
    use dda_joint_graph, only : joint_graph_t
    use dda_load_stations, only : load_stations_t
-   use dda_scene, only : scene_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, scene_t
    use dda_scene_graph, only : graph_verdict_t
    use dda_search, only : decision_t
    use dda_settings, only : settings_t
@@ -93,14 +94,16 @@ module dda_decision
 
       !> Follow the path from its dead loads; where it finds no state under them though forces
       !> balance them, from the rest that blocks come to
-      pure module subroutine follow_from_rest(settings, system, contacts, graph, stations, &
-         & is_balanced, proof)
+      pure module subroutine follow_from_rest(family, value, settings, stations, is_balanced, &
+         & scene, graph, proof)
+         !> The family of the scene, of which it is made anew behind a path: its contacts leave room
+         class(family_t), intent(in) :: family
+         real(wp), intent(in) :: value                  !! Its parameter
          type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         type(joint_graph_t), intent(inout) :: graph    !! Their joints, which the path takes over
          type(load_stations_t), intent(in) :: stations
          logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
+         type(scene_t), intent(inout) :: scene
+         type(joint_graph_t), intent(inout) :: graph    !! Its joints, made anew, too
          type(graph_verdict_t), intent(inout) :: proof  !! How the path went
       end subroutine follow_from_rest
 

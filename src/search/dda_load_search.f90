@@ -69,9 +69,9 @@ contains
          & = only_weight(scene%settings) .and. is_push(max(abs(low), abs(high)))
       if (.not. done) return
       ! from an unloaded state outside the range, the path leads through it
-      call follow_side(family%load, scene, graph, 0.0_wp, high, 1.0_wp, search, right)
-      call follow_side(family%load, scene, graph, 0.0_wp, low, -1.0_wp, search, left)
-      call look_elsewhere(family%load, scene, graph, search, low, high, right, left, origin, &
+      call follow_side(family, scene, graph, 0.0_wp, high, 1.0_wp, search, right)
+      call follow_side(family, scene, graph, 0.0_wp, low, -1.0_wp, search, left)
+      call look_elsewhere(family, scene, graph, search, low, high, right, left, origin, &
          & rest, n)
       call tell_fall(scene%settings, graph, right)
       call tell_fall(scene%settings, graph, left)
@@ -89,10 +89,10 @@ contains
    end procedure find_critical_load
 
    !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
-   pure subroutine look_elsewhere(load, scene, graph, search, low, high, right, left, origin, &
+   pure subroutine look_elsewhere(family, scene, graph, search, low, high, right, left, origin, &
       & may_stand, n)
-      integer, intent(in) :: load        !! One of searched_load
-      type(scene_t), intent(in) :: scene
+      class(family_t), intent(in) :: family
+      type(scene_t), intent(inout) :: scene
       type(joint_graph_t), intent(inout) :: graph
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: low, high  !! The range
@@ -110,16 +110,16 @@ contains
       may_stand = .true.
       no_order = knows_no_order(scene%settings, graph)
       if (breaks(graph) .or. .not. (right%falls_dead .or. left%falls_dead)) return
-      if (.not. may_seek(load, scene, no_order, to - from)) return
+      if (.not. may_seek(family%load, scene, no_order, to - from)) return
       if (.not. no_order .and. right%stands_upright .and. left%stands_upright) return
-      call seek_rest(load, scene, graph, from, to, origin, found, n)
+      call seek_rest(family%load, scene, graph, from, to, origin, found, n)
       may_stand = to > from
       if (.not. (found .and. no_order)) return
       n = n + right%proof%n_factorisation + left%proof%n_factorisation
       ! what is ruled out begins at a limit or beyond
       margin = nudge*(to - from)
-      call follow_side(load, scene, graph, origin, min(high, to + margin), 1.0_wp, search, right)
-      call follow_side(load, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
+      call follow_side(family, scene, graph, origin, min(high, to + margin), 1.0_wp, search, right)
+      call follow_side(family, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
    end subroutine look_elsewhere
 
    !> How a side falls that limit analysis brings down
@@ -138,9 +138,9 @@ contains
    end subroutine tell_fall
 
    !> Follow the path to one side: limit analysis says how far it can lead at most
-   pure subroutine follow_side(load, scene, graph, origin, last, outward, search, side)
-      integer, intent(in) :: load  !! One of searched_load
-      type(scene_t), intent(in) :: scene
+   pure subroutine follow_side(family, scene, graph, origin, last, outward, search, side)
+      class(family_t), intent(in) :: family
+      type(scene_t), intent(inout) :: scene        !! The scene at the high end
       type(joint_graph_t), intent(inout) :: graph  !! Its joints, made anew behind a path
       !> Value from which the range is searched: 0, or one that stands where 0 does not
       real(wp), intent(in) :: origin
@@ -155,7 +155,7 @@ contains
 
       side%value = last
       if (.not. outward*(last - origin) > 0.0_wp) return
-      call find_associated(load, scene, graph, origin, last - origin, search, side, limit)
+      call find_associated(family%load, scene, graph, origin, last - origin, search, side, limit)
       side%falls_dead = limit%state == limit_state%no_dead_equilibrium
       far = last
       if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
@@ -169,17 +169,16 @@ contains
             return
          end if
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
-         settings = with_coefficient(scene%settings, load, far)
+         settings = with_coefficient(scene%settings, family%load, far)
          stations = load_stations(settings, .true.)
-         call follow_from_rest(settings, scene%system, scene%contacts, graph, stations, &
-            & side%has_limit .or. limit%state == limit_state%unbounded, proof)
-         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+         call follow_from_rest(family, search%high, settings, stations, &
+            & side%has_limit .or. limit%state == limit_state%unbounded, scene, graph, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%falls_dead = proof%no_start
          side%stands_upright = .not. proof%no_start
          side%end = proof%end
-         side%value = value_at_end(load, far, stations, proof)
-         if (load == searched_load%tilt .and. only_weight(scene%settings)) &
+         side%value = value_at_end(family%load, far, stations, proof)
+         if (family%load == searched_load%tilt .and. only_weight(scene%settings)) &
             & call restore_weight(stations, proof)
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
             ! no forces go on from here, whatever the law of friction
@@ -208,7 +207,7 @@ contains
 
    !> The associated limit of what is searched, where it is linear in the load
    pure subroutine find_associated(load, scene, graph, origin, last, search, side, limit)
-      integer, intent(in) :: load
+      integer, intent(in) :: load  !! One of searched_load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: origin, last  !! Where it begins, and from there the end of the range

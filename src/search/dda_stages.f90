@@ -12,7 +12,6 @@ submodule (dda_decision) dda_stages
    use dda_coulomb_law, only : unloaded_state
    use dda_graph_decision, only : decide_graph
    use dda_joint_graph, only : add_joint_forces
-   use dda_kinds, only : wp
    use dda_path_event, only : path_end
    use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_verdict, only : outcome_t, verdict

@@ -17,7 +17,7 @@ module dda_coulomb_equations
    use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix, &
       & new_matrix
    use dda_joint_graph, only : joint_motion
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    use dda_small_systems, only : eliminate_full, substitute_full
    implicit none
    private
@@ -46,9 +46,9 @@ module dda_coulomb_equations
       !> The multiple of the mass that rates are asked with; less where the assembly is soft
       real(wp) :: rest_damping = path_damping
       !> Faces in the factor: (3, n_joint)
-      integer, allocatable :: base_face(:, :)
+      integer(small), allocatable :: base_face(:, :)
       !> Faces in the equations: (3, n_joint)
-      integer, allocatable :: face(:, :)
+      integer(small), allocatable :: face(:, :)
       !> Number of joints that have changed since
       integer :: n_change = 0
       !> Their numbers in the order of their first change: (max_answer)
@@ -97,7 +97,8 @@ contains
       call new_matrix(joints, equations%base)
       equations%most_answers = max(least_answers, min(max_answer, &
          & most_numbers/(joints%graph%n_dof*max(1, joints%graph%n_block))))
-      allocate (equations%base_face(3, n_joint), equations%place(n_joint), source=0)
+      allocate (equations%base_face(3, n_joint), source=0_small)
+      allocate (equations%place(n_joint), source=0)
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
@@ -113,7 +114,7 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
-      integer, intent(in), contiguous :: faces(:, :)
+      integer(small), intent(in), contiguous :: faces(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
       !> Multiple of the stiffness of all joints, 0 if absent
@@ -291,7 +292,8 @@ contains
       logical, intent(in), optional :: once
       !> What may be left of the load, and rounding of the openings of blocks that move far
       real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
-      real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound, lost
+      real(wp), allocatable :: force(:, :), rest(:, :)
+      real(wp) :: bound, lost
       integer :: turn
 
       call substitute_again(equations, load, motion, once)
@@ -301,6 +303,8 @@ contains
          if (size(equations%active) == 0) exit
          bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (turn == 1 .and. lost <= bound) exit
+         if (turn == 1) allocate (force, mold=opening)
+         if (turn == 1) allocate (rest, mold=load)
          call spring_forces(joints, equations%face, opening, force)
          if (equations%viscosity > 0.0_wp) force = force &
             & - equations%viscosity*opening/joints%graph%compliance

@@ -162,7 +162,9 @@ contains
       call imbalance(joints, load - damping*joints%graph%mass*x%motion, x%force, rest%balance)
       call joint_motion(joints%graph, x%motion, rest%opening)
       rest%opening = -rest%opening - joints%graph%compliance*x%force
-      rest%opening(:2, :) = rest%opening(:2, :) - joints%graph%gap + x%flow(:2, :)
+      if (allocated(joints%graph%gap)) &
+         & rest%opening(:2, :) = rest%opening(:2, :) - joints%graph%gap
+      rest%opening(:2, :) = rest%opening(:2, :) + x%flow(:2, :)
       rest%opening(3, :) = rest%opening(3, :) + x%flow(3, :) - x%flow(4, :)
       where (joints%end_role == end_role%absent) rest%opening(:2, :) = 0.0_wp
       where (joints%shear_role == shear_role%absent) rest%opening(3, :) = 0.0_wp

@@ -6,7 +6,7 @@
 !> number. An elastic displacement is of order 1.
 module dda_coulomb_joints
    use dda_joint_graph, only : breaks, joint_graph_t, joint_kind, take_over
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    implicit none
    private
 
@@ -16,16 +16,16 @@ module dda_coulomb_joints
 
    !> What a corner of a joint can do
    type :: end_role_enum
-      integer :: contact = 1  !! It pushes or is open
-      integer :: tied = 2     !! It pushes and pulls
-      integer :: absent = 3   !! There is none
+      integer(small) :: contact = 1_small  !! It pushes or is open
+      integer(small) :: tied = 2_small     !! It pushes and pulls
+      integer(small) :: absent = 3_small   !! There is none
    end type end_role_enum
 
    !> What a joint can do along itself
    type :: shear_role_enum
-      integer :: frictional = 1  !! It sticks, or slides at Coulomb's limit
-      integer :: tied = 2        !! It never slides
-      integer :: absent = 3      !! It carries no shear force
+      integer(small) :: frictional = 1_small  !! It sticks, or slides at Coulomb's limit
+      integer(small) :: tied = 2_small        !! It never slides
+      integer(small) :: absent = 3_small      !! It carries no shear force
    end type shear_role_enum
 
    !> Names of what corners can do
@@ -36,8 +36,10 @@ module dda_coulomb_joints
    !> Joints in units of their own
    type :: coulomb_joints_t
       type(joint_graph_t) :: graph            !! The joints, every quantity in these units
-      integer, allocatable :: end_role(:, :)  !! What each corner can do: (2, n_joint)
-      integer, allocatable :: shear_role(:)   !! What each joint can do along itself: (n_joint)
+      !> What each corner can do: (2, n_joint)
+      integer(small), allocatable :: end_role(:, :)
+      !> What each joint can do along itself: (n_joint)
+      integer(small), allocatable :: shear_role(:)
       real(wp) :: force_unit = 1.0_wp         !! Unit of forces [N/m]
       real(wp) :: arm_unit = 1.0_wp           !! Unit of arms [m]
       real(wp) :: motion_unit = 1.0_wp        !! Unit of displacements and gaps [m]
@@ -78,9 +80,10 @@ contains
          mass = positive_or_one(mean(scaled%mass(1, :)))
          joints%motion_unit = compliance
          scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
-         scaled%length = scaled%length/joints%arm_unit
+         ! lengths have told their unit
+         deallocate (scaled%length)
          scaled%compliance = scaled%compliance/compliance
-         scaled%gap = scaled%gap/joints%motion_unit
+         if (allocated(scaled%gap)) scaled%gap = scaled%gap/joints%motion_unit
          scaled%mass = scaled%mass/mass
          scaled%mass(3:, :) = scaled%mass(3:, :)/joints%arm_unit**2
       end associate
@@ -108,7 +111,8 @@ contains
       if (.not. unit > 0.0_wp) unit = mean(maxval(abs(load), 1))/joints%arm_unit
       joints%has_weight = unit > 0.0_wp
       if (.not. joints%has_weight) return
-      joints%graph%gap = joints%graph%gap*(joints%force_unit/unit)
+      if (allocated(joints%graph%gap)) &
+         & joints%graph%gap = joints%graph%gap*(joints%force_unit/unit)
       if (breaks(joints%graph)) then
          joints%graph%pull = joints%graph%pull*(joints%force_unit/unit)
          joints%graph%cohesion = joints%graph%cohesion*(joints%force_unit/unit)
@@ -147,7 +151,7 @@ contains
    end subroutine set_roles
 
    !> What a joint that may slide can do along itself
-   pure integer function slide_role(graph, j)
+   pure integer(small) function slide_role(graph, j)
       type(joint_graph_t), intent(in) :: graph
       integer, intent(in) :: j  !! Number of the joint
 

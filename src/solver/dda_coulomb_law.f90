@@ -14,7 +14,7 @@
 module dda_coulomb_law
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_joint_graph, only : add_joint_forces, breaks
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    implicit none
    private
 
@@ -24,12 +24,12 @@ module dda_coulomb_law
 
    !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
-      integer :: open = 0          !! The corner is open: no force
-      integer :: closed = 1        !! The corner is closed
-      integer :: slides_back = -1  !! The joint slides against a negative shear force
-      integer :: stuck = 0         !! The joint sticks
-      integer :: slides = 1        !! The joint slides against a positive shear force
-      integer :: free = 2          !! The joint carries no shear force
+      integer(small) :: open = 0_small          !! The corner is open: no force
+      integer(small) :: closed = 1_small        !! The corner is closed
+      integer(small) :: slides_back = -1_small  !! The joint slides against a negative shear force
+      integer(small) :: stuck = 0_small         !! The joint sticks
+      integer(small) :: slides = 1_small        !! The joint slides against a positive shear force
+      integer(small) :: free = 2_small          !! The joint carries no shear force
    end type face_enum
 
    !> Names of what corners and joints do
@@ -46,7 +46,7 @@ module dda_coulomb_law
       !> Slip of each joint that its spring does not give back: (n_joint)
       real(wp), allocatable :: slip(:)
       !> What corner 1, corner 2 and the joint along itself do: (3, n_joint)
-      integer, allocatable :: face(:, :)
+      integer(small), allocatable :: face(:, :)
       !> Corners that have kept their strength; unallocated where none has any: (2, n_joint)
       logical, allocatable :: whole(:, :)
       !> Load that it carries: (n_dof, n_block)
@@ -71,7 +71,8 @@ contains
       state%load = 0.0_wp
       state%force = 0.0_wp
       state%slip = 0.0_wp
-      state%gap = joints%graph%gap
+      state%gap = 0.0_wp
+      if (allocated(joints%graph%gap)) state%gap = joints%graph%gap
       if (breaks(joints%graph)) state%whole = joints%graph%cohesion > 0.0_wp &
          & .or. joints%graph%pull > 0.0_wp
       do j = 1, n_joint
@@ -106,11 +107,11 @@ contains
    end function strength
 
    !> What a joint does along itself, where it can do nothing else
-   pure integer function shear_face(joints, j, ends, otherwise)
+   pure integer(small) function shear_face(joints, j, ends, otherwise)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j          !! Number of the joint
-      integer, intent(in) :: ends(2)    !! What its corners do: (2)
-      integer, intent(in) :: otherwise  !! What it does if it has the choice
+      integer(small), intent(in) :: ends(2)    !! What its corners do: (2)
+      integer(small), intent(in) :: otherwise  !! What it does if it has the choice
 
       shear_face = otherwise
       if (joints%shear_role(j) == shear_role%absent) then
@@ -222,7 +223,7 @@ contains
    pure function joint_stiffness(joints, j, faces) result(stiffness)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j
-      integer, intent(in) :: faces(3)  !! What it does: (3)
+      integer(small), intent(in) :: faces(3)  !! What it does: (3)
       real(wp) :: stiffness(3, 3)      !! Rows N1, N2, T; columns opening 1, opening 2, slip
       integer :: i
 
@@ -243,9 +244,11 @@ contains
    !> Forces by which the springs of all joints answer openings while the faces stay
    pure subroutine spring_forces(joints, faces, opening, force)
       type(coulomb_joints_t), intent(in) :: joints
-      integer, intent(in), contiguous :: faces(:, :)    !! What corners and joints do: (3, n_joint)
+      !> What corners and joints do: (3, n_joint)
+      integer(small), intent(in), contiguous :: faces(:, :)
       real(wp), intent(in), contiguous :: opening(:, :)
-      real(wp), intent(out), contiguous :: force(:, :)  !! N1, N2, T: (3, n_joint)
+      !> N1, N2, T: (3, n_joint)
+      real(wp), intent(out), contiguous :: force(:, :)
       integer :: i, j
 
       do j = 1, size(faces, 2)
@@ -280,7 +283,7 @@ contains
    pure subroutine force_faces(joints, state, faces, change)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      integer, intent(in), contiguous :: faces(:, :)
+      integer(small), intent(in), contiguous :: faces(:, :)
       real(wp), intent(out), contiguous :: change(:, :)  !! Change of N1, N2 and T: (3, n_joint)
       integer :: i, j
 

@@ -9,6 +9,7 @@ submodule (dda_loading_path) dda_coulomb_start
    use dda_coulomb_interior, only : coulomb_interior_t, enough, interior_motion, sharp
    use dda_coulomb_law, only : apply_law, force_faces, unloaded_state
    use dda_joint_graph, only : joint_motion
+   use dda_kinds, only : small
    use dda_load_jump, only : jump_to_balance
    implicit none
 
@@ -130,7 +131,8 @@ contains
       type(coulomb_state_t) :: before
       real(wp) :: change(3, size(after%slip)), rest(size(load, 1), size(load, 2))
       real(wp) :: step(size(load, 1), size(load, 2))
-      integer :: faces(3, size(after%slip)), pass
+      integer(small) :: faces(3, size(after%slip))
+      integer :: pass
 
       passes = 0
       left = huge(1.0_wp)

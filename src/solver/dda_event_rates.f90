@@ -8,7 +8,7 @@ module dda_event_rates
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : coulomb_state_t, imbalance, spring_forces
    use dda_joint_graph, only : add_joint_forces
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    implicit none
    private
 
@@ -18,15 +18,15 @@ module dda_event_rates
    !> What a state leaves open
    type :: rate_law_t
       !> Whether each corner is weak: (2, n_joint)
-      logical, allocatable :: weak(:, :)
+      logical(small), allocatable :: weak(:, :)
       !> Limits that each joint may slide at, a positive and a negative shear force: (2, n_joint)
-      logical, allocatable :: limit(:, :)
+      logical(small), allocatable :: limit(:, :)
       !> Faces where they are given: (3, n_joint)
-      integer, allocatable :: given(:, :)
+      integer(small), allocatable :: given(:, :)
       !> Joints of which a corner is weak or that are at a limit
       integer, allocatable :: loose(:)
       !> Joints whose cohesion keeps them from sliding until a corner has opened: (n_joint)
-      logical, allocatable :: holds(:)
+      logical(small), allocatable :: holds(:)
    end type rate_law_t
 
    !> Where the line of a motion meets a bend of the law
@@ -52,7 +52,7 @@ module dda_event_rates
       !> N1, N2, T: (3, n_joint)
       real(wp), allocatable :: force(:, :)
       !> What corners and joints do: (3, n_joint)
-      integer, allocatable :: face(:, :)
+      integer(small), allocatable :: face(:, :)
       !> Rates of opening that may be none
       real(wp) :: still = 0.0_wp
       !> Largest load, or force of a joint that is driven
@@ -89,7 +89,7 @@ module dda_event_rates
          type(rate_law_t), intent(in) :: law
          real(wp), intent(in) :: opening(:, :)  !! Rates of opening 1, opening 2, slip: (3, n_joint)
          real(wp), intent(in) :: still          !! Rates of opening that may be none
-         integer, intent(inout) :: faces(:, :)  !! What they have done, and do: (3, n_joint)
+         integer(small), intent(inout) :: faces(:, :)  !! What they have done, and do: (3, n_joint)
       end subroutine follow_law
 
       !> The first bend of the law on a line of rates of opening: without a joint if there is none
@@ -97,7 +97,7 @@ module dda_event_rates
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
          real(wp), intent(in) :: still          !! Rates of opening that may be none
-         integer, intent(in) :: faces(:, :)     !! What the joints do: (3, n_joint)
+         integer(small), intent(in) :: faces(:, :)     !! What the joints do: (3, n_joint)
          real(wp), intent(in) :: opening(:, :)  !! Where the line begins: (3, n_joint)
          real(wp), intent(in) :: change(:, :)   !! Where it leads: (3, n_joint)
       end function next_break
@@ -106,7 +106,7 @@ module dda_event_rates
       pure real(wp) module function break_rate(joints, break, faces, change)
          type(coulomb_joints_t), intent(in) :: joints
          type(break_t), intent(in) :: break
-         integer, intent(in) :: faces(:, :)
+         integer(small), intent(in) :: faces(:, :)
          real(wp), intent(in) :: change(:, :)  !! Where the line leads: (3, n_joint)
       end function break_rate
 
@@ -116,7 +116,7 @@ module dda_event_rates
          type(rate_law_t), intent(in) :: law
          type(break_t), intent(in) :: break
          real(wp), intent(in) :: opening(:, :)
-         integer, intent(inout) :: faces(:, :)
+         integer(small), intent(inout) :: faces(:, :)
       end subroutine cross_break
 
    end interface
@@ -154,8 +154,9 @@ contains
       !> Rates of opening that are prescribed, none if absent: (3, n_joint)
       real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
       type(rate_law_t) :: law
-      real(wp) :: damped(size(load_rate, 1), size(load_rate, 2))
-      integer :: target(3, size(state%face, 2)), seen(3, size(state%face, 2)), n_wrong, pass
+      real(wp), allocatable :: damped(:, :)
+      integer(small), dimension(3, size(state%face, 2)) :: target, seen
+      integer :: n_wrong, pass
 
       found = .false.
       call set_rate_law(joints, state, law)
@@ -249,7 +250,7 @@ contains
    pure subroutine add_drive(joints, faces, load, driven, opening)
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
-      integer, intent(in), contiguous :: faces(:, :)
+      integer(small), intent(in), contiguous :: faces(:, :)
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Both: (n_dof, n_block)
@@ -283,7 +284,7 @@ contains
       !> How the joints open with it and with the drive: (3, n_joint)
       real(wp), intent(inout) :: opening(:, :)
       !> What they have done, and do: (3, n_joint)
-      integer, intent(inout), contiguous :: faces(:, :)
+      integer(small), intent(inout), contiguous :: faces(:, :)
       !> Whether the load was reached
       logical, intent(out) :: found
       !> Rates of opening that are prescribed, none if absent: (3, n_joint)

@@ -142,8 +142,10 @@ contains
 
       m = size(layers%joint)
       n = size(graph%kind)
-      allocate (layered%gap(2, n + 2*m), source=0.0_wp)
-      layered%gap(:, :n) = graph%gap
+      if (allocated(graph%gap)) then
+         allocate (layered%gap(2, n + 2*m), source=0.0_wp)
+         layered%gap(:, :n) = graph%gap
+      end if
       allocate (layered%compliance(3, n + 2*m))
       layered%compliance(:, :n) = graph%compliance
       do i = 1, m

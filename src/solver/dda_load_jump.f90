@@ -38,6 +38,8 @@ module dda_load_jump
       real(wp) :: tolerance = 0.0_wp
       !> A motion beyond this is far
       real(wp) :: far = huge(1.0_wp)
+      !> Largest displacement of one that came to balance
+      real(wp) :: way = 0.0_wp
       !> Velocities of a motion without end: (n_dof, n_block)
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
@@ -133,7 +135,10 @@ contains
             & opening_rate)
          if (last_end == motion_end%balanced) moved = last
       end if
-      if (end == motion_end%balanced) state = moved
+      if (end == motion_end%balanced) then
+         jump%way = maxval(abs(moved%motion - state%motion))
+         state = moved
+      end if
       equations%most_pivots = most_pivots
       equations%most_factorisations = most_factorisations
    end subroutine nudge_to_balance

@@ -179,7 +179,7 @@ contains
          ! what breaks, and when, depends on how the load grows
          rate%load = dead_load
          state = unloaded_state(path%joints)
-         state%gap = path%joints%graph%gap*path%joints%motion_unit
+         state%gap = state%gap*path%joints%motion_unit
          call follow_path(path, state, rate, 1.0_wp, result)
          path%softness = 0.0_wp
          return
@@ -337,16 +337,15 @@ contains
       !> Receives the jump, or how the blocks fall
       type(path_result_t), intent(inout) :: result
       type(jump_t) :: jump
-      real(wp) :: before(size(state%motion, 1), size(state%motion, 2)), gained
+      real(wp) :: gained
       integer :: end
 
       jump%far = far_of(path, state)
-      before = state%motion
       call nudge_to_balance(path%joints, path%equations, way%load, width, h_end - result%reached, &
          & state, jump, gained, end, way%opening)
       if (end == motion_end%balanced) then
          result%n_jump = result%n_jump + 1
-         result%largest_jump = max(result%largest_jump, maxval(abs(state%motion - before)))
+         result%largest_jump = max(result%largest_jump, jump%way)
          result%reached = min(h_end, result%reached + gained)
          width = min(width, gained)
       else

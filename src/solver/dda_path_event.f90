@@ -4,7 +4,7 @@ module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength
    use dda_event_rates, only : rates_t, weak_force
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    implicit none
    private
 
@@ -209,7 +209,7 @@ contains
    pure subroutine take_shear(joints, j, does, trial, state)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j       !! Number of the joint
-      integer, intent(in) :: does    !! What it does along itself
+      integer(small), intent(in) :: does    !! What it does along itself
       real(wp), intent(in) :: trial  !! The force if it sticks
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: bond(3), bound

@@ -51,7 +51,8 @@ contains
    !> What joints do with rates of opening
    module procedure follow_law
       real(wp) :: beyond(2), margin
-      integer :: before(3, size(faces, 2)), i, j, k
+      integer(small) :: before(3, size(faces, 2))
+      integer :: i, j, k
 
       before = faces
       faces = law%given
@@ -84,7 +85,7 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
       !> What its corners do: (2)
-      integer, intent(in) :: ends(2)
+      integer(small), intent(in) :: ends(2)
       !> Rates of opening 1, opening 2, slip
       real(wp), intent(in) :: opening(3)
       !> Rate of the shear force less that of the limit: of a positive one, of a negative one
@@ -132,7 +133,7 @@ contains
       type(rate_law_t), intent(in) :: law
       !> Number of the joint
       integer, intent(in) :: j
-      integer, intent(in) :: faces(:, :)
+      integer(small), intent(in) :: faces(:, :)
       real(wp), intent(in) :: opening(:, :), change(:, :)
       !> How far off it is that corner 1, corner 2, positive and negative sliding change, and how
       !> fast they come there; a rate of zero where nothing changes

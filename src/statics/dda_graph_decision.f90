@@ -48,44 +48,26 @@ contains
       type(coulomb_state_t), intent(in), optional :: start
       type(joint_graph_t) :: graph
       type(load_stations_t) :: stations
-      type(load_decision_t) :: decision
       type(graph_verdict_t) :: path
-      real(wp), allocatable :: load(:, :)
-      logical :: dead_alone, on_way
+      logical :: dead_alone
 
       call scene_graph(settings, system, contacts, graph)
       if (breaks(graph)) then
          call follow_breaking(settings, system, contacts, graph, verdict)
          return
       end if
-      allocate (load(3, graph%n_block))
       stations = stations_of(settings, system, graph, present(start))
-      call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
-      call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
-      verdict%n_factorisation = decision%n_factorisation
-      if (.not. (on_way .or. bare .or. present(start))) allocate (verdict%limit, source=decision)
-      if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
-      if (decision%state == load_state%falls) then
-         verdict%end = path_end%collapsed
-         verdict%is_told = on_way
-         verdict%mechanism = decision%velocity
-         if (on_way) call see_first_fall(settings, graph, load, decision%force, verdict)
-         if (.not. (on_way .or. bare)) call see_fall(settings, graph, load, verdict)
-         return
-      else if (decision%state == load_state%stands) then
-         verdict%end = path_end%reached
-         call move_alloc(decision%force, verdict%force)
-      else
-         verdict%reason = "limit analysis proves neither equilibrium nor collapse beyond round-off"
-         verdict%unproven = .true.
-      end if
+      call decide_by_limit(settings, system, graph, stations, bare, verdict)
+      ! a stage before has left other joints than those that a proof knows
+      if (present(start) .and. allocated(verdict%limit)) deallocate (verdict%limit)
+      if (verdict%end == path_end%collapsed) return
       dead_alone = ubound(stations%tilt, 1) == 0 .and. .not. present(start)
       verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
-      ! what blocks that are built carry is known of the path alone, which has its own forces
+      ! what blocks that are built carry is known of the path alone
       if (settings%verdict_flow == flow_rule%associated .or. .not. (has_friction(graph) &
          & .or. allocated(settings%boundary%change))) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
-      decision = load_decision_t()
+      ! the path has forces of its own
       if (allocated(verdict%force)) deallocate (verdict%force)
       call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
@@ -100,6 +82,38 @@ contains
       call move_alloc(verdict%limit, path%limit)
       verdict = path
    end subroutine decide_graph
+
+   !> Decide the full load by limit analysis, and tell how it falls
+   pure subroutine decide_by_limit(settings, system, graph, stations, bare, verdict)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      type(load_stations_t), intent(in) :: stations
+      logical, intent(in) :: bare
+      type(graph_verdict_t), intent(inout) :: verdict
+      type(load_decision_t) :: decision
+      real(wp) :: load(3, graph%n_block)
+      logical :: on_way
+
+      call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
+      call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
+      verdict%n_factorisation = decision%n_factorisation
+      if (.not. (on_way .or. bare)) allocate (verdict%limit, source=decision)
+      if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
+      if (decision%state == load_state%falls) then
+         verdict%end = path_end%collapsed
+         verdict%is_told = on_way
+         verdict%mechanism = decision%velocity
+         if (on_way) call see_first_fall(settings, graph, load, decision%force, verdict)
+         if (.not. (on_way .or. bare)) call see_fall(settings, graph, load, verdict)
+      else if (decision%state == load_state%stands) then
+         verdict%end = path_end%reached
+         call move_alloc(decision%force, verdict%force)
+      else
+         verdict%reason = "limit analysis proves neither equilibrium nor collapse beyond round-off"
+         verdict%unproven = .true.
+      end if
+   end subroutine decide_by_limit
 
    !> Follow joints that break: no limit analysis knows them, so that the path alone decides.
    !> Gravity acts as it is where it points upwards, as on what hangs, or where the blocks fall

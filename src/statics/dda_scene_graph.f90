@@ -283,7 +283,6 @@ contains
       allocate (graph%friction(n), graph%length(n), source=0.0_wp)
       if (crush) allocate (graph%crush(n), source=huge(1.0_wp))
       allocate (graph%compliance(3, n), source=1.0_wp)
-      allocate (graph%gap(2, n), source=0.0_wp)
    end subroutine allocate_joints
 
    !> Whether a scene is decided so: at rest, where the blocks are, by friction, or on a loading
