@@ -13,10 +13,10 @@
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : imbalance, joint_stiffness, spring_forces
+   use dda_coulomb_law, only : joint_stiffness, spring_forces
    use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix, &
       & new_matrix
-   use dda_joint_graph, only : joint_motion
+   use dda_joint_graph, only : add_joint_forces, joint_motion
    use dda_kinds, only : small, wp
    use dda_small_systems, only : eliminate_full, substitute_full
    implicit none
@@ -304,11 +304,11 @@ contains
          bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (turn == 1 .and. lost <= bound) exit
          if (turn == 1) allocate (force, mold=opening)
-         if (turn == 1) allocate (rest, mold=load)
          call spring_forces(joints, equations%face, opening, force)
          if (equations%viscosity > 0.0_wp) force = force &
             & - equations%viscosity*opening/joints%graph%compliance
-         call imbalance(joints, load - equations%damping*joints%graph%mass*motion, force, rest)
+         rest = load - equations%damping*joints%graph%mass*motion
+         call add_joint_forces(joints%graph, force, rest)
          if (maxval(abs(rest)) <= bound) exit
          if (turn == 1) then
             call substitute(equations%base%factor, rest)

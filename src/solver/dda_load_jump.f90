@@ -53,8 +53,6 @@ module dda_load_jump
    real(wp), parameter :: driven = 0.01_wp
    !> That share is one over this
    integer, parameter :: brief = 10
-   !> Factorisations of a jump that has not converged and will not
-   integer, parameter :: most_of_jump = 10000
    !> Pivots after which rates are looked for with more damping
    integer, parameter :: few_pivots = 16
    !> An event no further off than this makes no way
@@ -108,14 +106,11 @@ contains
       !> Openings that grow with the load, none if absent: (3, n_joint)
       real(wp), intent(in), optional :: opening_rate(:, :)
       type(coulomb_state_t) :: moved, last
-      integer :: fall, last_end, most_factorisations, most_pivots
+      integer :: fall, last_end, most_pivots
       logical :: least
 
       most_pivots = equations%most_pivots
-      most_factorisations = equations%most_factorisations
       equations%most_pivots = few_pivots
-      equations%most_factorisations = min(most_factorisations, &
-         & equations%base%n_factorisation + most_of_jump)
       gained = merge(left, width, left < nudge)
       least = gained <= nudge
       call try_nudge(joints, equations, load_rate, gained, state, jump, moved, end, opening_rate)
@@ -140,7 +135,6 @@ contains
          state = moved
       end if
       equations%most_pivots = most_pivots
-      equations%most_factorisations = most_factorisations
    end subroutine nudge_to_balance
 
    !> Take away what the forces leave of the load, but for rounding

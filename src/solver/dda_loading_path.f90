@@ -1,7 +1,8 @@
 !> The loading path under Coulomb friction: what is dead at once, what is live from event to event,
 !> with slip remembered
 !>
-!>    call begin_path(graph, dead_load, path, state, result)
+!>    call new_path(graph, load, path)
+!>    call apply_dead_load(dead_load, path, state, result)
 !>    call follow_path(path, state, rate, h_end, result)
 !>
 !> Forces that balance a load may exist where no way leads to them. So a load is followed: between
@@ -28,7 +29,7 @@ module dda_loading_path
    private
 
    public :: loading_path_t, path_rate_t, path_result_t, path_reason, path_reason_enum
-   public :: apply_dead_load, begin_path, follow_path, new_path, new_rate, load_at_once
+   public :: apply_dead_load, follow_path, new_path, load_at_once
 
    !> What proves a collapse, or prevents a decision
    type :: path_reason_enum
@@ -37,6 +38,7 @@ module dda_loading_path
       integer :: far_motion = 2        !! A motion ten thousand times as large as the dead load's
       integer :: unsettled_motion = 3  !! A motion at a fixed load did not settle
       integer :: too_many = 4          !! Too many events
+      integer :: too_costly = 5        !! Too many factorisations
    end type path_reason_enum
 
    !> Names of the reasons
@@ -53,6 +55,8 @@ module dda_loading_path
       real(wp) :: softness = 0.0_wp
       !> Largest gap of the first state, and what supports that move have opened since
       real(wp) :: given = 0.0_wp
+      !> Factorisations that it may take under the dead load, and from there to an end
+      integer, public :: most_factorisations = 0
    end type loading_path_t
 
    !> What grows along a path
@@ -100,6 +104,8 @@ module dda_loading_path
    integer, parameter :: least_patience = 2000, patience = 100
    !> Jumps at most
    integer, parameter :: max_jump = 1000
+   !> Factorisations at most, and one more for each joint
+   integer, parameter :: least_factorisations = 10000
 
    interface
 
@@ -126,16 +132,6 @@ module dda_loading_path
 
 contains
 
-   !> Nothing grows
-   pure subroutine new_rate(graph, rate)
-      type(joint_graph_t), intent(in) :: graph
-      type(path_rate_t), intent(out) :: rate
-
-      allocate (rate%load(graph%n_dof, graph%n_block), rate%opening(3, size(graph%kind)))
-      rate%load = 0.0_wp
-      rate%opening = 0.0_wp
-   end subroutine new_rate
-
    !> What is made once for an assembly
    pure subroutine new_path(graph, load, path)
       !> Its joints, which the path takes over
@@ -146,21 +142,8 @@ contains
 
       call take_coulomb_joints(graph, load, path%joints)
       call new_coulomb_equations(path%joints, path%equations)
+      path%most_factorisations = least_factorisations + size(path%joints%shear_role)
    end subroutine new_path
-
-   !> A path and the state under the dead load, of joints that are kept
-   pure subroutine begin_path(graph, dead_load, path, state, result)
-      type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: dead_load(:, :)  !! The load: (n_dof, n_block)
-      type(loading_path_t), intent(out) :: path
-      type(coulomb_state_t), intent(out) :: state
-      type(path_result_t), intent(out) :: result
-      type(joint_graph_t) :: taken
-
-      taken = graph
-      call new_path(taken, dead_load, path)
-      call apply_dead_load(dead_load, path, state, result)
-   end subroutine begin_path
 
    !> The state under the dead load, with which a path begins
    pure subroutine apply_dead_load(dead_load, path, state, result)
@@ -184,6 +167,7 @@ contains
          path%softness = 0.0_wp
          return
       end if
+      path%equations%most_factorisations = path%most_factorisations
       call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
          & jump, end)
       result%end = path_end%reached
@@ -209,6 +193,7 @@ contains
       real(wp) :: target(size(rate%load, 1), size(rate%load, 2)), strength
 
       path%equations%base%n_factorisation = 0
+      path%equations%most_factorisations = path%most_factorisations
       if (.not. path%joints%has_weight) call set_force_unit(path%joints, rate%load)
       state%motion = in_motion_units(path%joints, state%motion)
       state%load = in_units(path%joints, state%load)
@@ -381,6 +366,8 @@ contains
       call imbalance(path%joints, state%load, state%force, rest)
       result%imbalance = maxval(abs(rest))
       result%n_factorisation = path%equations%base%n_factorisation
+      if (result%end == path_end%undecided .and. result%n_factorisation &
+         & >= path%most_factorisations) result%reason = path_reason%too_costly
       result%largest_jump = result%largest_jump*path%joints%motion_unit
       if (.not. allocated(result%mechanism)) allocate (result%mechanism(size(rest, 1), 0))
       if (size(result%mechanism) > 0) then

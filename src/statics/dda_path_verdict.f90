@@ -174,6 +174,8 @@ contains
          call move_alloc(result%mechanism, verdict%mechanism)
       else if (result%end == path_end%undecided .and. result%reason == path_reason%too_many) then
          verdict%reason = "the loading path has too many jumps"
+      else if (result%end == path_end%undecided .and. result%reason == path_reason%too_costly) then
+         verdict%reason = "the loading path takes too many factorisations"
       else if (result%end == path_end%undecided) then
          verdict%reason = "a jump on the loading path does not converge"
       end if
