@@ -26,8 +26,10 @@ module dda_coulomb_equations
 
    !> Answers that are kept: more cost as much as a new factor
    integer, parameter :: max_answer = 32
-   !> Of many blocks fewer are, so that they take no more numbers than this; at least so many
-   integer, parameter :: most_numbers = 40000, least_answers = 12
+   !> Of many blocks fewer are, so that they take no more numbers than this
+   integer, parameter :: most_numbers = 40000
+   !> Answers that are kept of any number of blocks
+   integer, parameter :: least_answers = 12
 
    !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, of soft
    !> assemblies more, in motion nearly all; results are the same from 1e-12 to 1e-9
