@@ -1,8 +1,8 @@
 !> Contacts of blocks that move in time: forces and friction of one step, or of its impacts
 !>
-!> With given bounds of the shear forces the problem is convex, and the passes in which the forces
-!> become multipliers end quickly. Around them, the bounds follow the normal forces (Coulomb),
-!> beginning with those of the step before. Whatever the bounds are, friction takes energy and no
+!> Sweeps, faces and interior springs find forces that obey Coulomb's law as it is. Where they end
+!> without, few joints go on by bounds of the shear forces: with these given the problem is convex,
+!> and around it they follow the normal forces. Whatever they are, friction takes energy and no
 !> momentum; so a step in which they change a little to the end counts.
 module dda_settle_in_time
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
@@ -205,7 +205,7 @@ module dda_settle_in_time
 
 contains
 
-   !> Settle forces and bounds
+   !> Settle the forces of contacts, bars and held points
    pure subroutine settle_in_time(settings, target, equations, springs, state)
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
@@ -280,15 +280,19 @@ contains
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, scale
+      real(wp) :: change, last, scale
       integer :: pass
 
+      change = huge(change)
       do pass = 1, max_passes
+         last = change
          call sweep_with_bars(equations, springs, state)
          if (.not. state%settled) return
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
          scale = equations%force_scale + sum(abs(equations%fixed%force))
          if (change <= fine*scale) return
+         ! what sweeps leave is no more to be corrected
+         if (change <= coarse*scale .and. change > last/2.0_wp) return
       end do
       state%settled = change <= coarse*scale
    end subroutine sweep_to_targets
