@@ -37,8 +37,9 @@ submodule (dda_step) dda_velocity
    !> Energy that counts as rounding, over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
    !> Energy that what contacts leave may bring in, over that of motion, of strain, of the fall in
-   !> the longest step, and what loads bring in
-   real(wp), parameter :: energy_left = 1.0e-6_wp
+   !> the longest step, and what loads bring in: in the longest step, and at the most in a shorter
+   !> one, for what is left does not shrink with the step
+   real(wp), parameter :: energy_left = 1.0e-5_wp, most_left = 1.0e-2_wp
 
    !> What the end of a step asks of velocities
    type :: impact_t
@@ -83,22 +84,23 @@ contains
             & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
          if (any(impact%closed) .and. .not. any(abs(equations%fixed%rate) > 0.0_wp)) &
             & step%has_velocity = kinetic_energy(equations, step%velocity) &
-            & <= allowed + energy_left*energy_scale(run, before)
+            & <= allowed + energy_left_over(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          step%impact = before - kinetic_energy(equations, step%velocity)
       end associate
    end procedure solve_impacts
 
-   !> Energy that what contacts bring in is compared with [J/m]
-   pure real(wp) function energy_scale(run, kinetic)
+   !> Energy that contacts may bring in by what they leave [J/m]
+   pure real(wp) function energy_left_over(run, kinetic)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: kinetic  !! Energy of motion [J/m]
 
-      energy_scale = kinetic + run%march%energy%elastic &
+      energy_left_over = min(most_left, energy_left*run%step%longest/run%step%dt) &
+         & *(kinetic + run%march%energy%elastic &
          & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp &
-         & + sum(abs(run%equations%outer*run%step%state%motion))
-   end function energy_scale
+         & + sum(abs(run%equations%outer*run%step%state%motion)))
+   end function energy_left_over
 
    !> Which contacts are closed at the end of a step, and which of them have met there, faster than
    !> weight makes resting contacts meet: they must part with restitution times that speed, and up
