@@ -21,6 +21,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 from assembly import area_and_centre  # noqa: E402
+from moving_walls import moving_wall  # noqa: E402
 from random_assemblies import shape  # noqa: E402
 
 Point = tuple[float, float]
@@ -323,6 +324,20 @@ def check_energy(bench: Bench, seed: int) -> None:
         demand(abs(after + spent) <= 1e-9 * scale, f"columns do not add up at {row['time']!r} s")
 
 
+def check_motion(bench: Bench, seed: int) -> None:
+    """Walls of many bricks that are hit, shaken and held move to the end, and no step adds to what they hold."""
+    wall = moving_wall(seed)
+    (bench.folder / "x.blocks").write_text(wall.blocks)
+    (bench.folder / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + wall.keys)
+    row = bench.run_deck()
+    demand(row["verdict"] == "completed", f"the run ends {row['verdict']}")
+    rows = [{name: float(value) for name, value in row.items()} for row in bench.table("energy")]
+    held = [sum(row[name] for name in ("kinetic", "elastic", "gravity")) - row["work"] for row in rows]
+    most = max(row["kinetic"] for row in rows) + wall.fall
+    for row, before, after in zip(rows, [held[0], *held], held):
+        demand(after <= before + 1e-4 * most, f"energy rises by {after - before!r} of {most!r} at {row['time']!r} s")
+
+
 def check_deck(bench: Bench, seed: int) -> None:
     """A deck written in another way, or from its record, is the same deck."""
     pick = random.Random(seed)
@@ -393,7 +408,8 @@ JOINTS = "&output joints = .true., blocks = .true. /"
 CHANGES = {"mirror": mirrored, "translation": shifted, "rotation": turned, "numbers": renumbered, "length": longer,
            "density": heavier, "stiffness": stiffer}
 PROPERTIES = {**{name: check_change(change) for name, change in CHANGES.items()}, "balance": check_balance,
-              "strength": check_strength, "proof": check_proof, "energy": check_energy, "deck": check_deck}
+              "strength": check_strength, "proof": check_proof, "energy": check_energy, "motion": check_motion,
+              "deck": check_deck}
 
 
 def main() -> int:
