@@ -232,7 +232,8 @@ contains
       purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)
       if (state%effort%patient) then
          purpose = sweeps_for%the_end
-         enough(2) = state%unseen/coarsest
+         ! without gravity nothing says what a speed is that no step notices
+         if (state%unseen > 0.0_wp) enough(2) = state%unseen/coarsest
       end if
       call sweep_group(springs, joint, purpose, enough, sweeps, settled)
    end subroutine settle_by_springs

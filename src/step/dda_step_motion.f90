@@ -1,7 +1,7 @@
 !> How blocks would move in a try of a step: contacts placed, equations assembled, joints settled
 submodule (dda_step) dda_step_motion
    use dda_assembly, only : renew_springs, take_springs
-   use dda_block_inertia, only : assemble_blocks, turn_masses
+   use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : joint_t
    use dda_contacts, only : contacts_t, follow_contacts
@@ -12,6 +12,8 @@ submodule (dda_step) dda_step_motion
    !> Opening against the law of contact that many blocks may leave, over what the speed of the
    !> longest step's fall brings in a step: a speed matters in a short step as much as in a long one
    real(wp), parameter :: unseen = 1.0e-3_wp
+   !> Where nothing falls, or blocks fly, this share of the fastest speed counts in its place
+   real(wp), parameter :: slow = 1.0e-3_wp
 
 contains
 
@@ -90,8 +92,9 @@ contains
       run%step%dt = run%march%dt
       if (in_time(run)) call stiffen_contacts(run)
       call begin_step(run)
-      run%step%state%unseen = run%step%state%fineness*unseen*run%march%free_acceleration &
-         & *run%march%longest*run%step%dt
+      run%step%state%unseen = run%step%state%fineness*unseen*run%step%dt*max( &
+         & run%march%free_acceleration*run%march%longest, slow*largest_motion(run%system, &
+         & packed_velocity(run%system, size(run%step%state%motion, 1))))
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
          & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
       if (in_time(run)) call foresee_curves(run)

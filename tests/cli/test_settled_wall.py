@@ -90,6 +90,28 @@ def test_a_brick_thrown_onto_a_wall_brings_in_its_own_energy_alone(tmp_path: Pat
     assert max((b - a) / m for a, b, m in zip(totals, totals[1:], motion)) < 1e-4
 
 
+@pytest.mark.parametrize("friction_deg", [25, 35])
+def test_a_brick_that_flies_into_a_wall_without_gravity_adds_nothing(tmp_path: Path, friction_deg: int) -> None:
+    """Nothing falls there: what no step notices is measured by the speed of the brick."""
+    courses, speed = 16, 5.0
+    low = 8.3 * HEIGHT
+    brick = block([(-0.3, low), (-0.05, low), (-0.05, low + HEIGHT), (-0.3, low + HEIGHT)], f"velocity {speed!r} 0 0")
+    (tmp_path / "x.blocks").write_text(wall(9, courses) + brick)
+    (tmp_path / "x.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&load gravity = 0 /\n"
+        f"&joint friction_deg = {friction_deg} /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = 5e-3, duration = 0.08, "
+        "steps = 9999 /\n&output energy = .true. /\n")
+    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "x" / "energy.csv").open() as table:
+        kinetic = [float(row["kinetic"]) for row in csv.DictReader(table)]
+    first = 2240.0 * LENGTH * HEIGHT * speed**2 / 2.0
+    assert kinetic[0] == pytest.approx(first, rel=1e-12)
+    assert 0.0 < kinetic[-1] < 0.9 * first
+    assert max(b - a for a, b in zip(kinetic, kinetic[1:])) < 1e-4 * first
+
+
 def slope_with_block(rise: float) -> str:
     """A block on a plane that rises by so much in one."""
     across = (-rise, 1.0)
