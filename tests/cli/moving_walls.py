@@ -18,7 +18,8 @@ class MovingWall:
 
     blocks: str
     keys: str
-    #: What its bricks gain as they fall freely for one step [J/m]
+    #: Energy of motion that it begins with, and what its bricks gain as they fall freely for one step [J/m]
+    begun: float
     fall: float
 
 
@@ -56,14 +57,18 @@ def moving_wall(seed: int) -> MovingWall:
     width, height = pick.choice([(0.25, 0.1), (2.0, 1.0), (0.4, 0.4)])
     length, top, time = columns * width, courses * height, math.sqrt(height / G)
     text = brickwork(pick, courses, columns, width, height)
-    speed = height / time
+    speed, begun = height / time, 0.0
     if pick.random() < 0.4:
         for k in range(pick.randint(1, 3)):
-            spin = f"velocity {speed * pick.uniform(-0.3, 0.3)!r} 0 {pick.uniform(-0.6, 0.6) / time!r}"
-            text += box(length * (0.1 + 0.3 * k), top + height * pick.uniform(0.1, 1.0), width / 2.0, height, spin)
+            along, spin = speed * pick.uniform(-0.3, 0.3), pick.uniform(-0.6, 0.6) / time
+            text += box(length * (0.1 + 0.3 * k), top + height * pick.uniform(0.1, 1.0), width / 2.0, height,
+                        f"velocity {along!r} 0 {spin!r}")
+            turning = (width**2 / 4.0 + height**2) / 12.0 * spin**2
+            begun += DENSITY * width / 2.0 * height * (along**2 + turning) / 2.0
     if pick.random() < 0.35:
-        text += box(-width * pick.uniform(1.1, 2.0), (courses // 2 + 0.3) * height, width, height,
-                    f"velocity {speed * pick.uniform(1.0, 6.0)!r} 0 0")
+        left, along = -width * pick.uniform(1.1, 2.0), speed * pick.uniform(1.0, 6.0)
+        text += box(left, (courses // 2 + 0.3) * height, width, height, f"velocity {along!r} 0 0")
+        begun += DENSITY * width * height * along**2 / 2.0
     text += shaking(pick, time) if pick.random() < 0.5 else ""
     if pick.random() < 0.2:
         text += f"fix {width / 3.0!r} {top - height / 2.0!r} x\n"
@@ -76,5 +81,5 @@ def moving_wall(seed: int) -> MovingWall:
         text, f"&joint friction_deg = {pick.choice([10.0, 25.0, 35.0, 45.0, 60.0])!r}{mortar} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = {pick.choice([3, 3, 6])}, "
         f"restitution = {pick.choice([0.0, 0.0, 0.0, 0.3])!r}, time_step = {step!r}, duration = {60.0 * step!r}, "
-        "steps = 1000000 /\n&output energy = .true., joints = .false. /\n",
+        "steps = 1000000 /\n&output energy = .true., joints = .false. /\n", begun,
         DENSITY * length * top * (G * step) ** 2 / 2.0)

@@ -334,7 +334,7 @@ def check_motion(bench: Bench, seed: int) -> None:
     rows = [{name: float(value) for name, value in row.items()} for row in bench.table("energy")]
     held = [sum(row[name] for name in ("kinetic", "elastic", "gravity")) - row["work"] for row in rows]
     most = max(row["kinetic"] for row in rows) + wall.fall
-    for row, before, after in zip(rows, [held[0], *held], held):
+    for row, before, after in zip(rows, [wall.begun, *held], held):
         demand(after <= before + 1e-4 * most, f"energy rises by {after - before!r} of {most!r} at {row['time']!r} s")
 
 
