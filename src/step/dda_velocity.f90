@@ -80,11 +80,12 @@ contains
             less = min(20.0_wp*less, 0.2_wp)
          end do
          share = 0.0_wp
-         if (any(impact%closed)) &
-            & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
-         if (any(impact%closed) .and. .not. any(abs(equations%fixed%rate) > 0.0_wp)) &
-            & step%has_velocity = kinetic_energy(equations, step%velocity) &
-            & <= allowed + energy_left_over(run, before)
+         if (any(impact%closed)) then
+            call hold_energy(equations, impact%steady, allowed, step%velocity, share)
+            ! points that are led bring in energy of their own
+            step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) .or. &
+               & kinetic_energy(equations, step%velocity) <= allowed + energy_left_over(run, before)
+         end if
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          step%impact = before - kinetic_energy(equations, step%velocity)
