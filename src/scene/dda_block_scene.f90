@@ -243,7 +243,10 @@ contains
          system%stress(:, plan%starts) = plan%start(4:, :)
          system%initial_stress(:, plan%starts) = plan%start(4:, :)
          call forget_rest(system)
-         if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))
+         if (allocated(plan%boundary%bar)) then
+            allocate (system%bar(size(plan%boundary%bar)))
+            system%bar%force = plan%boundary%bar%prestress
+         end if
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law)
          call search_contacts(system, scene%contacts)

@@ -73,6 +73,7 @@ contains
       if (size(split%bolt) == 0) return
       scene%settings%boundary%bar = bars_of(deck, split)
       allocate (scene%system%bar(size(split%bolt)))
+      scene%system%bar%force = scene%settings%boundary%bar%prestress
    end subroutine line_scene
 
    !> Points of the files that hold, load and measure blocks

@@ -18,7 +18,7 @@ class MovingWall:
 
     blocks: str
     keys: str
-    #: Energy of motion that it begins with, and what its bricks gain as they fall freely for one step [J/m]
+    #: Energy of motion and of bars that it begins with, and what its bricks gain as they fall freely for one step [J/m]
     begun: float
     fall: float
 
@@ -73,6 +73,8 @@ def moving_wall(seed: int) -> MovingWall:
     if pick.random() < 0.2:
         text += f"fix {width / 3.0!r} {top - height / 2.0!r} x\n"
     if pick.random() < 0.2:
+        reach = math.hypot(length / 2.0 + width / 2.0, top - 0.3 * height)
+        begun += (1e3 * height) ** 2 * reach / (2.0 * 1e7 * height)
         text += (f"bar {-length / 2.0!r} {-0.2 * height!r} {width / 2.0!r} {top - height / 2.0!r} ea {1e7 * height!r} "
                  f"strength {2e4 * height!r} prestress {1e3 * height!r}\n")
     step = time * pick.choice([0.005, 0.02, 0.05])

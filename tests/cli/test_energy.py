@@ -122,3 +122,13 @@ def test_a_bar_stores_half_its_force_times_its_elongation(tmp_path: Path) -> Non
         assert row["kinetic"] + row["elastic"] == pytest.approx(start, rel=EXACT)
         for name in ("contact", "work", "friction", "damping", "impact", "numerical"):
             assert row[name] == pytest.approx(0.0, abs=EXACT * start)
+
+
+def test_a_prestressed_bar_holds_its_energy_from_the_beginning(tmp_path: Path) -> None:
+    """A bar of 1e6 N/m and 1000 N presses a block on the ground; 1000**2/(2*1e6) = 0.5 J that no step brings in."""
+    ground = block([(-2.0, -1.0), (3.0, -1.0), (3.0, 0.0), (-2.0, 0.0)], "fixed")
+    scene = ground + block(SQUARE) + "bar 0.5 0.5 0.5 -0.5 stiffness 1e6 prestress 1000\n"
+    rows = energies(tmp_path, scene, DYNAMIC.format(0.01, 0.1, ""))
+    for row in rows:
+        assert row["elastic"] == pytest.approx(0.5, rel=1e-6)
+        assert row["numerical"] == pytest.approx(0.0, abs=1e-9)
