@@ -1,52 +1,46 @@
 !> Text to numbers
 submodule (dda_text) dda_read_number
+   use, intrinsic :: iso_c_binding, only : c_char, c_double, c_null_char, c_null_ptr, c_ptr
    implicit none
+
+   !> Longest text of a number [characters]
+   integer, parameter :: longest_number = 400
+   !> Numbers are below this power of ten
+   integer, parameter :: border = 308
+
+   interface
+      !> C: the double that is nearest to a decimal number
+      pure function c_strtod(text, rest) bind(c, name="strtod") result(value)
+         import :: c_char, c_double, c_ptr
+         character(kind=c_char), intent(in) :: text(*)  !! The number, ended by a null character
+         type(c_ptr), intent(in), value :: rest         !! Where it ends; null if nobody asks
+         real(c_double) :: value
+      end function c_strtod
+   end interface
 
 contains
 
    !> Read one decimal number below 1e308, and nothing else, from a text
    module procedure read_number
-      character(len=:), allocatable :: mantissa
-      character(len=12) :: form
-      integer :: mark, stat, point, exponent
+      character(len=len(text) + 1) :: c_text
+      integer :: exponent, first, mark, point, power
 
       value = 0.0_wp
-      ok = .false.
-      if (len(text) == 0 .or. len(text) > 400) return
-      call read_short_decimal(text, value, ok)
-      if (ok) return
-      mark = scan(text, "eEdD")
-      mantissa = text
-      if (mark > 0) mantissa = text(:mark - 1)
-      point = index(mantissa, ".")
-      if (point > 0) mantissa = mantissa(:point - 1)//mantissa(point + 1:)
-      if (.not. is_digits(mantissa, signed=.true.)) return
       exponent = 0
-      if (mark > 0) then
-         call read_integer(text(mark + 1:), exponent, ok)
-         if (.not. ok) return
-      end if
-      ok = power_of_ten(mantissa, point) + min(max(exponent, -1000), 1000) < 308
+      mark = scan(text//"e", "eEdD")
+      ok = len(text) <= longest_number .and. is_decimal(text(:mark - 1))
+      if (ok .and. mark <= len(text)) call read_integer(text(mark + 1:), exponent, ok)
       if (.not. ok) return
-      write (form, "('(f', i0, '.0)')") len(text)
-      read (text, form, iostat=stat) value
-      ok = stat == 0 .and. ieee_is_finite(value)
-      if (.not. ok) value = 0.0_wp
+      ! power of ten of the first digit that is not zero: nothing may overflow, which could trap
+      first = scan(text(:mark - 1), "123456789")
+      point = index(text(:mark - 1)//".", ".")
+      power = point - first - merge(1, 0, first < point)
+      ok = first == 0 .or. power + min(max(exponent, -1000), 1000) < border
+      if (.not. ok) return
+      c_text = text//c_null_char
+      if (mark <= len(text)) c_text(mark:mark) = "e"
+      value = c_strtod(c_text, c_null_ptr)
    end procedure read_number
-
-   !> Power of ten of the first digit of a decimal number that is not zero: far below 0 if all
-   !> digits are zero
-   pure integer function power_of_ten(digits, point)
-      !> Digits with or without a sign, the decimal point taken out
-      character(len=*), intent(in) :: digits
-      !> Place where the point stood, counted from 1; 0 if there was none
-      integer, intent(in) :: point
-      integer :: first
-
-      first = scan(digits, "123456789")
-      power_of_ten = -1000
-      if (first > 0) power_of_ten = merge(point - 1, len(digits), point > 0) - first
-   end function power_of_ten
 
    !> Read one integer, and nothing else, from a text
    module procedure read_integer
@@ -54,7 +48,7 @@ contains
       integer :: stat
 
       value = 0
-      ok = len(text) <= 40 .and. is_digits(text, signed=.true.)
+      ok = len(text) <= 40 .and. is_decimal(text) .and. index(text, ".") == 0
       if (.not. ok) return
       write (form, "('(i', i0, ')')") len(text)
       read (text, form, iostat=stat) value
@@ -62,18 +56,18 @@ contains
       if (.not. ok) value = 0
    end procedure read_integer
 
-   !> Whether a text is one digit or more, after a sign where signs are allowed
-   pure logical function is_digits(text, signed)
+   !> Whether a text is digits with at most one point among them, after a sign or none
+   pure logical function is_decimal(text)
       character(len=*), intent(in) :: text  !! Text to look at
-      logical, intent(in) :: signed         !! Whether a leading sign may stand
+      character(len=*), parameter :: digits = "0123456789"
       integer :: first
 
       first = 1
-      if (signed .and. len(text) > 0) then
-         if (scan(text(1:1), "+-") == 1) first = 2
-      end if
-      is_digits = len(text) >= first
-      if (is_digits) is_digits = verify(text(first:), "0123456789") == 0
-   end function is_digits
+      if (len(text) > 0) first = 1 + scan(text(1:1), "+-")
+      associate (body => text(first:))
+         is_decimal = scan(body, digits) > 0 .and. verify(body, digits//".") == 0 &
+            & .and. index(body, ".") == index(body, ".", back=.true.)
+      end associate
+   end function is_decimal
 
 end submodule dda_read_number

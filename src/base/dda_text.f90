@@ -6,8 +6,7 @@ module dda_text
    implicit none
    private
 
-   public :: to_text, print_number, lower_case, read_number, read_integer, exact_product
-   public :: read_short_decimal
+   public :: to_text, print_number, lower_case, read_number, read_integer
    public :: growing_text_t, add_line, bytes_of, fields, lines_of
 
    !> Shortest text that reads back as the same number
@@ -28,23 +27,6 @@ module dda_text
    real(wp), parameter :: rounding = 1.0e-6_wp
 
    interface
-
-      !> Product of two doubles as the sum of two (Dekker 1971)
-      pure module subroutine exact_product(a, b, product, rest)
-         real(wp), intent(in) :: a         !! One factor
-         real(wp), intent(in) :: b         !! The other
-         real(wp), intent(out) :: product  !! The product, rounded
-         real(wp), intent(out) :: rest     !! What rounding has taken from it
-      end subroutine exact_product
-
-      !> Read a decimal number of usual size, rounded to the nearest double
-      pure module subroutine read_short_decimal(text, value, known)
-         character(len=*), intent(in) :: text  !! Text such as -1.5e-3 or 1d3
-         real(wp), intent(out) :: value        !! The number; 0 if it is not known
-         !> Whether it is known: the text is one number of at most 18 digits, its last one within 22
-         !> places of the point, and not so near to the middle of two doubles that more is needed
-         logical, intent(out) :: known
-      end subroutine read_short_decimal
 
       !> Read one decimal number below 1e308, and nothing else, from a text
       pure module subroutine read_number(text, value, ok)
@@ -148,6 +130,22 @@ contains
       digits = int(product, int64) + nint(rest, int64)
       beyond = rest - anint(rest)
    end subroutine scale
+
+   !> Product of two doubles as the sum of two (Dekker 1971)
+   pure subroutine exact_product(a, b, product, rest)
+      real(wp), intent(in) :: a         !! One factor
+      real(wp), intent(in) :: b         !! The other
+      real(wp), intent(out) :: product  !! The product, rounded
+      real(wp), intent(out) :: rest     !! What rounding has taken from it
+      real(wp) :: high(2), low(2)
+
+      ! numbers of half the digits that add up to each
+      high = 134217729.0_wp*[a, b]
+      high = high - (high - [a, b])
+      low = [a, b] - high
+      product = a*b
+      rest = ((high(1)*high(2) - product) + high(1)*low(2) + low(1)*high(2)) + low(1)*low(2)
+   end subroutine exact_product
 
    !> Leave out of 17 digits those that the number does not need to be read back
    pure subroutine shorten(value, beyond, doubt, digits, exponent, known)
