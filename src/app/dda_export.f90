@@ -2,6 +2,7 @@
 !> of blocks
 submodule (dda_verbs) dda_export
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
+   use dda_binary_file, only : write_file
    use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_key_names, only : scene_geometry, scene_kind, search_group
@@ -15,9 +16,10 @@ submodule (dda_verbs) dda_export
    use dda_shape_check, only : check_form
    use dda_shape_text, only : shape_losses, shape_text
    use dda_text, only : to_text
-   use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
-      & write_text
+   use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry
    implicit none
+
+   character(len=1), parameter :: lf = achar(10)
 
 contains
 
@@ -92,7 +94,7 @@ contains
       end if
       if (allocated(error)) return
       status = exit_status%not_written
-      call write_text(stem//".blocks", text, error)
+      call write_file(stem//".blocks", text//lf, error)
       if (allocated(error)) return
       status = exit_status%success
       if (.not. command%quiet) then
@@ -111,11 +113,12 @@ contains
       type(limerick_analysis_t), intent(in) :: analysis
       type(error_t), allocatable, intent(out) :: error
 
-      call write_text(stem//".geo", plain_geometry(model), error)
-      if (.not. allocated(error)) call write_text(stem//"_ddaml.geo", ddaml_geometry(model), error)
-      if (.not. allocated(error)) call write_text(stem//".ana", ddaml_analysis(analysis), error)
+      call write_file(stem//".geo", plain_geometry(model)//lf, error)
       if (.not. allocated(error)) &
-         & call write_text(stem//"_plain.ana", plain_analysis(analysis), error)
+         & call write_file(stem//"_ddaml.geo", ddaml_geometry(model)//lf, error)
+      if (.not. allocated(error)) call write_file(stem//".ana", ddaml_analysis(analysis)//lf, error)
+      if (.not. allocated(error)) &
+         & call write_file(stem//"_plain.ana", plain_analysis(analysis)//lf, error)
    end subroutine write_pair
 
    !> Say what was written, and what was lost

@@ -1,5 +1,6 @@
 !> dda lines: from a map of joints to a file of lines (Shi: DL)
 submodule (dda_verbs) dda_lines
+   use dda_binary_file, only : write_file
    use dda_joint_map, only : joint_map_t
    use dda_kinds, only : wp
    use dda_line_model, only : entities_t, line_model_t
@@ -9,7 +10,7 @@ submodule (dda_verbs) dda_lines
    use dda_screen, only : print_line
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
-   use dda_write_limerick, only : ddaml_geometry, plain_geometry, write_text
+   use dda_write_limerick, only : ddaml_geometry, plain_geometry
    implicit none
 
 contains
@@ -29,9 +30,9 @@ contains
       file = deck_stem(name)//".geo"
       if (allocated(command%out)) file = command%out
       if (is_ddaml) then
-         call write_text(file, ddaml_geometry(model), error)
+         call write_file(file, ddaml_geometry(model)//new_line("a"), error)
       else
-         call write_text(file, plain_geometry(model), error)
+         call write_file(file, plain_geometry(model)//new_line("a"), error)
       end if
       if (.not. allocated(error)) call write_table(table_name(file), model, error)
       if (allocated(error)) status = exit_status%not_written

@@ -5,12 +5,11 @@ submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t, frame_t
    use dda_table_file, only : table_file_t
-   use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
    use dda_write_results, only : energy_lines
-   use dda_write_vtu, only : add_to_index, close_index, open_index, pvd_index_t, write_points, &
-      & write_polygons
+   use dda_write_vtu, only : field_t, index_entry, scalar_field, state_field, tensor_field, &
+      & vector_field, write_index, write_points, write_polygons
    implicit none
 
 contains
@@ -39,19 +38,16 @@ contains
       real(wp), intent(in) :: origin(2)  !! Where the origin of their coordinates is: (2) [m]
       type(album_t), intent(in) :: album
       type(error_t), allocatable, intent(inout) :: error
-      type(pvd_index_t) :: index
       type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
-      character(len=:), allocatable :: folder, stem
+      character(len=:), allocatable :: folder, index, stem
       real(wp) :: moment
       integer :: i, j
 
       stem = "case_"//to_text(number)
       folder = tables%folder//"/frames/"
-      if (tables%has_vtu) then
-         call make_folder(tables%folder//"/frames")
-         call open_index(folder//stem//".pvd", index, error)
-      end if
+      if (tables%has_vtu) call make_folder(tables%folder//"/frames")
+      index = ""
       do i = 1, album%n
          if (allocated(error)) return
          associate (frame => album%frame(i))
@@ -68,11 +64,14 @@ contains
                & frame%absent), error)
             if (.not. allocated(error)) call append_line(tables%at(table%frame_joints)%open, &
                & frame_joint_lines(stamp, row), error)
-            if (.not. allocated(error) .and. tables%has_vtu) call write_picture(folder, &
-               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, moment, error)
+            if (allocated(error) .or. .not. tables%has_vtu) cycle
+            call write_picture(folder//stem//"_"//to_text(i - 1), system, origin, frame, row, error)
+            index = index//index_entry(moment, 0, stem//"_"//to_text(i - 1)//".vtu") &
+               & //index_entry(moment, 1, stem//"_"//to_text(i - 1)//"_joints.vtu")
          end associate
       end do
-      if (.not. allocated(error) .and. tables%has_vtu) call close_index(index, error)
+      if (tables%has_vtu .and. .not. allocated(error)) &
+         & call write_index(folder//stem//".pvd", index, error)
    end subroutine write_album
 
    !> Write the ways of the measured points of a case
@@ -113,17 +112,14 @@ contains
       call append_line(table, energy_lines(number, value), error)
    end subroutine write_energies
 
-   !> Write the blocks and the joint forces of one picture, and tell the index
-   subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)
-      character(len=*), intent(in) :: folder  !! Folder of the pictures, with a slash behind it
-      character(len=*), intent(in) :: stem    !! Name of the picture without ending
+   !> Write the blocks and the joint forces of one picture
+   subroutine write_picture(stem, system, origin, frame, row, error)
+      character(len=*), intent(in) :: stem  !! Name of the picture without ending
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: origin(2)
       type(frame_t), intent(in) :: frame
       !> Its joints: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)
-      type(pvd_index_t), intent(inout) :: index
-      real(wp), intent(in) :: time  !! Time of the picture [s]; of a static run its number
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))
@@ -144,13 +140,9 @@ contains
       of_joints(1) = vector_field("force", force)
       of_joints(2) = state_field("state_first", states(1, :))
       of_joints(3) = state_field("state_second", states(2, :))
-      call write_polygons(folder//stem//".vtu", &
-         & frame%moved + spread(origin, 2, size(frame%moved, 2)), system%first_vertex, of_corners, &
-         & of_blocks, error)
-      if (.not. allocated(error)) &
-         & call write_points(folder//stem//"_joints.vtu", place, of_joints, error)
-      if (.not. allocated(error)) call add_to_index(index, time, 0, stem//".vtu", error)
-      if (.not. allocated(error)) call add_to_index(index, time, 1, stem//"_joints.vtu", error)
+      call write_polygons(stem//".vtu", frame%moved + spread(origin, 2, size(frame%moved, 2)), &
+         & system%first_vertex, of_corners, of_blocks, error)
+      if (.not. allocated(error)) call write_points(stem//"_joints.vtu", place, of_joints, error)
    end subroutine write_picture
 
 end submodule dda_picture_files

@@ -1,6 +1,7 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_check_sum, only : add_sums, line_sum
    use dda_deck_sweep, only : few_cases, n_cases, swept_texts
    use dda_force_rows, only : bars_header, proof_forces_header, proof_motion_header
    use dda_deck, only : deck_t, has_group
@@ -10,8 +11,8 @@ module dda_result_tables
    use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
-   use dda_table_file, only : add_sums, append_line, close_table, field_number, length_of, &
-      & line_sum, open_table, remove_file, sum_of, sync_table, table_file_t, without_field
+   use dda_table_file, only : append_line, close_table, field_number, length_of, &
+      & open_table, remove_file, sum_of, sync_table, table_file_t, without_field
    use dda_text, only : add_line, bytes_of, growing_text_t, lines_of, to_text
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &

@@ -5,11 +5,12 @@
 !> rows cut off by a kill among them, is left out of the tables.
 submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_check_sum, only : add_sums, line_sum
    use dda_disk_record, only : trusted_length
    use dda_kinds, only : wp
    use dda_result_tables, only : common_length, common_sum, result_table_t, sync_tables, table
-   use dda_table_file, only : add_sums, close_lines, field, field_number, keep_line, line_sum, &
-      & n_fields, next_line, open_lines, open_part, settle_part, table_lines_t, &
+   use dda_table_file, only : close_lines, field, field_number, keep_line, n_fields, next_line, &
+      & open_lines, open_part, settle_part, table_lines_t, &
       & without_field
    use dda_text, only : read_integer, read_number
    use dda_text_file, only : read_text_file

@@ -4,7 +4,7 @@ module dda_error
    implicit none
    private
 
-   public :: error_t, fatal_error, place_error, require, error_line
+   public :: error_t, fatal_error, place_error, error_line
    public :: warning_t, warnings_t, add_warning, warning_line
 
    !> What went wrong and where; an allocated error_t means failure
@@ -55,16 +55,6 @@ contains
       if (.not. allocated(error)) return
       if (error%line == 0) error%line = line
    end subroutine place_error
-
-   !> A contract at the border of a module: the sentence must be true
-   pure subroutine require(condition, sentence, error)
-      logical, intent(in) :: condition          !! Whether the sentence holds
-      character(len=*), intent(in) :: sentence  !! What must hold, in words
-      !> Allocated if it does not hold; left as it was otherwise
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (.not. condition .and. .not. allocated(error)) call fatal_error(error, sentence)
-   end subroutine require
 
    !> The line a user sees: FILE:LINE: error: message
    pure function error_line(error) result(line)

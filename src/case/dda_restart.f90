@@ -5,9 +5,9 @@
 !> for a check sum does not say who has written it.
 module dda_restart
    use, intrinsic :: iso_fortran_env, only : int32, int64
-   use dda_binary_file, only : append_integers, append_length, append_reals, append_text, &
-      & binary_file_t, close_binary, open_binary, sync_binary
+   use dda_binary_file, only : append_text, binary_file_t, close_binary, open_binary, sync_binary
    use dda_block_system, only : block_system_t
+   use dda_check_sum, only : crc_32
    use dda_contacts, only : contacts_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -21,7 +21,7 @@ module dda_restart
    public :: check_restart, load_restart, save_restart, write_numbers, read_numbers
 
    !> First bytes of the file; another layout wants another number
-   character(len=*), parameter :: title = "voussoir restart 3"
+   character(len=*), parameter :: title = "voussoir restart 4"
 
    !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
    !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
@@ -57,10 +57,6 @@ module dda_restart
    !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
    !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts
    integer, parameter :: n_joint_number = 24
-
-   !> The check sum is a polynomial at this place, modulo this prime: any change of a half-word
-   !> changes it
-   integer(int64), parameter :: place = 257, prime = 2147483647
 
    interface
 
@@ -279,16 +275,14 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: late
       type(binary_file_t) :: opened
-      integer(int32) :: n(2)
+      character(len=:), allocatable :: bytes
 
       call open_binary(part_name(file), opened, error)
       if (allocated(error)) return
-      n = [size(whole), size(number)]
-      call append_text(opened, title)
-      call append_integers(opened, n)
-      call append_integers(opened, whole)
-      call append_reals(opened, reshape(number, [size(number), 1]))
-      call append_length(opened, check_sum(n, whole, number))
+      bytes = title//transfer([int(size(whole), int32), int(size(number), int32)], &
+         & repeat(" ", 8))//transfer(whole, repeat(" ", 4*size(whole))) &
+         & //transfer(number, repeat(" ", 8*size(number)))
+      call append_text(opened, bytes//transfer(crc_32(bytes), repeat(" ", 8)))
       call sync_binary(opened, error)
       call close_binary(opened, late)
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
@@ -326,38 +320,12 @@ contains
             at = len(title) + 8 + 4*n(1)
             whole = transfer(bytes(len(title) + 9:at), 0_int32, n(1))
             number = transfer(bytes(at + 1:at + 8*n(2)), 0.0_wp, n(2))
-            sound = transfer(bytes(at + 8*n(2) + 1:), 0_int64) == check_sum(n, whole, number)
+            at = at + 8*n(2)
+            sound = transfer(bytes(at + 1:), 0_int64) == crc_32(bytes(:at))
          end if
          if (.not. sound) call fatal_error(error, "expected a file as it was written, got a "// &
             & "damaged one; write it again", file, 1)
       end if
    end subroutine read_numbers
-
-   !> The check sum of a file
-   pure integer(int64) function check_sum(n, whole, number)
-      integer(int32), intent(in) :: n(2)  !! How many numbers there are: (2)
-      integer(int32), intent(in) :: whole(:)
-      real(wp), intent(in) :: number(:)
-      integer :: i
-
-      check_sum = 1
-      call add_words(n, check_sum)
-      call add_words(whole, check_sum)
-      do i = 1, size(number)
-         call add_words(transfer(number(i), n), check_sum)
-      end do
-   end function check_sum
-
-   !> Add words of 32 bits to a check sum, half a word at a time: what is added is below the prime
-   pure subroutine add_words(words, sum_so_far)
-      integer(int32), intent(in) :: words(:)       !! The words: (:)
-      integer(int64), intent(inout) :: sum_so_far  !! The check sum
-      integer :: i
-
-      do i = 1, size(words)
-         sum_so_far = mod(sum_so_far*place + ibits(words(i), 0, 16), prime)
-         sum_so_far = mod(sum_so_far*place + ibits(words(i), 16, 16), prime)
-      end do
-   end subroutine add_words
 
 end module dda_restart

@@ -1,19 +1,17 @@
 !> Files written through the C library, which says when a disk is full; Fortran's flush does not.
 !> Whatever fails on the way is reported when the file is flushed or closed
 module dda_binary_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_long, c_null_char, &
-      & c_null_ptr, c_ptr, c_size_t
-   use, intrinsic :: iso_fortran_env, only : int32, int64
-   use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fseek, c_ftell, c_fileno, &
-      & c_fsync, c_ferror, c_fclose
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
+      & c_ptr, c_size_t
+   use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync, &
+      & c_ferror, c_fclose
    use dda_error, only : error_t, fatal_error
-   use dda_kinds, only : wp
    implicit none
    private
 
    public :: binary_file_t, open_binary, open_descriptor, flush_binary, sync_binary, close_binary
-   public :: descriptor_of, go_to, position_of
-   public :: append_text, append_reals, append_integers, append_length
+   public :: descriptor_of, write_file
+   public :: append_text
 
    !> A file open for writing
    type :: binary_file_t
@@ -87,14 +85,6 @@ contains
          & "results: fsync failed; check the disk or write elsewhere", file%name, 1)
    end subroutine sync_binary
 
-   !> Bytes written so far, 0 of a file that is not open
-   integer(int64) function position_of(file)
-      type(binary_file_t), intent(in) :: file
-
-      position_of = 0
-      if (c_associated(file%handle)) position_of = int(c_ftell(file%handle), int64)
-   end function position_of
-
    !> Close a file
    subroutine close_binary(file, error)
       type(binary_file_t), intent(inout) :: file
@@ -108,55 +98,26 @@ contains
       file%handle = c_null_ptr
    end subroutine close_binary
 
-   !> Go on writing at another place; a place beyond the end is not for this
-   subroutine go_to(file, place)
-      type(binary_file_t), intent(in) :: file
-      integer, intent(in) :: place  !! Bytes before the place
-      integer(c_int) :: failed
+   !> Write a whole file
+   subroutine write_file(name, text, error)
+      character(len=*), intent(in) :: name  !! Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: text  !! What it holds
+      type(error_t), allocatable, intent(out) :: error
+      type(binary_file_t) :: file
 
-      failed = c_fseek(file%handle, int(place, c_long), 0_c_int)
-   end subroutine go_to
+      call open_binary(name, file, error)
+      if (allocated(error)) return
+      call append_text(file, text)
+      call close_binary(file, error)
+   end subroutine write_file
 
-   !> Write characters as they are
+   !> Write characters as they are; C keeps in mind whether that failed
    subroutine append_text(file, text)
       type(binary_file_t), intent(in) :: file
       character(len=*), intent(in), target :: text  !! The characters
-
-      if (len(text) > 0) call append_bytes(file, c_loc(text(1:1)), len(text, c_size_t))
-   end subroutine append_text
-
-   !> Write numbers in the machine's own form
-   subroutine append_reals(file, values)
-      type(binary_file_t), intent(in) :: file
-      real(wp), intent(in), target, contiguous :: values(:, :)  !! The numbers: (:, :)
-
-      if (size(values) > 0) call append_bytes(file, c_loc(values), 8*size(values, kind=c_size_t))
-   end subroutine append_reals
-
-   !> Write integers of 32 bits in the machine's own form
-   subroutine append_integers(file, values)
-      type(binary_file_t), intent(in) :: file
-      integer(int32), intent(in), target, contiguous :: values(:)  !! The integers: (:)
-
-      if (size(values) > 0) call append_bytes(file, c_loc(values), 4*size(values, kind=c_size_t))
-   end subroutine append_integers
-
-   !> Write one integer of 64 bits in the machine's own form
-   subroutine append_length(file, length)
-      type(binary_file_t), intent(in) :: file
-      integer(int64), intent(in), target :: length  !! The integer
-
-      call append_bytes(file, c_loc(length), 8_c_size_t)
-   end subroutine append_length
-
-   !> Write bytes; C keeps in mind whether that failed
-   subroutine append_bytes(file, bytes, n)
-      type(binary_file_t), intent(in) :: file
-      type(c_ptr), intent(in) :: bytes
-      integer(c_size_t), intent(in) :: n  !! How many
       integer(c_size_t) :: written
 
-      if (.not. c_associated(file%handle)) return
-      written = c_fwrite(bytes, 1_c_size_t, n, file%handle)
-   end subroutine append_bytes
+      if (len(text) == 0 .or. .not. c_associated(file%handle)) return
+      written = c_fwrite(c_loc(text(1:1)), 1_c_size_t, len(text, c_size_t), file%handle)
+   end subroutine append_text
 end module dda_binary_file

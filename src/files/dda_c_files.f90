@@ -1,11 +1,11 @@
 !> Files of the C library: Fortran's open cuts the blanks at the end of a name, and its flush does
 !> not say when a disk is full
 module dda_c_files
-   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_long, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_ptr, c_size_t
    implicit none
    private
 
-   public :: c_fopen, c_fdopen, c_fwrite, c_fflush, c_fseek, c_ftell, c_fileno, c_fsync
+   public :: c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync
    public :: c_ferror, c_fclose, c_fread, c_access
 
    interface
@@ -45,22 +45,6 @@ module dda_c_files
          type(c_ptr), intent(in), value :: handle
          integer(c_int) :: failed  !! 0 if all is well
       end function c_fflush
-
-      !> C: go to a place of a file
-      function c_fseek(handle, offset, origin) bind(c, name="fseek") result(failed)
-         import :: c_int, c_long, c_ptr
-         type(c_ptr), intent(in), value :: handle
-         integer(c_long), intent(in), value :: offset  !! Bytes from the origin
-         integer(c_int), intent(in), value :: origin   !! 0 for the beginning of the file
-         integer(c_int) :: failed
-      end function c_fseek
-
-      !> C: the place that is written next
-      function c_ftell(handle) bind(c, name="ftell") result(place)
-         import :: c_long, c_ptr
-         type(c_ptr), intent(in), value :: handle
-         integer(c_long) :: place  !! Bytes before it
-      end function c_ftell
 
       !> C: the system's number of a file
       function c_fileno(handle) bind(c, name="fileno") result(descriptor)

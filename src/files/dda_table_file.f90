@@ -1,33 +1,26 @@
 !> Tables written line by line, each line safe on its own, and the lines of a table that a run may
 !> have left unfinished
-!>
-!> Their check sum does not depend on the order of the lines: it is the sum of their CRC-32. The
-!> sums of several tables add up to one, however their lines were written in turns; zlib and Python
-!> know CRC-32, so that others can compute it too.
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
-   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
-      & open_binary, position_of, sync_binary
+      & open_binary, sync_binary
+   use dda_check_sum, only : add_sums, line_sum
    use dda_error, only : error_t, fatal_error
    implicit none
    private
 
-   public :: line_sum, add_sums, table_file_t, open_table, append_line, close_table, remove_file
+   public :: table_file_t, open_table, append_line, close_table, remove_file
    public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
    public :: sum_of, table_lines_t, open_lines, next_line, close_lines, n_fields, field
    public :: field_number, without_field
 
-   !> Sums are counted modulo 2 to this power
-   integer, parameter :: bits = 32
-   !> The polynomial of ISO 3309, the lowest bit first
-   integer(int32), parameter :: polynomial = -306674912_int32
-
    !> An open table
    type :: table_file_t
       private
-      type(binary_file_t) :: file  !! Its file
-      integer(int64) :: lines = 0  !! Check sum of the lines that were appended since it was opened
+      type(binary_file_t) :: file   !! Its file
+      integer(int64) :: length = 0  !! Length of its lines [bytes]
+      integer(int64) :: lines = 0   !! Check sum of the lines that were appended since it was opened
    end type table_file_t
 
    interface
@@ -62,60 +55,6 @@ module dda_table_file
 
 contains
 
-   !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
-   pure integer(int64) function line_sum(text)
-      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
-      integer :: i
-      ! what eight bits do to a remainder, one after the other
-      integer(int32), parameter :: byte(0:255) = [(int(i, int32), i=0, 255)]
-      integer(int32), parameter :: bits_1(0:255) = ieor(shiftr(byte, 1), &
-         & merge(polynomial, 0_int32, btest(byte, 0)))
-      integer(int32), parameter :: bits_2(0:255) = ieor(shiftr(bits_1, 1), &
-         & merge(polynomial, 0_int32, btest(bits_1, 0)))
-      integer(int32), parameter :: bits_3(0:255) = ieor(shiftr(bits_2, 1), &
-         & merge(polynomial, 0_int32, btest(bits_2, 0)))
-      integer(int32), parameter :: bits_4(0:255) = ieor(shiftr(bits_3, 1), &
-         & merge(polynomial, 0_int32, btest(bits_3, 0)))
-      integer(int32), parameter :: bits_5(0:255) = ieor(shiftr(bits_4, 1), &
-         & merge(polynomial, 0_int32, btest(bits_4, 0)))
-      integer(int32), parameter :: bits_6(0:255) = ieor(shiftr(bits_5, 1), &
-         & merge(polynomial, 0_int32, btest(bits_5, 0)))
-      integer(int32), parameter :: bits_7(0:255) = ieor(shiftr(bits_6, 1), &
-         & merge(polynomial, 0_int32, btest(bits_6, 0)))
-      integer(int32), parameter :: bits_8(0:255) = ieor(shiftr(bits_7, 1), &
-         & merge(polynomial, 0_int32, btest(bits_7, 0)))
-      integer(int32) :: remainder
-
-      line_sum = 0
-      remainder = not(0_int32)
-      do i = 1, len(text)
-         if (text(i:i) == new_line("a")) then
-            line_sum = add_sums(line_sum, of_remainder(remainder))
-            remainder = not(0_int32)
-         else
-            remainder = ieor(shiftr(remainder, 8), &
-               & bits_8(iand(ieor(remainder, ichar(text(i:i), int32)), 255_int32)))
-         end if
-      end do
-      if (len(text) == 0) return
-      if (text(len(text):) /= new_line("a")) line_sum = add_sums(line_sum, of_remainder(remainder))
-   end function line_sum
-
-   !> Two sums as one
-   elemental integer(int64) function add_sums(first, second)
-      integer(int64), intent(in) :: first   !! One sum; a negative one is taken away
-      integer(int64), intent(in) :: second  !! The other
-
-      add_sums = modulo(first + second, shiftl(1_int64, bits))
-   end function add_sums
-
-   !> A remainder as CRC-32
-   elemental integer(int64) function of_remainder(remainder)
-      integer(int32), intent(in) :: remainder  !! The remainder
-
-      of_remainder = iand(int(not(remainder), int64), shiftl(1_int64, bits) - 1)
-   end function of_remainder
-
    !> Begin a table with its header
    subroutine open_table(file, header, table, error)
       character(len=*), intent(in) :: file    !! Name of the file; one that exists is replaced
@@ -136,8 +75,7 @@ contains
 
       if (len(line) == 0) return
       table%lines = add_sums(table%lines, line_sum(line))
-      call append_text(table%file, line)
-      call append_text(table%file, new_line("a"))
+      call keep_line(table, line)
       call flush_binary(table%file, error)
    end subroutine append_line
 
@@ -150,10 +88,10 @@ contains
    end subroutine sync_table
 
    !> Length of an open table, 0 of one that is not open [bytes]
-   integer(int64) function length_of(table)
+   pure integer(int64) function length_of(table)
       type(table_file_t), intent(in) :: table
 
-      length_of = position_of(table%file)
+      length_of = table%length
    end function length_of
 
    !> Check sum of the lines that were appended to a table since it was opened, modulo 2**32
@@ -194,9 +132,10 @@ contains
 
    !> Write one line that need not be safe yet
    subroutine keep_line(table, line)
-      type(table_file_t), intent(in) :: table
+      type(table_file_t), intent(inout) :: table
       character(len=*), intent(in) :: line
 
+      table%length = table%length + len(line) + 1
       call append_text(table%file, line//new_line("a"))
    end subroutine keep_line
 

@@ -1,10 +1,11 @@
-!> A text file as one string, whatever its line ends, or a failure with a line; and the check sums
-!> by which another one of the same name is known
+!> A text file as one string, whatever its line ends, or a failure with a line; and the mark by
+!> which another one of the same name is known
 module dda_text_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, c_size_t
-   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_check_sum, only : crc_32
    use dda_c_files, only : c_access, c_fclose, c_ferror, c_fopen, c_fread
    use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
    private
@@ -16,10 +17,6 @@ module dda_text_file
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
    integer, parameter :: max_file_size = 512*megabyte
-
-   !> The sums are polynomials at these places, modulo these primes
-   integer(int64), parameter :: place(2) = [257_int64, 263_int64]
-   integer(int64), parameter :: prime(2) = [2147483629_int64, 2147483587_int64]
 
 contains
 
@@ -137,7 +134,7 @@ contains
       text = text(:n)
    end subroutine plain_text
 
-   !> The mark of a file: three numbers; a dash for one that cannot be read
+   !> The mark of a file: its length and check sum; a dash for one that cannot be read
    function file_mark(file) result(mark)
       character(len=*), intent(in) :: file  !! Name of the file
       character(len=:), allocatable :: mark
@@ -153,15 +150,7 @@ contains
    pure function text_mark(text) result(mark)
       character(len=*), intent(in) :: text  !! The text
       character(len=:), allocatable :: mark
-      integer(int64) :: total(2)
-      character(len=62) :: digits
-      integer :: i
 
-      total = 0
-      do i = 1, len(text)
-         total = modulo(total*place + ichar(text(i:i)), prime)
-      end do
-      write (digits, "(i0, 1x, i0, 1x, i0)") len(text, int64), total
-      mark = trim(digits)
+      mark = to_text(len(text))//" "//to_text(real(crc_32(text), wp))
    end function text_mark
 end module dda_text_file

@@ -1,15 +1,13 @@
-!> Geometry and analysis files of the Limerick line, plain and DDAML, as texts and on disk
+!> Geometry and analysis files of the Limerick line, plain and DDAML, as texts
 module dda_write_limerick
-   use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
    use dda_line_model, only : entities_t, line_model_t
-   use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : fields, to_text
    implicit none
    private
 
-   public :: plain_geometry, plain_analysis, ddaml_geometry, ddaml_analysis, write_text
+   public :: plain_geometry, plain_analysis, ddaml_geometry, ddaml_analysis
 
    !> The end of a line
    character(len=1), parameter :: lf = achar(10)
@@ -19,20 +17,6 @@ module dda_write_limerick
       & //'<!-- voussoir -->'
 
 contains
-
-   !> Write a text to a file
-   subroutine write_text(file, text, error)
-      character(len=*), intent(in) :: file  !! Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: text  !! The text; its last line end is added
-      type(error_t), allocatable, intent(out) :: error
-      type(table_file_t) :: table
-      integer :: first
-
-      first = index(text, lf)
-      call open_table(file, text(:first - 1), table, error)
-      if (.not. allocated(error)) call append_line(table, text(first + 1:), error)
-      call close_table(table, error)
-   end subroutine write_text
 
    !> A geometry in the plain form
    pure function plain_geometry(model) result(text)

@@ -3,21 +3,19 @@
 !>
 !> https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 module dda_write_vtu
-   use, intrinsic :: iso_fortran_env, only : int32, int64
-   use dda_binary_file, only : append_integers, append_length, append_text, binary_file_t, &
-      & close_binary, flush_binary, go_to, open_binary
+   use, intrinsic :: iso_fortran_env, only : int16, int32, int64, int8
+   use dda_binary_file, only : write_file
    use dda_cut_model, only : cut_model_t, point_kind
-   use dda_error, only : error_t, require
+   use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
-   use dda_vtu_field, only : append_field, append_vectors, attribute, check_field, &
-      & field_attributes, field_bytes, field_t, file_head, scalar_field, state_field
    implicit none
    private
 
-   public :: add_to_index, close_index, open_index, pvd_index_t, write_points, write_polygons
+   public :: field_t, scalar_field, state_field, tensor_field, vector_field
+   public :: index_entry, write_index, write_points, write_polygons
    public :: write_cut_table, write_cut_vtu
 
    !> VTK's numbers of the kinds of cells
@@ -29,27 +27,115 @@ module dda_write_vtu
    !> Names of the kinds of cells
    type(cell_type_enum), parameter :: cell_type = cell_type_enum()
 
-   !> The part of the file before its data, while it grows
-   type :: header_t
-      character(len=:), allocatable :: text  !! Its text
-      integer(int64) :: offset = 0           !! Where the next array begins in the data [bytes]
-   end type header_t
-
-   !> An open index
-   type :: pvd_index_t
-      type(binary_file_t) :: file  !! Its file
-      integer :: place = 0         !! Where the next entry goes [bytes from the beginning]
-   end type pvd_index_t
-
-   !> Last line of an index
-   character(len=*), parameter :: ending = "  </Collection></VTKFile>"//new_line("a")
+   !> An array of numbers as a file has it. Make a list of them element by element: gfortran never
+   !> frees the texts of those that stand in an array constructor
+   type :: field_t
+      character(len=:), allocatable :: attributes  !! What the header says of it
+      character(len=:), allocatable :: bytes       !! The numbers in the machine's own form
+   end type field_t
 
    !> Lines handed to the table at once
    integer, parameter :: batch = 100
+   character(len=1), parameter :: lf = achar(10)
 
 contains
 
-   !> Write polygons; the file is whole when there is no error
+   !> A field of real numbers
+   pure type(field_t) function scalar_field(name, values) result(field)
+      character(len=*), intent(in) :: name  !! Name that ParaView shows
+      real(wp), intent(in) :: values(:)     !! The numbers: (n)
+
+      field = new_field("Float64", name, "", real_bytes(values))
+   end function scalar_field
+
+   !> A field of plane vectors, written with z = 0
+   pure type(field_t) function vector_field(name, values) result(field)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: values(:, :)  !! Components x and y: (2, n)
+      real(wp), allocatable :: spatial(:, :)
+
+      allocate (spatial(3, size(values, 2)), source=0.0_wp)
+      spatial(:2, :) = values
+      field = new_field("Float64", name, attribute("NumberOfComponents", "3"), &
+         & real_bytes(reshape(spatial, [size(spatial)])))
+   end function vector_field
+
+   !> A field of symmetric plane tensors
+   pure type(field_t) function tensor_field(name, values) result(field)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: values(:, :)  !! Components xx, yy and xy: (3, n)
+
+      field = new_field("Float64", name, attribute("NumberOfComponents", "3") &
+         & //attribute("ComponentName0", "xx")//attribute("ComponentName1", "yy") &
+         & //attribute("ComponentName2", "xy"), real_bytes(reshape(values, [size(values)])))
+   end function tensor_field
+
+   !> A field of whole numbers
+   pure type(field_t) function state_field(name, states) result(field)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: states(:)  !! The numbers: (n)
+
+      field = new_field("Int32", name, "", &
+         & transfer(int(states, int32), repeat(" ", 4*size(states))))
+   end function state_field
+
+   !> A field of any numbers
+   pure type(field_t) function new_field(type, name, more, bytes) result(field)
+      character(len=*), intent(in) :: type   !! VTK's word for the kind of its numbers
+      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: more   !! Further attributes, a blank before each
+      character(len=*), intent(in) :: bytes  !! The numbers
+
+      field%attributes = attribute("type", type)//attribute("Name", name)//more
+      field%bytes = bytes
+   end function new_field
+
+   !> Real numbers in the machine's own form
+   pure function real_bytes(values) result(bytes)
+      real(wp), intent(in) :: values(:)       !! The numbers: (n)
+      character(len=8*size(values)) :: bytes  !! Their bytes
+
+      bytes = transfer(values, bytes)
+   end function real_bytes
+
+   !> First lines of a file for ParaView
+   pure function file_head(kind) result(text)
+      character(len=*), intent(in) :: kind   !! What the file holds, in VTK's word
+      character(len=:), allocatable :: text  !! The lines; the element VTKFile is left open
+
+      text = "<?xml version=""1.0""?>"//lf//"<VTKFile"//attribute("type", kind) &
+         & //attribute("version", "1.0")//attribute("byte_order", trim(merge("LittleEndian", &
+         & "BigEndian   ", transfer(1_int16, 0_int8) == 1_int8))) &
+         & //attribute("header_type", "UInt64")//">"//lf
+   end function file_head
+
+   !> An attribute of an element, with a blank before it
+   pure function attribute(name, value) result(text)
+      character(len=*), intent(in) :: name  !! Its name
+      !> Its value; what XML reserves is written as XML wants it
+      character(len=*), intent(in) :: value
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = " "//name//"="""
+      do i = 1, len(value)
+         select case (value(i:i))
+         case ("&")
+            text = text//"&amp;"
+         case ("<")
+            text = text//"&lt;"
+         case (">")
+            text = text//"&gt;"
+         case ("""")
+            text = text//"&quot;"
+         case default
+            text = text//value(i:i)
+         end select
+      end do
+      text = text//""""
+   end function attribute
+
+   !> Write polygons
    subroutine write_polygons(file, point, first_vertex, point_fields, cell_fields, error)
       character(len=*), intent(in) :: file  !! Name of the file; one that exists is replaced
       !> Corners of all polygons, one polygon after the other: (2, n_point) [m]
@@ -58,23 +144,14 @@ contains
       integer, intent(in) :: first_vertex(:)
       type(field_t), intent(in) :: point_fields(:)  !! Fields with a value at each corner: (:)
       type(field_t), intent(in) :: cell_fields(:)   !! Fields with a value for each polygon: (:)
-      !> Allocated if the arrays do not fit together or the file cannot be written
+      !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
-      integer :: n
 
-      n = size(first_vertex) - 1
-      call require(n >= 0, "polygons need the number one beyond their last corner", error)
-      if (allocated(error)) return
-      call require(first_vertex(1) == 1 .and. first_vertex(n + 1) == size(point, 2) + 1, &
-         & "the corners of polygons are all the points, in their order", error)
-      call require(all(first_vertex(2:) - first_vertex(:n) >= 3), &
-         & "a polygon has three corners or more", error)
-      call write_grid(file, cell_type%polygon, point, first_vertex(2:), point_fields, cell_fields, &
-         & error)
+      call write_grid(file, cell_type%polygon, point, first_vertex(2:) - 1, point_fields, &
+         & cell_fields, error)
    end subroutine write_polygons
 
-   !> Write single points, such as those that contact forces act on; the file is whole when there is
-   !> no error
+   !> Write single points, such as those that contact forces act on
    subroutine write_points(file, point, point_fields, error)
       character(len=*), intent(in) :: file
       real(wp), intent(in) :: point(:, :)           !! The points: (2, n_point) [m]
@@ -83,184 +160,78 @@ contains
       type(field_t) :: none(0)
       integer :: i
 
-      call write_grid(file, cell_type%vertex, point, [(i + 1, i=1, size(point, 2))], point_fields, &
+      call write_grid(file, cell_type%vertex, point, [(i, i=1, size(point, 2))], point_fields, &
          & none, error)
    end subroutine write_points
 
    !> Write cells of one kind that own the points in their order
-   subroutine write_grid(file, kind, point, next_point, point_fields, cell_fields, error)
+   subroutine write_grid(file, kind, point, last_point, point_fields, cell_fields, error)
       character(len=*), intent(in) :: file
       integer, intent(in) :: kind           !! One of cell_type
       real(wp), intent(in) :: point(:, :)
-      integer, intent(in) :: next_point(:)  !! The point behind the last one of each cell: (n_cell)
+      integer, intent(in) :: last_point(:)  !! The last point of each cell: (n_cell)
       type(field_t), intent(in) :: point_fields(:)
-      !> Fields with a value for each cell: (:)
-      type(field_t), intent(in) :: cell_fields(:)
-      type(error_t), allocatable, intent(inout) :: error
-      type(binary_file_t) :: vtu
+      type(field_t), intent(in) :: cell_fields(:)  !! Fields with a value for each cell: (:)
+      type(error_t), allocatable, intent(out) :: error
+      type(field_t) :: points(1), cells(3)
+      character(len=:), allocatable :: head, data
       integer :: i
 
-      call require(size(point, 1) == 2, "points need two coordinates", error)
-      do i = 1, size(point_fields)
-         call check_field(point_fields(i), size(point, 2), error)
-      end do
-      do i = 1, size(cell_fields)
-         call check_field(cell_fields(i), size(next_point), error)
-      end do
-      if (.not. allocated(error)) call open_binary(file, vtu, error)
-      if (allocated(error)) return
-      call append_text(vtu, grid_header(size(point, 2), size(next_point), point_fields, &
-         & cell_fields))
-      do i = 1, size(point_fields)
-         call append_field(vtu, point_fields(i))
-      end do
-      do i = 1, size(cell_fields)
-         call append_field(vtu, cell_fields(i))
-      end do
-      call append_length(vtu, 24_int64*size(point, 2, int64))
-      call append_vectors(vtu, point)
-      call append_cells(vtu, kind, size(point, 2), next_point)
-      call append_text(vtu, new_line("a")//"  </AppendedData>"//new_line("a")//"</VTKFile>" &
-         & //new_line("a"))
-      call close_binary(vtu, error)
+      points(1) = vector_field("Points", point)
+      cells(1) = state_field("connectivity", [(i - 1, i=1, size(point, 2))])
+      cells(2) = state_field("offsets", last_point)
+      cells(3) = new_field("UInt8", "types", "", repeat(achar(kind), size(last_point)))
+      head = file_head("UnstructuredGrid")//"  <UnstructuredGrid>"//lf//"    <Piece" &
+         & //attribute("NumberOfPoints", to_text(size(point, 2))) &
+         & //attribute("NumberOfCells", to_text(size(last_point)))//">"//lf
+      data = ""
+      call add_fields("PointData", point_fields)
+      call add_fields("CellData", cell_fields)
+      call add_fields("Points", points)
+      call add_fields("Cells", cells)
+      call write_file(file, head//"    </Piece>"//lf//"  </UnstructuredGrid>"//lf &
+         & //"  <AppendedData"//attribute("encoding", "raw")//">"//lf//"_"//data//lf &
+         & //"  </AppendedData>"//lf//"</VTKFile>"//lf, error)
+
+   contains
+
+      !> Announce fields in the header, and put their lengths and numbers behind the data
+      subroutine add_fields(element, fields)
+         character(len=*), intent(in) :: element  !! Element that they are announced in
+         type(field_t), intent(in) :: fields(:)   !! The fields: (:)
+         integer :: k
+
+         head = head//"      <"//element//">"//lf
+         do k = 1, size(fields)
+            head = head//"        <DataArray"//fields(k)%attributes &
+               & //attribute("format", "appended")//attribute("offset", to_text(len(data)))//"/>"//lf
+            data = data//transfer(len(fields(k)%bytes, int64), repeat(" ", 8))//fields(k)%bytes
+         end do
+         head = head//"      </"//element//">"//lf
+      end subroutine add_fields
    end subroutine write_grid
 
-   !> Write which points the cells own, where each ends and what it is
-   subroutine append_cells(vtu, kind, n_point, next_point)
-      type(binary_file_t), intent(in) :: vtu
-      integer, intent(in) :: kind
-      integer, intent(in) :: n_point  !! Number of points
-      integer, intent(in) :: next_point(:)
-      integer(int32), allocatable :: connectivity(:)
-      integer :: i
-
-      allocate (connectivity(n_point))
-      do i = 1, n_point
-         connectivity(i) = int(i - 1, int32)
-      end do
-      call append_length(vtu, 4_int64*n_point)
-      call append_integers(vtu, connectivity)
-      call append_length(vtu, 4_int64*size(next_point))
-      call append_integers(vtu, int(next_point - 1, int32))
-      call append_length(vtu, size(next_point, kind=int64))
-      call append_text(vtu, repeat(achar(kind), size(next_point)))
-   end subroutine append_cells
-
-   !> All of the file before its data: arrays in the order in which they are written
-   pure function grid_header(n_point, n_cell, point_fields, cell_fields) result(text)
-      integer, intent(in) :: n_point
-      integer, intent(in) :: n_cell          !! Number of cells
-      type(field_t), intent(in) :: point_fields(:), cell_fields(:)
-      character(len=:), allocatable :: text  !! The text, up to the mark behind which the data begin
-      type(header_t) :: header
-
-      header%text = file_head("UnstructuredGrid")
-      call add_line(header, "  <UnstructuredGrid>")
-      call add_line(header, "    <Piece"//attribute("NumberOfPoints", to_text(n_point)) &
-         & //attribute("NumberOfCells", to_text(n_cell))//">")
-      call add_fields(header, "PointData", point_fields)
-      call add_fields(header, "CellData", cell_fields)
-      call add_line(header, "      <Points>")
-      call add_array(header, attribute("type", "Float64")//attribute("Name", "Points") &
-         & //attribute("NumberOfComponents", "3"), 24_int64*n_point)
-      call add_line(header, "      </Points>")
-      call add_line(header, "      <Cells>")
-      call add_array(header, attribute("type", "Int32")//attribute("Name", "connectivity"), &
-         & 4_int64*n_point)
-      call add_array(header, attribute("type", "Int32")//attribute("Name", "offsets"), &
-         & 4_int64*n_cell)
-      call add_array(header, attribute("type", "UInt8")//attribute("Name", "types"), &
-         & int(n_cell, int64))
-      call add_line(header, "      </Cells>")
-      call add_line(header, "    </Piece>")
-      call add_line(header, "  </UnstructuredGrid>")
-      text = header%text//"  <AppendedData"//attribute("encoding", "raw")//">"//new_line("a")//"_"
-   end function grid_header
-
-   !> Announce the fields of the points or of the cells
-   pure subroutine add_fields(header, element, fields)
-      type(header_t), intent(inout) :: header
-      character(len=*), intent(in) :: element  !! PointData or CellData
-      type(field_t), intent(in) :: fields(:)   !! The fields: (:)
-      integer :: i
-
-      call add_line(header, "      <"//element//">")
-      do i = 1, size(fields)
-         call add_array(header, field_attributes(fields(i)), field_bytes(fields(i)))
-      end do
-      call add_line(header, "      </"//element//">")
-   end subroutine add_fields
-
-   !> Announce an array
-   pure subroutine add_array(header, attributes, n_byte)
-      type(header_t), intent(inout) :: header
-      character(len=*), intent(in) :: attributes  !! What the array is
-      !> Its length in the file, without the number before it that tells the length
-      integer(int64), intent(in) :: n_byte
-      character(len=20) :: offset
-
-      write (offset, "(i0)") header%offset
-      call add_line(header, "        <DataArray"//attributes//attribute("format", "appended") &
-         & //attribute("offset", trim(offset))//"/>")
-      header%offset = header%offset + 8_int64 + n_byte
-   end subroutine add_array
-
-   !> Put a line below the header
-   pure subroutine add_line(header, line)
-      type(header_t), intent(inout) :: header
-      character(len=*), intent(in) :: line  !! The line
-
-      header%text = header%text//line//new_line("a")
-   end subroutine add_line
-
-   !> Begin an index without entries
-   subroutine open_index(name, index, error)
-      character(len=*), intent(in) :: name  !! Name of the file; one that exists is replaced
-      type(pvd_index_t), intent(out) :: index
-      type(error_t), allocatable, intent(out) :: error
-
-      call open_binary(name, index%file, error)
-      if (allocated(error)) return
-      associate (head => file_head("Collection")//"  <Collection>"//new_line("a"))
-         call append_text(index%file, head//ending)
-         index%place = len(head)
-      end associate
-      call flush_binary(index%file, error)
-   end subroutine open_index
-
-   !> Add a file, which must be whole by now
-   subroutine add_to_index(index, time, part, shown, error)
-      type(pvd_index_t), intent(inout) :: index
-      !> Time that the file shows, or number of the step
-      real(wp), intent(in) :: time
+   !> A file as an entry of an index
+   pure function index_entry(time, part, shown) result(entry)
+      real(wp), intent(in) :: time  !! Time that the file shows, or number of the step
       !> What it shows of that time, counted from 0: files of the same time are shown together
       integer, intent(in) :: part
-      !> Name of the file, relative to the folder of the index
-      character(len=*), intent(in) :: shown
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: entry
+      character(len=*), intent(in) :: shown   !! Its name, relative to the folder of the index
+      character(len=:), allocatable :: entry  !! The entry with its line end
 
       entry = "    <DataSet"//attribute("timestep", to_text(time)) &
-         & //attribute("part", to_text(part))//attribute("file", shown)//"/>"//new_line("a")
-      call go_to(index%file, index%place + len(ending))
-      call append_text(index%file, repeat(" ", len(entry)))
-      call flush_binary(index%file, error)
-      if (allocated(error)) return
-      call go_to(index%file, index%place)
-      call append_text(index%file, entry//ending)
-      call flush_binary(index%file, error)
-      index%place = index%place + len(entry)
-   end subroutine add_to_index
+         & //attribute("part", to_text(part))//attribute("file", shown)//"/>"//lf
+   end function index_entry
 
-   !> Close an index
-   subroutine close_index(index, error)
-      !> The index; nothing happens to one that is not open
-      type(pvd_index_t), intent(inout) :: index
-      !> Allocated if anything of it could not be written
+   !> Write an index of files
+   subroutine write_index(file, entries, error)
+      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: entries  !! Its entries
       type(error_t), allocatable, intent(out) :: error
 
-      call close_binary(index%file, error)
-   end subroutine close_index
+      call write_file(file, file_head("Collection")//"  <Collection>"//lf//entries &
+         & //"  </Collection></VTKFile>"//lf, error)
+   end subroutine write_index
 
    !> Write a row a block; lists in a field are parted by semicolons
    subroutine write_cut_table(file, cut, error)
@@ -325,26 +296,20 @@ contains
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
       type(error_t), allocatable, intent(out) :: error
-      type(field_t), allocatable :: cells(:), corners(:)
-      real(wp), allocatable :: point(:, :)
-      integer, allocatable :: held(:)
-      integer :: i
+      type(field_t) :: cells(4), corners(1)
+      integer :: held(size(cut%area)), i
 
-      allocate (point, source=cut%vertex)
-      do i = 1, 2
-         point(i, :) = point(i, :) + cut%scale%origin(i)
-      end do
-      allocate (held(size(cut%area)), source=0)
+      held = 0
       do i = 1, size(cut%point)
          if (cut%point(i)%kind == point_kind%fixed) held(cut%point(i)%block) = 1
       end do
-      allocate (cells(4), corners(1))
       corners(1) = state_field("edge_joint", cut%edge_joint)
       cells(1) = state_field("block", [(i, i=1, size(cut%area))])
       cells(2) = state_field("material", cut%material)
       cells(3) = state_field("fixed", held)
       cells(4) = scalar_field("area", cut%area)
-      call write_polygons(file, point, cut%first_vertex, corners, cells, error)
+      call write_polygons(file, cut%vertex + spread(cut%scale%origin, 2, size(cut%vertex, 2)), &
+         & cut%first_vertex, corners, cells, error)
    end subroutine write_cut_vtu
 
 end module dda_write_vtu
