@@ -30,16 +30,16 @@ module dda_text
 
       !> Read one decimal number below 1e308, and nothing else, from a text
       pure module subroutine read_number(text, value, ok)
-         character(len=*), intent(in) :: text
-         real(wp), intent(out) :: value  !! The number; 0 if the text is none
-         logical, intent(out) :: ok      !! Whether the whole text is one such number
+         character(len=*), intent(in) :: text  !! Text such as -1.5e-3 or 1d3
+         real(wp), intent(out) :: value        !! The number; 0 if the text is none
+         logical, intent(out) :: ok            !! Whether the whole text is one such number
       end subroutine read_number
 
       !> Read one integer, and nothing else, from a text
       pure module subroutine read_integer(text, value, ok)
-         character(len=*), intent(in) :: text
-         integer, intent(out) :: value  !! The number; 0 if the text is none
-         logical, intent(out) :: ok     !! Whether the whole text is one integer that fits
+         character(len=*), intent(in) :: text  !! Text such as -12
+         integer, intent(out) :: value         !! The number; 0 if the text is none
+         logical, intent(out) :: ok            !! Whether the whole text is one integer that fits
       end subroutine read_integer
 
    end interface

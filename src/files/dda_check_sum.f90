@@ -1,8 +1,8 @@
 !> Check sums: the CRC-32 of a text, and the sum of those of its lines
 !>
 !> The sum does not depend on the order of the lines: the sums of several tables add up to one,
-!> however their lines were written in turns. zlib and Python know CRC-32, so that others can compute
-!> it too.
+!> however their lines were written in turns. zlib and Python know CRC-32, so that others can
+!> compute it too.
 module dda_check_sum
    use, intrinsic :: iso_fortran_env, only : int32, int64
    implicit none

@@ -203,8 +203,8 @@ contains
 
          head = head//"      <"//element//">"//lf
          do k = 1, size(fields)
-            head = head//"        <DataArray"//fields(k)%attributes &
-               & //attribute("format", "appended")//attribute("offset", to_text(len(data)))//"/>"//lf
+            head = head//"        <DataArray"//fields(k)%attributes//attribute("format", &
+               & "appended")//attribute("offset", to_text(len(data)))//"/>"//lf
             data = data//transfer(len(fields(k)%bytes, int64), repeat(" ", 8))//fields(k)%bytes
          end do
          head = head//"      </"//element//">"//lf
