@@ -1,7 +1,7 @@
 !> The command dda
 program dda
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_command_line, only : command_t, name_of, read_command
+   use dda_command_line, only : command_t, read_command
    use dda_error, only : error_line, error_t
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
@@ -31,7 +31,7 @@ program dda
       call print_help(command, status)
    case default
       do i = 1, size(command%name)
-         call take_file(name_of(command, i), status_of_file, error)
+         call take_file(command%name(i)%text, status_of_file, error)
          if (allocated(error)) write (error_unit, "(a)") error_line(error)
          status = worst_status(status, status_of_file)
       end do

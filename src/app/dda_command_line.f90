@@ -8,24 +8,42 @@ module dda_command_line
    implicit none
    private
 
-   public :: command_t, read_command, name_of
+   public :: command_t, read_command
 
    !> Longest argument that is taken
    integer, parameter :: longest = 32768
+   !> Verbs that take files
+   character(len=*), parameter :: verbs(*) = [character(len=9) :: "run", "check", "cut", "lines", &
+      & "export"]
    !> What the first argument may be
-   character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "cut", &
-      & "lines", "export", "help", "--help", "--version"]
-   !> Options of those that read files
-   character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
-      & "--cases", "--resume", "--tight", "--record", "--quiet", "--help"]
+   character(len=*), parameter :: subcommands(*) = [character(len=9) :: verbs, "help", "--help", &
+      & "--version"]
+
+   !> An option of verbs that take files
+   type :: option_t
+      character(len=8) :: name    !! Its name
+      character(len=26) :: verbs  !! Verbs that take it, parted by blanks
+      logical :: has_value        !! Whether a value follows
+   end type option_t
+
+   character(len=*), parameter :: all_verbs = "run check cut lines export"
+   !> All options
+   type(option_t), parameter :: option(*) = [option_t("--out", "run cut lines export", .true.), &
+      & option_t("--jobs", "run", .true.), option_t("--set", "run check export", .true.), &
+      & option_t("--cases", "run", .true.), option_t("--resume", "run", .false.), &
+      & option_t("--tight", "run", .false.), option_t("--record", "check", .false.), &
+      & option_t("--quiet", all_verbs, .false.), option_t("--help", all_verbs, .false.)]
+
+   !> An argument as it was given, blanks at its end included
+   type :: argument_t
+      character(len=:), allocatable :: text  !! The argument
+   end type argument_t
 
    !> What the user asked for
    type :: command_t
-      character(len=16) :: verb = "help"  !! run, check, cut, lines, export, help or version
+      character(len=16) :: verb = "help"  !! One of verbs, help or version
       !> Decks to run, check or export, files to cut, maps to draw, or the topic of help: (n)
-      character(len=longest), allocatable :: name(:)
-      !> Lengths of those names, blanks at their ends counted: (n) [characters]
-      integer, allocatable :: name_length(:)
+      type(argument_t), allocatable :: name(:)
       character(len=longest), allocatable :: setting(:)  !! --set values: (n)
       !> Output folder, or the file of cut or lines; unallocated if none is named
       character(len=:), allocatable :: out
@@ -45,213 +63,159 @@ contains
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
-      character(len=longest), allocatable :: argument(:)
-      integer, allocatable :: length(:)
-      integer :: i
+      type(argument_t), allocatable :: argument(:)
+      integer :: i, length
 
-      allocate (argument(command_argument_count()), length(command_argument_count()))
+      allocate (argument(command_argument_count()))
       do i = 1, size(argument)
-         call get_command_argument(i, argument(i), length(i))
-         if (length(i) > longest) call fatal_error(error, "expected an argument of at most " &
-            & //to_text(longest)//" characters, got one of "//to_text(length(i))//"; shorten it", &
+         call get_command_argument(i, length=length)
+         if (length > longest) call fatal_error(error, "expected an argument of at most " &
+            & //to_text(longest)//" characters, got one of "//to_text(length)//"; shorten it", &
             & "dda", i)
          if (allocated(error)) return
+         allocate (character(len=length) :: argument(i)%text)
+         call get_command_argument(i, argument(i)%text)
       end do
-      call parse_command(argument, length, command, error)
+      call parse_command(argument, command, error)
+      if (allocated(error)) error%file = "dda"
    end subroutine read_command
 
    !> Understand the arguments
-   pure subroutine parse_command(argument, length, command, error)
-      character(len=*), intent(in) :: argument(:)  !! The arguments: (n)
-      !> Their lengths, blanks at their ends counted: (n) [characters]
-      integer, intent(in) :: length(:)
+   pure subroutine parse_command(argument, command, error)
+      type(argument_t), intent(in) :: argument(:)  !! The arguments: (n)
       type(command_t), intent(out) :: command
       type(error_t), allocatable, intent(out) :: error
-      character(len=longest), allocatable :: name(:), setting(:)
-      logical :: takes_decks, takes_options
-      integer, allocatable :: name_length(:)
-      integer :: i, names, settings
+      logical :: takes_files, takes_options
+      integer :: i, n
 
       command%cases = ""
-      allocate (name(size(argument) + 1), name_length(size(argument) + 1), setting(size(argument)))
-      names = 0
-      settings = 0
-      takes_decks = .false.
-      if (size(argument) > 0) call take_subcommand(argument(1), command, takes_decks, error)
-      takes_options = takes_decks
+      allocate (command%name(size(argument)), command%setting(0))
+      n = 0
+      takes_files = .false.
+      if (size(argument) > 0) call take_subcommand(argument(1)%text, command, takes_files, error)
+      takes_options = takes_files
       i = 2
       do while (i <= size(argument) .and. .not. allocated(error))
-         if (takes_options) call check_option(argument(i), command, error)
-         if (allocated(error)) then
-            error%line = i
-            exit
-         end if
-         if (takes_options .and. argument(i) == "--") then
-            takes_options = .false.
-         else if (takes_options .and. argument(i) == "--set" .and. i < size(argument)) then
-            settings = settings + 1
-            i = i + 1
-            setting(settings) = argument(i)
-         else if (takes_options .and. (argument(i) == "--help" .or. argument(i) == "-h")) then
-            names = 1
-            name(1) = command%verb
-            name_length(1) = len_trim(command%verb)
-            command%verb = "help"
-            exit
-         else if (takes_options .and. argument(i)(1:1) == "-") then
-            call take_option(argument, length, i, command, error)
-         else
-            names = names + 1
-            name(names) = argument(i)
-            name_length(names) = length(i)
-            if (takes_decks .and. name(names) == "") &
-               & call fatal_error(error, "expected the name of a file, got an empty one; "// &
-               & "give one")
-         end if
+         associate (word => argument(i)%text)
+            if (.not. takes_options .or. index(word, "-") /= 1) then
+               n = n + 1
+               command%name(n)%text = word
+               if (takes_files .and. word == "") call fatal_error(error, &
+                  & "expected the name of a file, got an empty one; give one")
+            else if (word == "--") then
+               takes_options = .false.
+            else if (word == "--help" .or. word == "-h") then
+               n = 1
+               command%name(1)%text = trim(command%verb)
+               command%verb = "help"
+               exit
+            else
+               call take_option(argument, i, command, error)
+            end if
+         end associate
          if (allocated(error)) error%line = i
          i = i + 1
       end do
-      allocate (command%name, source=name(:names))
-      allocate (command%name_length, source=name_length(:names))
-      allocate (command%setting, source=setting(:settings))
-      if (takes_decks .and. .not. allocated(error)) call check_names(command, error)
-      if (.not. allocated(error)) call check_out(command, error)
-      if (allocated(error)) error%file = "dda"
+      command%name = command%name(:n)
+      if (.not. allocated(error)) call check_command(command, takes_files, error)
    end subroutine parse_command
 
-   !> Whether there is anything to read
-   pure subroutine check_names(command, error)
+   !> Whether there is anything to read, and what cut or lines write is one file of theirs
+   pure subroutine check_command(command, takes_files, error)
       type(command_t), intent(in) :: command
+      logical, intent(in) :: takes_files  !! Whether the command reads files
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: ending
 
-      if (command%verb == "help" .or. size(command%name) > 0) return
-      call fatal_error(error, "dda "//trim(command%verb)//" needs the name of a " &
-         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", got " &
-         & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
-   end subroutine check_names
-
-   !> Whether dda cut or dda lines can do what is asked
-   pure subroutine check_out(command, error)
-      type(command_t), intent(in) :: command
-      type(error_t), allocatable, intent(out) :: error
-      integer :: n
-
-      if (allocated(command%out) .and. (command%verb == "cut" .or. command%verb == "lines")) then
-         n = len(command%out)
+      if (takes_files .and. command%verb /= "help" .and. size(command%name) == 0) then
+         call fatal_error(error, "dda "//trim(command%verb)//" needs the name of a " &
+            & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", got " &
+            & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
+      else if (allocated(command%out) .and. any(command%verb == ["cut  ", "lines"])) then
+         ending = command%out(max(len(command%out) - 3, 1):)
          if (size(command%name) > 1) then
             call fatal_error(error, "--out needs a single file of lines, got " &
                & //to_text(size(command%name))//"; cut them one by one", line=1)
-         else if (command%verb == "lines") then
-            if (command%out(max(n - 3, 1):) /= ".geo") call fatal_error(error, &
-               & "--out expected a file that ends in .geo, got '"//shown(command%out)//"'", line=1)
-         else if (all(command%out(max(n - 3, 1):) /= [".vtu", ".csv"])) then
+         else if (command%verb == "lines" .and. ending /= ".geo") then
+            call fatal_error(error, "--out expected a file that ends in .geo, got '" &
+               & //shown(command%out)//"'", line=1)
+         else if (command%verb == "cut" .and. all(ending /= [".vtu", ".csv"])) then
             call fatal_error(error, "--out must be a file that ends in .vtu or .csv, got '" &
                & //shown(command%out)//"'; give it one of these endings", line=1)
          end if
       end if
-   end subroutine check_out
+   end subroutine check_command
 
    !> Understand the first argument
-   pure subroutine take_subcommand(word, command, takes_decks, error)
+   pure subroutine take_subcommand(word, command, takes_files, error)
       character(len=*), intent(in) :: word  !! The argument
       type(command_t), intent(inout) :: command
-      logical, intent(out) :: takes_decks   !! Whether decks and options follow
+      logical, intent(out) :: takes_files   !! Whether files and options follow
       type(error_t), allocatable, intent(out) :: error
 
-      takes_decks = .false.
-      select case (word)
-      case ("--help", "-h", "help")
-         command%verb = "help"
-      case ("--version")
+      takes_files = any(verbs == word)
+      if (takes_files) then
+         command%verb = word
+      else if (word == "--version") then
          command%verb = "version"
-      case ("run", "check", "cut", "lines", "export")
-         command%verb = word(:len(command%verb))
-         takes_decks = .true.
-      case default
+      else if (all(word /= [character(len=6) :: "--help", "-h", "help"])) then
          call fatal_error(error, "expected a subcommand, got '"//shown(trim(word))//"'"// &
             & near_one(trim(word), subcommands)//"; 'dda help' lists all", line=1)
-      end select
+      end if
    end subroutine take_subcommand
 
-   !> Whether a subcommand takes an option that others take
-   pure subroutine check_option(option, command, error)
-      !> An argument; one that no subcommand takes as an option is not judged here
-      character(len=*), intent(in) :: option
-      type(command_t), intent(in) :: command
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: own
-
-      select case (command%verb)
-      case ("run")
-         own = "--out --jobs --set --cases --resume --tight --quiet --help"
-      case ("check")
-         own = "--set --record --quiet --help"
-      case ("cut", "lines")
-         own = "--out --quiet --help"
-      case default
-         own = "--out --set --quiet --help"
-      end select
-      if (all(options /= option) .or. index(own, trim(option)) > 0) return
-      call fatal_error(error, "expected an option of dda "//trim(command%verb)//", got "// &
-         & trim(option)//", which dda "//trim(merge("check", "run  ", option == "--record"))// &
-         & " takes; remove it")
-   end subroutine check_option
-
    !> Understand one option and its value
-   pure subroutine take_option(argument, length, i, command, error)
-      character(len=*), intent(in) :: argument(:)
-      integer, intent(in) :: length(:)
+   pure subroutine take_option(argument, i, command, error)
+      type(argument_t), intent(in) :: argument(:)
       integer, intent(inout) :: i  !! Place of the option in, of its last part out
       type(command_t), intent(inout) :: command
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: name, value
+      integer :: k
       logical :: ok
 
-      select case (argument(i))
+      name = trim(argument(i)%text)
+      k = findloc(option%name == name, .true., dim=1)
+      if (k == 0) then
+         call fatal_error(error, "unknown option "//shown(name)//near_one(name, option%name) &
+            & //"; 'dda help "//trim(command%verb)//"' lists all")
+      else if (index(option(k)%verbs, trim(command%verb)) == 0) then
+         call fatal_error(error, "expected an option of dda "//trim(command%verb)//", got "// &
+            & name//", which dda "//trim(merge("check", "run  ", name == "--record"))// &
+            & " takes; remove it")
+      else if (option(k)%has_value .and. i == size(argument)) then
+         call fatal_error(error, name//" needs a value, got none; 'dda help " &
+            & //trim(command%verb)//"' shows it")
+      end if
+      if (allocated(error)) return
+      if (option(k)%has_value) then
+         i = i + 1
+         value = argument(i)%text
+      end if
+      select case (name)
       case ("--quiet")
          command%quiet = .true.
-         return
       case ("--resume")
          command%resume = .true.
-         return
       case ("--tight")
          command%tight = .true.
-         return
       case ("--record")
          command%record = .true.
-         return
-      case ("--out", "--set", "--jobs", "--cases")
-         if (i == size(argument)) call fatal_error(error, trim(argument(i)) &
-            & //" needs a value, got none; 'dda help "//trim(command%verb)//"' shows it")
-         if (allocated(error)) return
-      case default
-         call fatal_error(error, "unknown option "//shown(trim(argument(i)))// &
-            & near_one(trim(argument(i)), options)//"; 'dda help "//trim(command%verb)// &
-            & "' lists all")
-         return
-      end select
-      i = i + 1
-      if (argument(i - 1) == "--out") then
-         command%out = argument(i)(:length(i))
-         if (command%out == "") call fatal_error(error, "--out must be the name of a folder, "// &
+      case ("--set")
+         command%setting = [character(len=longest) :: command%setting, value]
+      case ("--out")
+         command%out = value
+         if (value == "") call fatal_error(error, "--out must be the name of a folder, "// &
             & "got an empty one; give one, or remove --out")
-      else if (argument(i - 1) == "--cases") then
-         command%cases = argument(i)(:length(i))
-         if (command%cases == "") call fatal_error(error, "--cases must be numbers of cases, "// &
+      case ("--cases")
+         command%cases = value
+         if (value == "") call fatal_error(error, "--cases must be numbers of cases, "// &
             & "got none; write them like 1-4,7")
-      else
-         call read_integer(trim(argument(i)), command%jobs, ok)
+      case ("--jobs")
+         call read_integer(trim(value), command%jobs, ok)
          if (.not. ok .or. command%jobs < 1) call fatal_error(error, &
-            & "--jobs must be a whole number, 1 or more, got '"//shown(trim(argument(i))) &
+            & "--jobs must be a whole number, 1 or more, got '"//shown(trim(value)) &
             & //"'; correct it, or leave it out for 1")
-      end if
+      end select
    end subroutine take_option
-
-   !> Name of a deck or a topic as it was given, blanks at its end included
-   pure function name_of(command, i) result(name)
-      type(command_t), intent(in) :: command
-      integer, intent(in) :: i  !! Place of the name
-      character(len=:), allocatable :: name
-
-      name = command%name(i)(:command%name_length(i))
-   end function name_of
 end module dda_command_line

@@ -158,7 +158,7 @@ contains
 
       status = exit_status%success
       topic = ""
-      if (size(command%name) > 0) topic = trim(command%name(1))
+      if (size(command%name) > 0) topic = trim(command%name(1)%text)
       select case (topic)
       case ("")
          call print_lines(command%screen, general)

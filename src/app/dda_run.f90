@@ -4,7 +4,6 @@ submodule (dda_verbs) dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
-   use dda_command_line, only : name_of
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : choose_cases, n_cases
    use dda_error, only : error_line, fatal_error
@@ -111,7 +110,7 @@ contains
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
-         call run_deck(command, name_of(command, i), deck(i), deck_status)
+         call run_deck(command, command%name(i)%text, deck(i), deck_status)
          status = worst_status(status, deck_status)
       end do
    end procedure run_decks
@@ -199,7 +198,7 @@ contains
       type(terminal_watch_t) :: watch
 
       watch%shown = error_is_terminal() .and. .not. command%quiet
-      call read_deck(name_of(command, number), command%setting, deck, error, watch, &
+      call read_deck(command%name(number)%text, command%setting, deck, error, watch, &
          & command%cases, command%tight)
       if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
       call end_watch(watch)
@@ -214,11 +213,11 @@ contains
       integer :: i
 
       do i = 1, number - 1
-         if (.not. good(i) .or. folder_of(command, name_of(command, i)) &
-            & /= folder_of(command, name_of(command, number))) cycle
+         if (.not. good(i) .or. folder_of(command, command%name(i)%text) &
+            & /= folder_of(command, command%name(number)%text)) cycle
          call fatal_error(error, "expected a deck with a folder of its own, got "// &
-            & folder_of(command, name_of(command, i))//", to which "//name_of(command, i)// &
-            & " writes too; rename one deck", name_of(command, number), 1)
+            & folder_of(command, command%name(i)%text)//", to which "//command%name(i)%text// &
+            & " writes too; rename one deck", command%name(number)%text, 1)
          return
       end do
    end subroutine check_folder
