@@ -7,7 +7,7 @@
 module dda_disk_record
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_error, only : error_t
-   use dda_table_file, only : close_table, open_part, rename_part, table_file_t
+   use dda_table_file, only : close_table, open_table, part_name, rename_part, table_file_t
    use dda_text_file, only : read_text_file
    implicit none
    private
@@ -29,7 +29,7 @@ contains
 
       if (allocated(error)) return
       write (bytes, "(i0)") length
-      call open_part(file, trim(bytes)//" "//start_name(), record, error)
+      call open_table(part_name(file), trim(bytes)//" "//start_name(), record, error)
       call close_table(record, error)
       if (.not. allocated(error)) call rename_part(file, error)
    end subroutine write_disk_record

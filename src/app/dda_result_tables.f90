@@ -1,6 +1,7 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_binary_file, only : sync_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_deck_sweep, only : few_cases, n_cases, swept_texts
    use dda_force_rows, only : bars_header, proof_forces_header, proof_motion_header
@@ -11,9 +12,9 @@ module dda_result_tables
    use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
-   use dda_table_file, only : append_line, close_table, field_number, length_of, &
-      & open_table, remove_file, sum_of, sync_table, table_file_t, without_field
-   use dda_text, only : add_line, bytes_of, growing_text_t, lines_of, to_text
+   use dda_table_file, only : append_line, close_table, field_number, open_table, remove_file, &
+      & table_file_t, without_field
+   use dda_text, only : add_line, bytes_of, fields, growing_text_t, lines_of, to_text
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
       & told_blocks_t
@@ -23,7 +24,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, open_tables, close_tables, write_case, write_waiting, swept_fields
-   public :: left_out, common_length, common_sum, sync_tables
+   public :: left_out, common_total, sync_tables
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -64,9 +65,9 @@ module dda_result_tables
       type(result_table_t) :: at(13)           !! The tables, by their places
       !> Number of the column of results.csv that no two runs agree in
       integer :: seconds = 0
-      !> Bytes of all tables but results.csv and the sizes after the last case
-      integer(int64) :: length = 0
-      integer(int64) :: sum = 0  !! Check sum of their lines
+      !> Bytes of all tables but results.csv and the sizes after the last case, and the check sum of
+      !> their lines: (2)
+      integer(int64) :: total(2) = 0
       !> Lines of the log, the sizes and results.csv that are not written yet
       type(growing_text_t) :: waiting(3)
       integer(int64) :: waiting_sum = 0             !! Check sum of those of the log
@@ -192,8 +193,7 @@ contains
          end associate
          if (allocated(error)) return
       end do
-      tables%length = common_length(tables)
-      tables%sum = common_sum(tables)
+      tables%total = common_total(tables)
       call write_disk_record(tables%disk_file, 0_int64, error)
       if (.not. allocated(error)) call open_table(tables%record_file, record, file, error)
       call close_table(file, error)
@@ -211,10 +211,10 @@ contains
       if (allocated(error)) return
       call system_clock(start, rate)
       do i = size(tables%at), 1, -1
-         call sync_table(tables%at(i)%open, error)
+         call sync_binary(tables%at(i)%open%file, error)
       end do
       if (allocated(error)) return
-      call write_disk_record(tables%disk_file, length_of(tables%at(table%results)%open), error)
+      call write_disk_record(tables%disk_file, tables%at(table%results)%open%length, error)
       call system_clock(end)
       tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
    end subroutine sync_tables
@@ -246,29 +246,21 @@ contains
       end associate
    end function swept_fields
 
-   !> Bytes of all tables but results.csv and the sizes
-   integer(int64) function common_length(tables)
+   !> Bytes of all tables but results.csv and the sizes, and the check sum of the lines that were
+   !> appended to them
+   pure function common_total(tables) result(total)
       type(result_tables_t), intent(in) :: tables
+      integer(int64) :: total(2)  !! Bytes and check sum: (2)
       integer :: i
 
-      common_length = 0
+      total = 0
       do i = 1, size(tables%at)
-         if (i /= table%results .and. i /= table%sizes) &
-            & common_length = common_length + length_of(tables%at(i)%open)
+         if (i == table%results .or. i == table%sizes) cycle
+         associate (file => tables%at(i)%open)
+            total = [total(1) + file%length, add_sums(total(2), file%sum)]
+         end associate
       end do
-   end function common_length
-
-   !> Check sum of the lines that were appended to all tables but results.csv and the sizes
-   pure integer(int64) function common_sum(tables)
-      type(result_tables_t), intent(in) :: tables
-      integer :: i
-
-      common_sum = 0
-      do i = 1, size(tables%at)
-         if (i /= table%results .and. i /= table%sizes) &
-            & common_sum = add_sums(common_sum, sum_of(tables%at(i)%open))
-      end do
-   end function common_sum
+   end function common_total
 
    !> Write the rows of one case, of which pictures, points and proofs are written already. Those of
    !> the log, of how many bytes they are, and of results.csv wait for write_waiting
@@ -281,7 +273,7 @@ contains
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
       character(len=:), allocatable :: log, results
-      integer(int64) :: length, lines_sum, own
+      integer(int64) :: own, total(2)
       integer :: j
 
       if (tables%at(table%joints)%wanted) then
@@ -300,15 +292,12 @@ contains
       log = to_text(row%number)//" "//trim(trim(row%verdict)//" "//remark)
       call add_line(tables%waiting(1), log)
       tables%waiting_sum = add_sums(tables%waiting_sum, line_sum(log))
-      length = common_length(tables) + bytes_of(tables%waiting(1))
-      lines_sum = add_sums(common_sum(tables), tables%waiting_sum)
+      total = common_total(tables) + [int(bytes_of(tables%waiting(1)), int64), tables%waiting_sum]
       results = results_line(row)
-      own = add_sums(lines_sum, line_sum(without_field(results, tables%seconds)))
+      own = add_sums(total(2) - tables%total(2), line_sum(without_field(results, tables%seconds)))
       call add_line(tables%waiting(2), to_text(row%number)//"," &
-         & //to_text(real(length - tables%length, wp))//"," &
-         & //to_text(real(add_sums(own, -tables%sum), wp)))
-      tables%length = length
-      tables%sum = lines_sum
+         & //fields(real([total(1) - tables%total(1), own], wp)))
+      tables%total = total
       call add_line(tables%waiting(3), results)
    end subroutine write_case
 

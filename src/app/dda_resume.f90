@@ -5,26 +5,16 @@
 !> rows cut off by a kill among them, is left out of the tables.
 submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_binary_file, only : sync_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_disk_record, only : trusted_length
    use dda_kinds, only : wp
-   use dda_result_tables, only : common_length, common_sum, result_table_t, sync_tables, table
-   use dda_table_file, only : close_lines, field, field_number, keep_line, n_fields, next_line, &
-      & open_lines, open_part, settle_part, table_lines_t, &
-      & without_field
+   use dda_result_tables, only : common_total, result_table_t, sync_tables, table
+   use dda_table_file, only : close_lines, field, field_number, keep_line, next_line, open_lines, &
+      & open_table, part_name, rename_part, table_lines_t, without_field
    use dda_text, only : read_integer, read_number
    use dda_text_file, only : read_text_file
    implicit none
-
-   !> Where a table has what tells a whole row of a case
-   type :: layout_t
-      !> Number of columns; 0 for the log, which has blanks in place of commas and free remarks
-      integer :: columns = 0
-      integer :: case = 1     !! Column of the case
-      integer :: seconds = 0  !! Column of the seconds of results.csv; 0 in other tables
-      !> Column of the unknowns of results.csv, the last one that is never empty; 0 in other tables
-      integer :: unknowns = 0
-   end type layout_t
 
 contains
 
@@ -48,11 +38,10 @@ contains
       type(result_tables_t), intent(in) :: tables
       logical, intent(out) :: whole(:)  !! Whether it has: (n)
       type(table_lines_t) :: lines
-      type(layout_t) :: layout
       character(len=:), allocatable :: line
       integer(int64) :: bytes(2, size(whole))
       real(wp) :: told(2)
-      integer :: i, number
+      integer :: column, i, number
       logical :: ok(2)
 
       bytes = 0
@@ -60,10 +49,10 @@ contains
          if (tables%at(i)%wanted .and. i /= table%sizes) call add_bytes(tables%at(i), bytes)
       end do
       whole = .false.
-      layout = layout_of(tables%at(table%sizes)%header)
+      column = case_column(tables%at(table%sizes)%header)
       call open_lines(tables%at(table%sizes)%file, lines)
       do
-         call next_row(layout, size(whole), lines, line, number)
+         call next_row(column, size(whole), lines, line, number)
          if (number == 0) exit
          do i = 1, 2
             call read_number(field(line, i + 1), told(i), ok(i))
@@ -79,20 +68,17 @@ contains
       type(result_table_t), intent(in) :: this
       integer(int64), intent(inout) :: bytes(:, :)  !! Bytes and sum: (2, n)
       type(table_lines_t) :: lines
-      type(layout_t) :: layout
       character(len=:), allocatable :: line
-      integer :: number
+      integer :: column, number, seconds
 
-      layout = layout_of(this%header)
+      column = case_column(this%header)
+      seconds = field_number(this%header, "seconds")
       call open_lines(this%file, lines)
       do
-         call next_row(layout, size(bytes, 2), lines, line, number)
+         call next_row(column, size(bytes, 2), lines, line, number)
          if (number == 0) exit
-         if (layout%seconds > 0) then
-            line = without_field(line, layout%seconds)
-         else
-            bytes(1, number) = bytes(1, number) + len(line) + 1
-         end if
+         if (seconds == 0) bytes(1, number) = bytes(1, number) + len(line) + 1
+         line = without_field(line, seconds)
          bytes(2, number) = add_sums(bytes(2, number), line_sum(line))
       end do
       call close_lines(lines)
@@ -105,17 +91,21 @@ contains
       logical, intent(in) :: whole(:)       !! Whether a case is whole in the other tables: (n)
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
-      type(layout_t) :: layout
       character(len=:), allocatable :: line
-      integer :: number, outcome, verdict
+      real(wp) :: seconds
+      integer :: column, number, outcome, verdict
+      logical :: ok
 
-      layout = layout_of(this%header)
+      column = case_column(this%header)
       verdict = field_number(this%header, "verdict")
       call open_lines(this%file, lines, length)
       do
-         call next_row(layout, size(whole), lines, line, number)
+         call next_row(column, size(whole), lines, line, number)
          if (number == 0) exit
          if (finished%case(number) .or. .not. whole(number)) cycle
+         ! what the check sum leaves out
+         call read_number(field(line, field_number(this%header, "seconds")), seconds, ok)
+         if (.not. ok) cycle
          finished%case(number) = .true.
          outcome = merge(2, 1, field(line, verdict) == "undecided")
          finished%count(outcome) = finished%count(outcome) + 1
@@ -132,8 +122,7 @@ contains
             & any(i == [table%results, table%sizes]), finished%case, error)
          if (allocated(error)) return
       end do
-      tables%length = common_length(tables)
-      tables%sum = common_sum(tables)
+      tables%total = common_total(tables)
       call sync_tables(tables, error)
    end procedure reopen_tables
 
@@ -145,39 +134,37 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
-      type(layout_t) :: layout
       logical, allocatable :: wanted(:)
-      integer :: number
+      integer :: column, number
 
-      call open_part(this%file, this%header, this%open, error)
+      call open_table(part_name(this%file), this%header, this%open, error)
       if (allocated(error)) return
       allocate (wanted, source=finished)
-      layout = layout_of(this%header)
+      column = case_column(this%header)
       call open_lines(this%file, lines)
       do
-         call next_row(layout, size(finished), lines, line, number)
+         call next_row(column, size(finished), lines, line, number)
          if (number == 0) exit
          if (wanted(number)) call keep_line(this%open, line)
          if (once) wanted(number) = .false.
       end do
       call close_lines(lines)
-      call settle_part(this%file, this%open, error)
+      ! on the disk first: its name must not outlive its lines
+      call sync_binary(this%open%file, error)
+      if (.not. allocated(error)) call rename_part(this%file, error)
    end subroutine keep_rows
 
-   !> Where a table has what tells a whole row
-   pure type(layout_t) function layout_of(header) result(layout)
+   !> Column of the case in a table; 0 in the log, which has blanks in place of commas
+   pure integer function case_column(header)
       character(len=*), intent(in) :: header  !! First line of the table
 
-      if (index(header, " ") > 0) return
-      layout%columns = n_fields(header)
-      layout%case = field_number(header, "case")
-      layout%seconds = field_number(header, "seconds")
-      layout%unknowns = field_number(header, "unknowns")
-   end function layout_of
+      case_column = field_number(header, "case")
+      if (index(header, " ") > 0) case_column = 0
+   end function case_column
 
-   !> The next whole row of a table, and its case; 0 at the end of the table
-   subroutine next_row(layout, total, lines, line, number)
-      type(layout_t), intent(in) :: layout
+   !> The next row of a table that names a case; 0 at the end of the table
+   subroutine next_row(column, total, lines, line, number)
+      integer, intent(in) :: column                       !! Column of the case
       integer, intent(in) :: total                        !! Number of cases
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable, intent(out) :: line  !! The row
@@ -187,31 +174,25 @@ contains
       do
          number = 0
          call next_line(lines, line, found)
-         if (found) number = case_of(layout, line, total)
+         if (found) number = case_of(column, line, total)
          if (number > 0 .or. .not. found) exit
       end do
    end subroutine next_row
 
-   !> Case that a line belongs to; 0 for one that is no whole row of the table
-   pure integer function case_of(layout, line, total)
-      type(layout_t), intent(in) :: layout
+   !> Case that a line belongs to; 0 for one that names none. Whether the line is whole shows in the
+   !> check sum of the case
+   pure integer function case_of(column, line, total)
+      integer, intent(in) :: column
       character(len=*), intent(in) :: line  !! The line
       integer, intent(in) :: total
-      real(wp) :: seconds
-      integer :: unknowns
       logical :: ok
 
-      if (layout%columns == 0) then
+      if (column == 0) then
          call read_integer(line(:max(0, index(line, " ") - 1)), case_of, ok)
       else
-         ok = n_fields(line) == layout%columns
-         if (ok) call read_integer(field(line, layout%case), case_of, ok)
-         if (ok .and. layout%seconds > 0) call read_number(field(line, layout%seconds), seconds, ok)
-         if (ok .and. layout%unknowns > 0) &
-            & call read_integer(field(line, layout%unknowns), unknowns, ok)
+         call read_integer(field(line, column), case_of, ok)
       end if
-      if (ok) ok = case_of >= 1 .and. case_of <= total
-      if (.not. ok) case_of = 0
+      if (case_of < 1 .or. case_of > total) case_of = 0
    end function case_of
 
 end submodule dda_resume

@@ -265,8 +265,8 @@ contains
       end function next
    end subroutine take_state
 
-   !> Write a file of numbers in the machine's own form, with a check sum at its end; one of that
-   !> name is replaced at once, when the new one is on the disk
+   !> Write a file of numbers in the machine's own form, with a check sum before them; one of
+   !> that name is replaced at once, when the new one is on the disk
    subroutine write_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: title  !! Its first bytes, which tell what it holds
@@ -279,10 +279,11 @@ contains
 
       call open_binary(part_name(file), opened, error)
       if (allocated(error)) return
-      bytes = title//transfer([int(size(whole), int32), int(size(number), int32)], &
-         & repeat(" ", 8))//transfer(whole, repeat(" ", 4*size(whole))) &
+      bytes = transfer([size(whole), size(number)], repeat(" ", 8)) &
+         & //transfer(whole, repeat(" ", 4*size(whole))) &
          & //transfer(number, repeat(" ", 8*size(number)))
-      call append_text(opened, bytes//transfer(crc_32(bytes), repeat(" ", 8)))
+      ! before the numbers: behind them, the sum of the whole file would be the same for all files
+      call append_text(opened, title//transfer(crc_32(bytes), repeat(" ", 8))//bytes)
       call sync_binary(opened, error)
       call close_binary(opened, late)
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
@@ -312,16 +313,14 @@ contains
             & file, 1)
       else
          n = -1
-         if (len(bytes) >= len(title) + 16) n = transfer(bytes(len(title) + 1:), n)
+         at = len(title) + 16
+         if (len(bytes) >= at) n = transfer(bytes(at - 7:), n)
          sound = all(n >= 0)
-         if (sound) sound = len(bytes, int64) == len(title) + 16 + 4*int(n(1), int64) &
-            & + 8*int(n(2), int64)
+         if (sound) sound = len(bytes, int64) == at + 4*int(n(1), int64) + 8*int(n(2), int64)
          if (sound) then
-            at = len(title) + 8 + 4*n(1)
-            whole = transfer(bytes(len(title) + 9:at), 0_int32, n(1))
-            number = transfer(bytes(at + 1:at + 8*n(2)), 0.0_wp, n(2))
-            at = at + 8*n(2)
-            sound = transfer(bytes(at + 1:), 0_int64) == crc_32(bytes(:at))
+            whole = transfer(bytes(at + 1:at + 4*n(1)), 0_int32, n(1))
+            number = transfer(bytes(at + 4*n(1) + 1:), 0.0_wp, n(2))
+            sound = transfer(bytes(at - 15:), 0_int64) == crc_32(bytes(at - 7:))
          end if
          if (.not. sound) call fatal_error(error, "expected a file as it was written, got a "// &
             & "damaged one; write it again", file, 1)

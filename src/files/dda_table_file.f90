@@ -4,23 +4,21 @@ module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
-      & open_binary, sync_binary
+      & open_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_error, only : error_t, fatal_error
    implicit none
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
-   public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
-   public :: sum_of, table_lines_t, open_lines, next_line, close_lines, n_fields, field
-   public :: field_number, without_field
+   public :: keep_line, part_name, rename_part, table_lines_t, open_lines, next_line, close_lines
+   public :: n_fields, field, field_number, without_field
 
    !> An open table
    type :: table_file_t
-      private
       type(binary_file_t) :: file   !! Its file
-      integer(int64) :: length = 0  !! Length of its lines [bytes]
-      integer(int64) :: lines = 0   !! Check sum of the lines that were appended since it was opened
+      integer(int64) :: length = 0  !! Length of its lines, 0 if it is not open [bytes]
+      integer(int64) :: sum = 0     !! Check sum of the lines that were appended since it was opened
    end type table_file_t
 
    interface
@@ -74,32 +72,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (len(line) == 0) return
-      table%lines = add_sums(table%lines, line_sum(line))
+      table%sum = add_sums(table%sum, line_sum(line))
       call keep_line(table, line)
       call flush_binary(table%file, error)
    end subroutine append_line
-
-   !> Write so that every line up to here survives a loss of power
-   subroutine sync_table(table, error)
-      type(table_file_t), intent(in) :: table  !! The table; nothing happens to one that is not open
-      type(error_t), allocatable, intent(inout) :: error
-
-      call sync_binary(table%file, error)
-   end subroutine sync_table
-
-   !> Length of an open table, 0 of one that is not open [bytes]
-   pure integer(int64) function length_of(table)
-      type(table_file_t), intent(in) :: table
-
-      length_of = table%length
-   end function length_of
-
-   !> Check sum of the lines that were appended to a table since it was opened, modulo 2**32
-   pure integer(int64) function sum_of(table)
-      type(table_file_t), intent(in) :: table
-
-      sum_of = table%lines
-   end function sum_of
 
    !> Close a table
    subroutine close_table(table, error)
@@ -111,16 +87,6 @@ contains
       call close_binary(table%file, late)
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
    end subroutine close_table
-
-   !> Begin a table beside the one that it will replace
-   subroutine open_part(file, header, table, error)
-      character(len=*), intent(in) :: file  !! Name of the table
-      character(len=*), intent(in) :: header
-      type(table_file_t), intent(out) :: table
-      type(error_t), allocatable, intent(out) :: error
-
-      call open_table(part_name(file), header, table, error)
-   end subroutine open_part
 
    !> Name of a file that is not whole yet
    pure function part_name(file) result(name)
@@ -138,17 +104,6 @@ contains
       table%length = table%length + len(line) + 1
       call append_text(table%file, line//new_line("a"))
    end subroutine keep_line
-
-   !> Put a table begun beside in the place of the one that it replaces; it stays open
-   subroutine settle_part(file, table, error)
-      character(len=*), intent(in) :: file
-      type(table_file_t), intent(in) :: table
-      type(error_t), allocatable, intent(out) :: error
-
-      ! on the disk first: its name must not outlive its lines
-      call sync_binary(table%file, error)
-      if (.not. allocated(error)) call rename_part(file, error)
-   end subroutine settle_part
 
    !> Give a file begun beside another one the other's name
    subroutine rename_part(file, error)

@@ -70,7 +70,7 @@ def spoil(rng: random.Random, good: bytes) -> bytes:
 def file_of(whole: list[int], number: list[float]) -> bytes:
     """A file of numbers with a true check sum."""
     body = struct.pack(f"<2i{len(whole)}i{len(number)}d", len(whole), len(number), *whole, *number)
-    return TITLE + body + struct.pack("<q", zlib.crc32(TITLE + body))
+    return TITLE + struct.pack("<q", zlib.crc32(body)) + body
 
 
 #: A NaN that a processor told to trap does not even compare
@@ -79,8 +79,8 @@ SIGNALLING = struct.pack("<Q", 0x7FF0000000000001)
 
 def numbers_of(content: bytes) -> tuple[list[int], list[float]]:
     """Whole numbers and numbers of a file."""
-    start = len(TITLE) + 8
-    n_whole, n_number = struct.unpack("<2i", content[len(TITLE):start])
+    start = len(TITLE) + 16
+    n_whole, n_number = struct.unpack("<2i", content[start - 8:start])
     whole = struct.unpack_from(f"<{n_whole}i", content, start)
     return list(whole), list(struct.unpack_from(f"<{n_number}d", content, start + 4 * n_whole))
 
