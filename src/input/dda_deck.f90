@@ -24,7 +24,7 @@ module dda_deck
    public :: deck_t, deck_sweep_t, parameter_t
    public :: ground_record_t
    public :: new_deck, has_group, geometry_of, keeps_velocities, place_of, deck_error, key_error
-   public :: number_or, source_of
+   public :: number_or, refuse, source_of
    public :: add_file_mark, file_beside
    public :: follow_joints, put_number, put_text
    public :: split_name, find_parameter, parameter_name
@@ -200,6 +200,17 @@ contains
 
       call deck_error(error, message, deck, place_of(deck, key))
    end subroutine key_error
+
+   !> Refuse what a key says where it is wrong, unless something was refused before
+   pure subroutine refuse(is_wrong, message, deck, key, error)
+      logical, intent(in) :: is_wrong          !! Whether it is
+      character(len=*), intent(in) :: message  !! What was wanted and what was found
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: key               !! Place of the key in the registry
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (is_wrong .and. .not. allocated(error)) call key_error(error, message, deck, key)
+   end subroutine refuse
 
    !> Remember what a file that a deck names holds
    pure subroutine add_file_mark(mark, deck)

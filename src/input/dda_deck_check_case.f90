@@ -12,7 +12,7 @@ module dda_deck_check_case
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key
    use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, number_or, &
-      & parameter_name, put_number, source_of
+      & parameter_name, put_number, refuse, source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_key, only : full_name
    use dda_model_table, only : model_problem, search_problem
@@ -30,6 +30,7 @@ contains
    pure subroutine check_case(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error  !! The first thing that is wrong
+      integer :: unknowns
 
       call check_model(deck, error)
       if (.not. allocated(error)) call check_use(deck, error)
@@ -42,20 +43,16 @@ contains
       if (.not. keeps_velocities(deck) .and. .not. (deck%value(load_gravity)%number > 0.0_wp &
          & .or. deck%value(material_unit_weight)%given .or. deck%value(scene_analysis)%given &
          & .or. deck%value(scene_kind)%text == "blocks" &
-         & .and. deck%value(analysis_mode)%text /= "limerick")) then
-         call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and "// &
-            "material%unit_weight is not given; give one of them", deck, &
-            deck%value(load_gravity)%place)
-      else if (deck%value(analysis_unknowns)%given &
-         & .and. all(nint(deck%value(analysis_unknowns)%number) /= [3, 6])) then
-         call key_error(error, "analysis%unknowns must be 3 or 6, got " &
-            & //to_text(nint(deck%value(analysis_unknowns)%number))//"; choose one of the two", &
-            & deck, analysis_unknowns)
-      else
-         if (source_of(deck) == "arch") call check_shape(deck, error)
-         if (allocated(error) .or. deck%searched%key == 0) return
-         call check_bracket(deck, error)
-      end if
+         & .and. deck%value(analysis_mode)%text /= "limerick")) call deck_error(error, &
+         & "a static analysis needs a weight: load%gravity is 0 and "// &
+         & "material%unit_weight is not given; give one of them", deck, &
+         & deck%value(load_gravity)%place)
+      unknowns = nint(deck%value(analysis_unknowns)%number)
+      call refuse(deck%value(analysis_unknowns)%given .and. all(unknowns /= [3, 6]), &
+         & "analysis%unknowns must be 3 or 6, got "//to_text(unknowns) &
+         & //"; choose one of the two", deck, analysis_unknowns, error)
+      if (.not. allocated(error) .and. source_of(deck) == "arch") call check_shape(deck, error)
+      if (.not. allocated(error) .and. deck%searched%key > 0) call check_bracket(deck, error)
    end subroutine check_case
 
    !> Check that there is such a model, and that the parameter can be searched in it
@@ -84,52 +81,45 @@ contains
    !> Check that the mode and the geometry have a use for the keys that are given
    pure subroutine check_use(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: mode, problem
-      logical :: moves
-      integer :: key
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: mode
+      logical :: in_time, moves
 
       mode = deck%value(analysis_mode)%text
+      in_time = mode == "dynamic"
       moves = deck%value(analysis_geometry)%text == "current"
-      key = 0
-      if (deck%value(analysis_restitution)%number > 0.0_wp &
-         .and. .not. (mode == "dynamic" .and. moves)) then
-         key = analysis_restitution
-         problem = "restitution needs mode = 'dynamic' and geometry = 'current'"
-      else if (deck%value(analysis_damping)%number > 0.0_wp .and. mode /= "dynamic") then
-         key = analysis_damping
-         problem = "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two"
-      else if (deck%value(analysis_duration)%given .and. mode /= "dynamic") then
-         key = analysis_duration
-         problem = "duration needs mode = 'dynamic': a static run has no time"
-      else if (deck%value(analysis_restart)%given .and. mode /= "dynamic") then
-         key = analysis_restart
-         problem = "analysis%restart needs mode = 'dynamic': a static run comes to rest by itself"
-      else if (deck%value(analysis_start)%text == "static" .and. (mode /= "dynamic" &
-         .or. deck%value(analysis_restart)%given)) then
-         key = analysis_start
-         problem = "start = 'static' needs mode = 'dynamic' and a run from its beginning; remove it"
-      else if (deck%value(analysis_flow)%text == "associated" .and. mode /= "static") then
-         key = analysis_flow
-         problem = "flow = 'associated' needs mode = 'static', got '"//mode// &
-            "'; remove one of the two"
-      else if (deck%value(analysis_unknowns)%given .and. mode == "limerick") then
-         key = analysis_unknowns
-         problem = "analysis%unknowns needs another mode than 'limerick', whose blocks "// &
-            "have 6; remove it"
-      else if (deck%value(output_energy)%flag .and. mode == "limerick") then
-         key = output_energy
-         problem = "output%energy needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (deck%value(output_restart)%flag .and. mode == "limerick") then
-         key = output_restart
-         problem = "output%restart needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (nint(deck%value(output_frames)%number) > 0 .and. .not. (moves .or. mode &
-         & == "limerick")) then
-         key = output_frames
-         problem = "output%frames needs geometry = 'current': in reference geometry no block "// &
-            "moves; change one of the two"
-      end if
-      if (key > 0) call key_error(error, problem, deck, key)
+      associate (value => deck%value)
+         call refuse(value(analysis_restitution)%number > 0.0_wp &
+            & .and. .not. (in_time .and. moves), "restitution needs mode = "// &
+            & "'dynamic' and geometry = 'current'", deck, analysis_restitution, error)
+         call refuse(value(analysis_damping)%number > 0.0_wp .and. .not. in_time, &
+            & "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two", deck, &
+            & analysis_damping, error)
+         call refuse(value(analysis_duration)%given .and. .not. in_time, &
+            & "duration needs mode = 'dynamic': a static run has no time", deck, &
+            & analysis_duration, error)
+         call refuse(value(analysis_restart)%given .and. .not. in_time, "analysis%restart "// &
+            & "needs mode = 'dynamic': a static run comes to rest by itself", deck, &
+            & analysis_restart, error)
+         call refuse(value(analysis_start)%text == "static" .and. (.not. in_time &
+            & .or. value(analysis_restart)%given), "start = 'static' needs mode = 'dynamic' "// &
+            & "and a run from its beginning; remove it", deck, analysis_start, error)
+         call refuse(value(analysis_flow)%text == "associated" .and. mode /= "static", &
+            & "flow = 'associated' needs mode = 'static', got '"//mode//"'; remove one of the "// &
+            & "two", deck, analysis_flow, error)
+         if (mode == "limerick") then
+            call refuse(value(analysis_unknowns)%given, "analysis%unknowns needs another mode "// &
+               & "than 'limerick', whose blocks have 6; remove it", deck, analysis_unknowns, error)
+            call refuse(value(output_energy)%flag, "output%energy needs mode = 'dynamic', got "// &
+               & "'limerick'; remove one of the two", deck, output_energy, error)
+            call refuse(value(output_restart)%flag, "output%restart needs mode = 'dynamic', "// &
+               & "got 'limerick'; remove one of the two", deck, output_restart, error)
+         else
+            call refuse(nint(value(output_frames)%number) > 0 .and. .not. moves, &
+               & "output%frames needs geometry = 'current': in reference geometry no block "// &
+               & "moves; change one of the two", deck, output_frames, error)
+         end if
+      end associate
    end subroutine check_use
 
    !> Check that joints may lose strength by slip
@@ -242,18 +232,14 @@ contains
       real(wp) :: low, high
 
       call search_bracket(deck, low, high)
-      if (.not. low > -huge(low) .or. .not. high < huge(high)) then
-         call key_error(error, "a search for "//parameter_name(deck%searched)// &
-            " needs search%low and search%high, which have no default; give both", deck, &
-            & search_parameter)
-      else if (.not. low < high) then
-         call key_error(error, "search%low must be below search%high, got "//to_text(low)// &
-            " and "//to_text(high)//"; make low the smaller one", deck, &
-            & merge(search_high, search_low, deck%value(search_high)%given))
-      else
-         call check_end(deck, search_low, error)
-         if (.not. allocated(error)) call check_end(deck, search_high, error)
-      end if
+      call refuse(.not. low > -huge(low) .or. .not. high < huge(high), "a search for " &
+         & //parameter_name(deck%searched)//" needs search%low and search%high, which have no "// &
+         & "default; give both", deck, search_parameter, error)
+      call refuse(.not. low < high, "search%low must be below search%high, got "//to_text(low)// &
+         & " and "//to_text(high)//"; make low the smaller one", deck, &
+         & merge(search_high, search_low, deck%value(search_high)%given), error)
+      if (.not. allocated(error)) call check_end(deck, search_low, error)
+      if (.not. allocated(error)) call check_end(deck, search_high, error)
    end subroutine check_bracket
 
    !> Check that the parameter can take one end of the search

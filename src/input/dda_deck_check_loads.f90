@@ -1,7 +1,7 @@
 !> What a deck says of the ground and of what means collapse in time, of live loads, and of the
 !> strength of its blocks
 module dda_deck_check_loads
-   use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of
+   use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of, refuse
    use dda_deck_keys, only : deck_key
    use dda_deck_key, only : full_name
    use dda_error, only : error_t
@@ -128,9 +128,10 @@ contains
       measured = 0
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
       point = nint(deck%value(analysis_collapse_point)%number)
-      if (point > measured) call key_error(error, &
+      call refuse(point > measured, &
          & "analysis%collapse_point needs a measured point, from 1 to "//to_text(measured) &
-         & //", got "//to_text(point)//"; add 'measure' lines", deck, analysis_collapse_point)
+         & //", got "//to_text(point)//"; add 'measure' lines", deck, analysis_collapse_point, &
+         & error)
       if (allocated(error)) return
       call check_wear(deck, error)
       if (allocated(error)) return
@@ -172,22 +173,19 @@ contains
    pure subroutine check_search_in_time(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: problem
 
       if (deck%value(analysis_mode)%text /= "dynamic") return
-      problem = ""
-      if (deck%value(analysis_geometry)%text /= "current") then
-         problem = "a search with mode = 'dynamic' needs geometry = 'current', where blocks "// &
-            & "move, got 'reference'; change it"
-      else if (.not. deck%value(analysis_duration)%given) then
-         problem = "a search with mode = 'dynamic' needs analysis%duration, in which "// &
-            & "blocks can collapse, got none; give it"
-      else if (deck%value(analysis_restart)%given) then
-         problem = "a search needs a run from its beginning, got analysis%restart; remove it"
-      else if (.not. (deck%value(search_low)%given .and. deck%value(search_high)%given)) then
-         problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
-      end if
-      if (len(problem) > 0) call key_error(error, problem, deck, search_parameter)
+      call refuse(deck%value(analysis_geometry)%text /= "current", "a search with mode = "// &
+         & "'dynamic' needs geometry = 'current', where blocks move, got 'reference'; change it", &
+         & deck, search_parameter, error)
+      call refuse(.not. deck%value(analysis_duration)%given, "a search with mode = 'dynamic' "// &
+         & "needs analysis%duration, in which blocks can collapse, got none; give it", deck, &
+         & search_parameter, error)
+      call refuse(deck%value(analysis_restart)%given, "a search needs a run from its "// &
+         & "beginning, got analysis%restart; remove it", deck, search_parameter, error)
+      call refuse(.not. all(deck%value([search_low, search_high])%given), "a search with "// &
+         & "mode = 'dynamic' needs search%low and search%high; give both", deck, &
+         & search_parameter, error)
    end subroutine check_search_in_time
 
    !> Check what means collapse in a dynamic run
@@ -197,23 +195,18 @@ contains
       integer :: key
 
       do key = analysis_collapse_rotation_deg, analysis_collapse_point
-         if (.not. deck%value(key)%given) cycle
-         if (deck%value(analysis_mode)%text == "dynamic" &
-            & .and. deck%value(analysis_geometry)%text == "current") cycle
-         call key_error(error, full_name(deck_key(key))//" needs mode = 'dynamic' and "// &
-            & "geometry = 'current'; remove it", deck, key)
-         return
+         call refuse(deck%value(key)%given .and. (deck%value(analysis_mode)%text /= "dynamic" &
+            & .or. deck%value(analysis_geometry)%text /= "current"), full_name(deck_key(key)) &
+            & //" needs mode = 'dynamic' and geometry = 'current'; remove it", deck, key, error)
       end do
       if (.not. deck%value(analysis_collapse_point)%given) return
-      if (deck%value(scene_kind)%text /= "blocks") then
-         call key_error(error, "analysis%collapse_point needs a file of blocks with "// &
-            & "measured points, got kind = '"//deck%value(scene_kind)%text//"'", &
-            & deck, analysis_collapse_point)
-      else if (.not. deck%value(analysis_collapse_displacement)%given) then
-         call key_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
-            & "displacement of that point that means collapse, got none; give it", deck, &
-            & analysis_collapse_point)
-      end if
+      call refuse(deck%value(scene_kind)%text /= "blocks", "analysis%collapse_point needs a "// &
+         & "file of blocks with measured points, got kind = '"//deck%value(scene_kind)%text &
+         & //"'", deck, analysis_collapse_point, error)
+      call refuse(.not. deck%value(analysis_collapse_displacement)%given, &
+         & "analysis%collapse_point needs collapse_displacement, the "// &
+         & "displacement of that point that means collapse, got none; give it", deck, &
+         & analysis_collapse_point, error)
    end subroutine check_collapse
 
    !> Check the live loads of one case
@@ -226,12 +219,11 @@ contains
       if (has_group(deck, live_group)) call check_lists(deck, error)
       if (.not. allocated(error) .and. has_group(deck, vehicle_group)) &
          & call check_vehicle(deck, error)
-      if (allocated(error)) return
       pushed = deck%searched%key == load_horizontal_coefficient &
          & .or. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
-      if (deck%value(load_live_horizontal)%flag .and. .not. pushed) &
-         & call key_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
-         & "than 0, got 0; give one, or remove live_horizontal", deck, load_live_horizontal)
+      call refuse(deck%value(load_live_horizontal)%flag .and. .not. pushed, &
+         & "load%live_horizontal needs a horizontal_coefficient other "// &
+         & "than 0, got 0; give one, or remove live_horizontal", deck, load_live_horizontal, error)
    end subroutine check_live
 
    !> Check the lists of &live
