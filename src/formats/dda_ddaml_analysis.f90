@@ -15,7 +15,7 @@ contains
 
    !> Read the analysis of a tree
    module procedure read_ddaml_analysis
-      integer :: part, at
+      integer :: part
 
       analysis%file = tree%file
       ! what an absent element means to the original
@@ -25,128 +25,109 @@ contains
       if (.not. allocated(error)) call check_elements(tree, part, analysis_form, warnings, error)
       if (allocated(error)) return
       ! weights that are not given need the gravity
-      at = find_child(tree, part, "Gravaccel")
-      if (at > 0) call number_attribute(tree, at, "value", 0.0_wp, analysis%gravity, error)
+      call number_attribute(tree, part, "Gravaccel", "value", 0.0_wp, analysis%gravity, error)
       if (.not. allocated(error)) call read_properties(tree, part, analysis, warnings, error)
       if (.not. allocated(error)) call read_loads(tree, part, analysis, error)
-      if (.not. allocated(error)) call read_children(tree, part, analysis, warnings, error)
+      if (.not. allocated(error)) call read_switches(tree, part, analysis, warnings, error)
+      call read_bounds(tree, part, analysis, error)
+      call read_constants(tree, part, analysis, error)
       if (.not. allocated(error)) call check_complete(tree, part, analysis, warnings, error)
    end procedure read_ddaml_analysis
 
-   !> Read what an element holds
-   pure recursive subroutine read_children(tree, outer, analysis, warnings, error)
+   !> Read the constants of the scheme
+   pure subroutine read_constants(tree, part, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: outer  !! Place of the element
+      integer, intent(in) :: part  !! Place of Analysis
       type(limerick_analysis_t), intent(inout) :: analysis
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
       integer :: at
 
-      at = first_child(tree, outer)
-      do while (at > 0 .and. .not. allocated(error))
-         call read_element(tree, at, analysis, warnings, error)
-         at = next_sibling(tree, at)
-      end do
-   end subroutine read_children
+      at = find_child(tree, part, "AConstants")
+      if (at == 0) return
+      call number_attribute(tree, at, "Openclose", "value", 0.0_wp, analysis%close_ratio, error)
+      call number_attribute(tree, at, "Opencriteria", "value", 0.0_wp, analysis%open_ratio, error)
+      call number_attribute(tree, at, "NormSpringPen", "value", 1.0e-30_wp, &
+         & analysis%penetration_ratio, error)
+      call number_attribute(tree, at, "AngleOverlap", "value", 0.0_wp, analysis%overlap_deg, error)
+      call number_attribute(tree, at, "ShearNormRatio", "value", 1.0e-30_wp, &
+         & analysis%stiffness_ratio, error)
+   end subroutine read_constants
 
-   !> Read one child of Analysis, or of its constants of the scheme
-   pure recursive subroutine read_element(tree, at, analysis, warnings, error)
+   !> Read what bounds a run
+   pure subroutine read_bounds(tree, part, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at  !! Place of the child
+      integer, intent(in) :: part
       type(limerick_analysis_t), intent(inout) :: analysis
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: at, i
+      character(len=*), parameter :: damping(2) = ["Contactdamping", "ContactDamping"]
+      character(len=*), parameter :: limit(2) = ["Opencloselimit", "OCLimit       "]
 
-      associate (element => tree%element(at))
-         select case (element%name)
-         case ("Analysistype", "Rotation", "Gravity", "Autotimestep", "Autopenalty", "Planestrain")
-            call read_switch(tree, at, analysis, warnings, error)
-         case ("AConstants")
-            call read_children(tree, at, analysis, warnings, error)
-         case ("Openclose")
-            call number_attribute(tree, at, "value", 0.0_wp, analysis%close_ratio, error)
-         case ("Opencriteria")
-            call number_attribute(tree, at, "value", 0.0_wp, analysis%open_ratio, error)
-         case ("NormSpringPen")
-            call number_attribute(tree, at, "value", 1.0e-30_wp, analysis%penetration_ratio, error)
-         case ("AngleOverlap")
-            call number_attribute(tree, at, "value", 0.0_wp, analysis%overlap_deg, error)
-         case ("ShearNormRatio")
-            call number_attribute(tree, at, "value", 1.0e-30_wp, analysis%stiffness_ratio, error)
-         case ("Numtimesteps")
-            call whole_attribute(tree, at, "timesteps", 1, analysis%max_steps, error)
-         case ("Maxtimestep")
-            call number_attribute(tree, at, "maxtimestep", 0.0_wp, analysis%time_step, error)
-         case ("Mintimestep")
-            call number_attribute(tree, at, "mintimestep", 0.0_wp, analysis%min_time_step, error)
-         case ("Maxdisplacement")
-            call number_attribute(tree, at, "maxdisplacement", 0.0_wp, &
-               & analysis%max_displacement_ratio, error)
-         case ("Opencloselimit", "OCLimit")
-            call whole_attribute(tree, at, "maxopenclose", 1, analysis%open_close_limit, error)
-         case ("Saveinterval")
-            analysis%save_interval = 10
-            if (attribute_place(tree, at, "step") > 0) &
-               & call whole_attribute(tree, at, "step", 0, analysis%save_interval, error)
-            if (analysis%save_interval == 0) analysis%save_interval = 10
-         case ("Contactdamping", "ContactDamping")
-            call number_attribute(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
-         case ("Gravaccel", "Writevertices")
-         end select
-      end associate
-   end subroutine read_element
-
-   !> Read an element that chooses
-   pure subroutine read_switch(tree, at, analysis, warnings, error)
-      type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at  !! Place of the element
-      type(limerick_analysis_t), intent(inout) :: analysis
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
-      logical :: turned_on
-
-      select case (tree%element(at)%name)
-      case ("Analysistype")
-         call choose(tree, at, "type", "dynamic", "static", analysis%dynamic, error)
-      case ("Rotation")
-         call choose(tree, at, "type", "exact secondorder", "linear", analysis%exact_rotation, &
+      call whole_attribute(tree, part, "Numtimesteps", "timesteps", 1, analysis%max_steps, error)
+      call number_attribute(tree, part, "Maxtimestep", "maxtimestep", 0.0_wp, analysis%time_step, &
+         & error)
+      call number_attribute(tree, part, "Mintimestep", "mintimestep", 0.0_wp, &
+         & analysis%min_time_step, error)
+      call number_attribute(tree, part, "Maxdisplacement", "maxdisplacement", 0.0_wp, &
+         & analysis%max_displacement_ratio, error)
+      do i = 1, 2
+         call whole_attribute(tree, part, trim(limit(i)), "maxopenclose", 1, &
+            & analysis%open_close_limit, error)
+         call number_attribute(tree, part, damping(i), "value", 0.0_wp, analysis%contact_damping, &
             & error)
-      case ("Gravity")
-         call choose(tree, at, "flag", "yes", "no", turned_on, error)
-         if (turned_on) call read_gravity(tree, at, analysis, error)
-      case ("Autotimestep")
-         call choose(tree, at, "flag", "yes", "no", analysis%auto_time_step, error)
-      case ("Planestrain")
-         call choose(tree, at, "flag", "yes", "no", analysis%plane_strain, error)
-      case ("Autopenalty")
-         call choose(tree, at, "flag", "yes", "no", analysis%auto_penalty, error)
-         if (allocated(error)) return
-         if (attribute_place(tree, at, "pfactor") > 0) then
-            call number_attribute(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
-         else
-            call add_warning(warnings, "Autopenalty needs the attribute pfactor: using 50", &
-               & tree%file, tree%element(at)%row)
-         end if
-      end select
-   end subroutine read_switch
+      end do
+      at = find_child(tree, part, "Saveinterval")
+      if (at == 0) return
+      analysis%save_interval = 10
+      if (attribute_place(tree, at, "step") > 0) &
+         & call whole_attribute(tree, part, "Saveinterval", "step", 0, analysis%save_interval, &
+         & error)
+      if (analysis%save_interval == 0) analysis%save_interval = 10
+   end subroutine read_bounds
+
+   !> Read the elements that choose
+   pure subroutine read_switches(tree, part, analysis, warnings, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: part
+      type(limerick_analysis_t), intent(inout) :: analysis
+      type(warnings_t), intent(inout) :: warnings
+      type(error_t), allocatable, intent(inout) :: error
+      logical :: turned_on
+      integer :: at
+
+      call choose(tree, part, "Analysistype", "type", "dynamic", "static", analysis%dynamic, error)
+      call choose(tree, part, "Rotation", "type", "exact secondorder", "linear", &
+         & analysis%exact_rotation, error)
+      turned_on = .false.
+      call choose(tree, part, "Gravity", "flag", "yes", "no", turned_on, error)
+      if (turned_on) call read_gravity(tree, find_child(tree, part, "Gravity"), analysis, error)
+      call choose(tree, part, "Autotimestep", "flag", "yes", "no", analysis%auto_time_step, error)
+      call choose(tree, part, "Planestrain", "flag", "yes", "no", analysis%plane_strain, error)
+      call choose(tree, part, "Autopenalty", "flag", "yes", "no", analysis%auto_penalty, error)
+      at = find_child(tree, part, "Autopenalty")
+      if (allocated(error) .or. at == 0) return
+      if (attribute_place(tree, at, "pfactor") > 0) then
+         call number_attribute(tree, part, "Autopenalty", "pfactor", 0.0_wp, &
+            & analysis%penalty_factor, error)
+      else
+         call add_warning(warnings, "Autopenalty needs the attribute pfactor: using 50", &
+            & tree%file, tree%element(at)%row)
+      end if
+   end subroutine read_switches
 
    !> Read the phase that turns gravity on
    pure subroutine read_gravity(tree, at, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at
+      integer, intent(in) :: at  !! Place of Gravity
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(inout) :: error
-      character(len=*), parameter :: tolerance(2) = ["Normaltolerance", "Sheartolerance "]
-      integer :: child, i
 
       analysis%gravity_steps = usual_gravity_steps
-      child = find_child(tree, at, "Gravitysteplimit")
-      if (child > 0) call whole_attribute(tree, child, "val", 1, analysis%gravity_steps, error)
-      do i = 1, 2
-         child = find_child(tree, at, trim(tolerance(i)))
-         if (child > 0) call number_attribute(tree, child, "val", 0.0_wp, &
-            & analysis%gravity_tolerance(i), error)
-      end do
+      call whole_attribute(tree, at, "Gravitysteplimit", "val", 1, analysis%gravity_steps, error)
+      call number_attribute(tree, at, "Normaltolerance", "val", 0.0_wp, &
+         & analysis%gravity_tolerance(1), error)
+      call number_attribute(tree, at, "Sheartolerance", "val", 0.0_wp, &
+         & analysis%gravity_tolerance(2), error)
    end subroutine read_gravity
 
    !> Read the materials of blocks and joints

@@ -61,35 +61,42 @@ contains
          & call fatal_error(error, message, tree%file, tree%element(at)%row)
    end subroutine element_error
 
-   !> Read an attribute that chooses between two meanings
-   pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
+   !> Read an attribute that chooses between two meanings, of an element that may be there
+   pure subroutine choose(tree, outer, element, name, words_for_yes, word_for_no, yes, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at
+      integer, intent(in) :: outer                        !! Place of the outer element
+      character(len=*), intent(in) :: element             !! Name of the element
       character(len=*), intent(in) :: name
       character(len=*), intent(in) :: words_for_yes       !! Words that mean yes, parted by blanks
       character(len=*), intent(in) :: word_for_no         !! The word that means no
-      logical, intent(out) :: yes                         !! The choice
+      logical, intent(inout) :: yes                       !! The choice
       type(error_t), allocatable, intent(inout) :: error  !! An earlier one, another word, or none
       character(len=:), allocatable :: word
+      integer :: at
 
+      at = find_child(tree, outer, element)
+      if (at == 0) return
       word = attribute_of(tree, at, name)
       yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
       if (.not. yes .and. word /= word_for_no) call element_error(tree, at, "the attribute " &
-         & //name//" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
+         & //name//" of "//quoted(element)//" must be one of "//words_for_yes//" " &
          & //word_for_no//", got "//quoted(word)//"; choose one", error)
    end subroutine choose
 
-   !> Read an attribute that is a number
-   pure subroutine number_attribute(tree, at, name, low, value, error)
+   !> Read an attribute that is a number, of an element that may be there
+   pure subroutine number_attribute(tree, outer, element, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at
-      character(len=*), intent(in) :: name
+      integer, intent(in) :: outer
+      character(len=*), intent(in) :: element, name
       real(wp), intent(in) :: low       !! Smallest value
       real(wp), intent(inout) :: value  !! The number
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
       real(wp) :: number(1)
+      integer :: at
 
+      at = find_child(tree, outer, element)
+      if (at == 0) return
       call attribute_words(tree, at, name, words, error)
       call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
       if (allocated(error)) return
@@ -98,16 +105,19 @@ contains
          & //" or more", value, tree%file, tree%element(at)%row, error)
    end subroutine number_attribute
 
-   !> Read an attribute that is a whole number
-   pure subroutine whole_attribute(tree, at, name, low, value, error)
+   !> Read an attribute that is a whole number, of an element that may be there
+   pure subroutine whole_attribute(tree, outer, element, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at
-      character(len=*), intent(in) :: name
+      integer, intent(in) :: outer
+      character(len=*), intent(in) :: element, name
       integer, intent(in) :: low       !! Smallest value
       integer, intent(inout) :: value  !! The number
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
+      integer :: at
 
+      at = find_child(tree, outer, element)
+      if (at == 0) return
       call attribute_words(tree, at, name, words, error)
       call take_whole(words, "the attribute "//name, low, largest_whole, value, error)
    end subroutine whole_attribute
@@ -120,17 +130,15 @@ contains
       type(analysis_material_t), intent(out) :: material
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
-      real(wp) :: one(1), unused(1)
+      real(wp) :: value(4), unused(1)
 
-      call read_child(tree, at, "Unitmass", .true., one, warnings, error)
-      material%density = one(1)
-      call read_child(tree, at, "Youngsmod", .true., one, warnings, error)
-      material%young = one(1)
-      call read_child(tree, at, "Poissonratio", .true., one, warnings, error)
-      material%poisson = one(1)
-      one = min(material%density, largest_value)*gravity
-      call read_child(tree, at, "Unitweight", .false., one, warnings, error)
-      material%unit_weight = one(1)
+      value = 0.0_wp
+      call read_child(tree, at, "Unitmass", .true., value(1:1), warnings, error)
+      value(2) = min(value(1), largest_value)*gravity
+      call read_child(tree, at, "Youngsmod", .true., value(3:3), warnings, error)
+      call read_child(tree, at, "Poissonratio", .true., value(4:4), warnings, error)
+      call read_child(tree, at, "Unitweight", .false., value(2:2), warnings, error)
+      material = analysis_material_t(value(1), value(2), value(3), value(4))
       if (.not. allocated(error)) call check_weight(tree, at, gravity, material, warnings)
       unused = 0.0_wp
       call read_child(tree, at, "Damping", .false., unused, warnings, error)
@@ -164,16 +172,13 @@ contains
       type(limerick_joint_t), intent(out) :: joint
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
-      real(wp) :: one(1)
+      real(wp) :: value(3)
 
-      call read_child(tree, at, "Friction", .true., one, warnings, error)
-      joint%friction_deg = one(1)
-      one = 0.0_wp
-      call read_child(tree, at, "Cohesion", .false., one, warnings, error)
-      joint%cohesion = one(1)
-      one = 0.0_wp
-      call read_child(tree, at, "Tensile", .false., one, warnings, error)
-      joint%tension = one(1)
+      value = 0.0_wp
+      call read_child(tree, at, "Friction", .true., value(1:1), warnings, error)
+      call read_child(tree, at, "Cohesion", .false., value(2:2), warnings, error)
+      call read_child(tree, at, "Tensile", .false., value(3:3), warnings, error)
+      joint = limerick_joint_t(value(1), value(2), value(3))
       call check_joint(joint, tree%file, tree%element(at)%row, error)
    end subroutine read_joint
 

@@ -16,18 +16,12 @@ module dda_plain_files
    public :: read_plain_geometry, read_plain_analysis, check_material, check_joint, check_steps
    public :: largest_value
 
-   !> How many things of each kind a file announces
-   type :: counts_t
-      integer :: lines = 0           !! Lines, boundary lines among them
-      integer :: boundary = 0        !! Boundary lines
-      integer :: material_lines = 0  !! Material lines
-      integer :: bolts = 0           !! Bolts
-      integer :: fixed = 0           !! Fixed points or lines
-      integer :: load = 0            !! Load points
-      integer :: measured = 0        !! Measured points
-      integer :: hole = 0            !! Hole points
-   end type counts_t
-
+   !> What a file announces the numbers of
+   character(len=*), parameter :: announced(8) = [character(len=45) :: "lines", &
+      & "boundary lines (counted among the lines)", "material lines", "bolts", "fixed points", &
+      & "load points", "measured points", "hole points"]
+   !> Most things of a kind
+   integer, parameter :: most_things = 100000000
    !> Largest magnitude of any number of an analysis
    real(wp), parameter :: largest_value = 1.0e30_wp
    !> Most materials of a kind
@@ -45,7 +39,7 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
       type(word_list_t) :: words
-      type(counts_t) :: n
+      integer :: k, n(size(announced))
 
       call new_line_model(model)
       model%file = file
@@ -54,37 +48,21 @@ contains
       call check_number(model%edge_node_ratio >= 0.0_wp .and. model%edge_node_ratio <= 0.5_wp, &
          & "the edge-node distance ratio e00 must be from 0 to 0.5", model%edge_node_ratio, file, &
          & words%row(1), error)
-      call read_counts(words, n, error)
+      do k = 1, size(n)
+         call take_whole(words, "the number of "//trim(announced(k)), 0, &
+            & merge(n(1), most_things, k == 2), n(k), error)
+      end do
       if (allocated(error)) return
-      model%n_boundary = n%boundary
-      call read_records(words, "line", n%lines, 4, .true., model%line, error)
-      call read_records(words, "material line", n%material_lines, 4, .true., model%material_line, &
-         & error)
-      call read_bolts(words, n%bolts, model, error)
-      call read_records(words, "fixed point", n%fixed, 4, .false., model%fixed, error)
-      call read_records(words, "load point", n%load, 2, .false., model%load, error)
-      call read_records(words, "measured point", n%measured, 2, .false., model%measured, error)
-      call read_records(words, "hole point", n%hole, 2, .false., model%hole, error)
+      model%n_boundary = n(2)
+      call read_records(words, "line", n(1), 4, .true., model%line, error)
+      call read_records(words, "material line", n(3), 4, .true., model%material_line, error)
+      call read_bolts(words, n(4), model, error)
+      call read_records(words, "fixed point", n(5), 4, .false., model%fixed, error)
+      call read_records(words, "load point", n(6), 2, .false., model%load, error)
+      call read_records(words, "measured point", n(7), 2, .false., model%measured, error)
+      call read_records(words, "hole point", n(8), 2, .false., model%hole, error)
       if (.not. allocated(error)) call warn_of_rest(words, "last record", warnings)
    end subroutine read_plain_geometry
-
-   !> Read how many things there are
-   pure subroutine read_counts(words, n, error)
-      type(word_list_t), intent(inout) :: words
-      type(counts_t), intent(out) :: n
-      type(error_t), allocatable, intent(inout) :: error
-      integer, parameter :: most = 100000000
-
-      call take_whole(words, "the number of lines", 0, most, n%lines, error)
-      call take_whole(words, "the number of boundary lines (counted among the lines)", 0, n%lines, &
-         & n%boundary, error)
-      call take_whole(words, "the number of material lines", 0, most, n%material_lines, error)
-      call take_whole(words, "the number of bolts", 0, most, n%bolts, error)
-      call take_whole(words, "the number of fixed points", 0, most, n%fixed, error)
-      call take_whole(words, "the number of load points", 0, most, n%load, error)
-      call take_whole(words, "the number of measured points", 0, most, n%measured, error)
-      call take_whole(words, "the number of hole points", 0, most, n%hole, error)
-   end subroutine read_counts
 
    !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
    pure subroutine read_bolts(words, n, model, error)

@@ -21,17 +21,6 @@ module dda_read_limerick
    public :: read_geometry, read_analysis, check_materials, read_ddaml_analysis
    public :: read_ddaml_geometry
 
-   !> Forms that a file can have
-   type :: form_enum
-      integer :: plain = 1     !! Numbers between blanks
-      integer :: ddaml = 2     !! XML
-      integer :: extended = 3  !! A form that the original announces and does not read either
-      integer :: blank = 4     !! Nothing but blanks
-   end type form_enum
-
-   !> Names of the forms
-   type(form_enum), parameter :: form = form_enum()
-
    interface
 
       !> Read the analysis of a tree
@@ -45,15 +34,8 @@ module dda_read_limerick
 
    end interface
 
-   !> What the type of an entity of a list says
-   type :: type_enum
-      integer :: none = 0               !! There is none
-      integer :: material = 1           !! Number of a material
-      integer :: material_or_first = 2  !! Likewise; the first material where it is left out
-   end type type_enum
-
-   !> Names of them
-   type(type_enum), parameter :: type_is = type_enum()
+   !> Material of an entity that says none: it has none, it has the first one, or it must say it
+   integer, parameter :: no_material = 0, first_material = 1, own_material = -1
 
 contains
 
@@ -65,10 +47,11 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! What is wrong, with file and line
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
+      logical :: is_ddaml
 
-      call read_form(file, text, tree, error)
+      call read_form(file, text, tree, is_ddaml, error)
       if (allocated(error)) return
-      if (form_of(text) == form%ddaml) then
+      if (is_ddaml) then
          call read_ddaml_geometry(tree, model, warnings, error)
       else
          call read_plain_geometry(text, file, model, warnings, error)
@@ -83,10 +66,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
+      logical :: is_ddaml
 
-      call read_form(file, text, tree, error)
+      call read_form(file, text, tree, is_ddaml, error)
       if (allocated(error)) return
-      if (form_of(text) == form%ddaml) then
+      if (is_ddaml) then
          call read_ddaml_analysis(tree, analysis, warnings, error)
       else
          call read_plain_analysis(text, file, analysis, warnings, error)
@@ -94,23 +78,28 @@ contains
    end subroutine read_analysis
 
    !> Read the text of a file, in DDAML as a tree too
-   subroutine read_form(file, text, tree, error)
+   subroutine read_form(file, text, tree, is_ddaml, error)
       character(len=*), intent(in) :: file
       character(len=:), allocatable, intent(out) :: text  !! The file's text
       type(xml_tree_t), intent(out) :: tree
+      logical, intent(out) :: is_ddaml                    !! Whether it is in DDAML
       type(error_t), allocatable, intent(out) :: error
+      integer :: first
 
+      is_ddaml = .false.
       call read_text_file(file, text, error)
       if (allocated(error)) return
-      select case (form_of(text))
-      case (form%ddaml)
+      first = verify(text, " "//achar(9)//achar(10))
+      if (first == 0) first = len(text) + 1
+      is_ddaml = index(text(first:), "<") == 1
+      if (is_ddaml) then
          call parse_xml(text, file, tree, error)
-      case (form%blank)
+      else if (first > len(text)) then
          call fatal_error(error, "the file is blank; write numbers or XML into it", file, 1)
-      case (form%extended)
+      else if (index(text(first:), "#!0xDDA-v1") == 1) then
          call fatal_error(error, "expected the plain form or DDAML, got the extended form " &
             & //"#!0xDDA-v1, which is not read; save it as one of the two", file, 1)
-      end select
+      end if
    end subroutine read_form
 
    !> Whether an analysis has a material for each block and joint, and a force for each load point
@@ -153,19 +142,6 @@ contains
          return
       end do
    end subroutine check_numbers
-
-   !> Form of a file
-   pure integer function form_of(text)
-      character(len=*), intent(in) :: text  !! Its text
-      integer :: first
-
-      first = verify(text, " "//achar(9)//achar(10))
-      form_of = form%blank
-      if (first == 0) return
-      form_of = form%plain
-      if (text(first:first) == "<") form_of = form%ddaml
-      if (index(text(first:), "#!0xDDA-v1") == 1) form_of = form%extended
-   end function form_of
 
    !> Read the geometry of a tree
    pure subroutine read_ddaml_geometry(tree, model, warnings, error)
@@ -211,21 +187,21 @@ contains
          case ("Edgenodedist")
             call read_ratio(tree, at, model%edge_node_ratio, error)
          case ("Jointlist")
-            call read_entities(tree, at, type_is%material, model%line, warnings, error)
+            call read_entities(tree, at, own_material, model%line, warnings, error)
          case ("Boundlist")
-            call read_entities(tree, at, type_is%material_or_first, boundary, warnings, error)
+            call read_entities(tree, at, first_material, boundary, warnings, error)
          case ("Matlinelist")
-            call read_entities(tree, at, type_is%material, model%material_line, warnings, error)
+            call read_entities(tree, at, own_material, model%material_line, warnings, error)
          case ("Fixedpointlist")
-            call read_entities(tree, at, type_is%none, model%fixed, warnings, error)
+            call read_entities(tree, at, no_material, model%fixed, warnings, error)
          case ("Loadpointlist")
-            call read_entities(tree, at, type_is%none, model%load, warnings, error)
+            call read_entities(tree, at, no_material, model%load, warnings, error)
          case ("Measuredpointlist")
-            call read_entities(tree, at, type_is%none, model%measured, warnings, error)
+            call read_entities(tree, at, no_material, model%measured, warnings, error)
          case ("Holepointlist")
-            call read_entities(tree, at, type_is%none, model%hole, warnings, error)
+            call read_entities(tree, at, no_material, model%hole, warnings, error)
          case ("Seismicpointlist")
-            call read_entities(tree, at, type_is%none, model%seismic, warnings, error)
+            call read_entities(tree, at, no_material, model%seismic, warnings, error)
             if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
                & "seismic points have no effect", tree%file, element%row)
          case ("Boltlist")
@@ -250,10 +226,11 @@ contains
    end subroutine read_ratio
 
    !> Read the elements of a list
-   pure subroutine read_entities(tree, list, type, entities, warnings, error)
+   pure subroutine read_entities(tree, list, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: list  !! Place of the list
-      integer, intent(in) :: type  !! What the type of its elements says
+      !> Material of those that say none, as above
+      integer, intent(in) :: usual
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -261,7 +238,7 @@ contains
 
       at = first_child(tree, list)
       do while (at > 0 .and. .not. allocated(error))
-         call read_entity(tree, at, type, entities, warnings, error)
+         call read_entity(tree, at, usual, entities, warnings, error)
          at = next_sibling(tree, at)
       end do
    end subroutine read_entities
@@ -283,7 +260,7 @@ contains
       call new_entities(bolt, 0)
       at = first_child(tree, list)
       do while (at > 0)
-         call read_entity(tree, at, type_is%none, bolt, warnings, error)
+         call read_entity(tree, at, no_material, bolt, warnings, error)
          property = -1.0_wp
          do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
             call attribute_words(tree, at, trim(name(k)), words, error)
@@ -296,9 +273,9 @@ contains
    end subroutine read_bolts
 
    !> Read one element of a list
-   pure subroutine read_entity(tree, at, type, entities, warnings, error)
+   pure subroutine read_entity(tree, at, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at, type
+      integer, intent(in) :: at, usual
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
@@ -307,8 +284,8 @@ contains
       integer :: material, n
 
       associate (name => tree%element(at)%name)
-         material = merge(0, 1, type == type_is%none)
-         if (type == type_is%material .or. type == type_is%material_or_first &
+         material = usual
+         if (usual == own_material .or. usual == first_material &
             & .and. attribute_place(tree, at, "type") > 0) then
             call attribute_words(tree, at, "type", words, error)
             call take_material(words, "the type of "//name, material, error)

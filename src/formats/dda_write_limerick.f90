@@ -174,7 +174,7 @@ contains
       end do
    end function plain_analysis
 
-   !> An analysis in DDAML
+   !> An analysis in DDAML, without loads
    pure function ddaml_analysis(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text
@@ -192,7 +192,6 @@ contains
                & //filled("Tensile", to_text(joint%tension))//"</Jointproperties>"//lf
          end associate
       end do
-      if (size(analysis%load) > 0) text = text//load_elements(analysis)
       text = text//"</Analysis>"//lf//"</Berkeley:DDA>"
    end function ddaml_analysis
 
@@ -261,25 +260,6 @@ contains
          & //filled("Ivelocity", fields(material%velocity, " ")) &
          & //filled("Istrain", fields(material%strain, " "))//"</Blockmaterial>"//lf
    end function material_element
-
-   !> The forces on load points
-   pure function load_elements(analysis) result(text)
-      type(limerick_analysis_t), intent(in) :: analysis
-      character(len=:), allocatable :: text  !! The list with its line end
-      integer :: i, k
-
-      text = "<Loadpointlist>"//lf
-      do i = 1, size(analysis%load)
-         associate (record => analysis%load(i)%record)
-            text = text//'<Loadpoint numpoints="'//to_text(size(record, 2))//'">'
-            do k = 1, size(record, 2)
-               text = text//" "//fields(record(:, k), " ")//";"
-            end do
-            text = text//" </Loadpoint>"//lf
-         end associate
-      end do
-      text = text//"</Loadpointlist>"//lf
-   end function load_elements
 
    !> A flag in DDAML
    pure function yes_no(flag) result(word)
