@@ -5,8 +5,7 @@ submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t, frame_t
    use dda_table_file, only : table_file_t
-   use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
-      & point_lines
+   use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, point_lines
    use dda_write_results, only : energy_lines
    use dda_write_vtu, only : field_t, index_entry, scalar_field, state_field, tensor_field, &
       & vector_field, write_index, write_points, write_polygons
@@ -38,9 +37,8 @@ contains
       real(wp), intent(in) :: origin(2)  !! Where the origin of their coordinates is: (2) [m]
       type(album_t), intent(in) :: album
       type(error_t), allocatable, intent(inout) :: error
-      type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
-      character(len=:), allocatable :: folder, index, stem
+      character(len=:), allocatable :: case_and_frame, folder, index, stem
       real(wp) :: moment
       integer :: i, j
 
@@ -51,7 +49,7 @@ contains
       do i = 1, album%n
          if (allocated(error)) return
          associate (frame => album%frame(i))
-            stamp = frame_stamp_t(number, i - 1, frame%step, frame%time)
+            case_and_frame = to_text(number)//","//to_text(i - 1)
             ! the steps of a static run have lengths, but no time passes in them
             moment = merge(real(i - 1, wp), frame%time, album%spacing > 0.0_wp)
             row = frame_joint_rows(system, frame)
@@ -59,11 +57,11 @@ contains
                row(j)%point = row(j)%point + origin
                row(j)%contact = row(j)%contact + spread(origin, 2, 2)
             end do
-            call append_line(tables%at(table%frames)%open, frame_lines(stamp, &
-               & system%first_vertex, frame%moved + spread(origin, 2, size(frame%moved, 2)), &
-               & frame%absent), error)
+            call append_line(tables%at(table%frames)%open, frame_lines(case_and_frame, &
+               & frame%step, frame%time, system%first_vertex, &
+               & frame%moved + spread(origin, 2, size(frame%moved, 2)), frame%absent), error)
             if (.not. allocated(error)) call append_line(tables%at(table%frame_joints)%open, &
-               & frame_joint_lines(stamp, row), error)
+               & frame_joint_lines(case_and_frame, row), error)
             if (allocated(error) .or. .not. tables%has_vtu) cycle
             call write_picture(folder//stem//"_"//to_text(i - 1), system, origin, frame, row, error)
             index = index//index_entry(moment, 0, stem//"_"//to_text(i - 1)//".vtu") &

@@ -8,7 +8,7 @@ module dda_deck_token
    private
 
    public :: deck_scan_t, token_t, token_kind, token_text, shown
-   public :: start, add_token, skip_blanks, word_end, starts_with
+   public :: start, add_token, skip_blanks, word_end
 
    !> Most tokens of a deck
    integer, parameter :: max_tokens = 2000000
@@ -160,13 +160,4 @@ contains
       end do
       word_end = word_end - 1
    end function word_end
-
-   !> Whether a text begins with another
-   pure logical function starts_with(text, beginning)
-      character(len=*), intent(in) :: text       !! Text to look at
-      character(len=*), intent(in) :: beginning  !! How it should begin
-
-      starts_with = len(text) >= len(beginning)
-      if (starts_with) starts_with = text(:len(beginning)) == beginning
-   end function starts_with
 end module dda_deck_token

@@ -9,7 +9,7 @@ module dda_word_list
    private
 
    public :: word_list_t, split_words, words_left, this_word, this_row, take_number
-   public :: take_property, take_whole, take_word_numbers, take_material, largest_coordinate
+   public :: take_property, take_whole, take_word_numbers, largest_coordinate, largest_material
    public :: quoted, check_number, warn_of_rest
 
    !> Largest coordinate, so that no square overflows
@@ -185,16 +185,6 @@ contains
             & //" to "//to_text(high)//", got "//to_text(number)//"; correct it", words%file, row)
       end if
    end subroutine take_whole
-
-   !> Take the number of a material
-   pure subroutine take_material(words, what, value, error)
-      type(word_list_t), intent(inout) :: words
-      character(len=*), intent(in) :: what
-      integer, intent(out) :: value
-      type(error_t), allocatable, intent(inout) :: error
-
-      call take_whole(words, what, 1, largest_material, value, error)
-   end subroutine take_material
 
    !> Refuse a number that breaks a rule
    pure subroutine check_number(fits, rule, value, file, row, error)

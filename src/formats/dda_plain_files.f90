@@ -7,7 +7,7 @@ module dda_plain_files
    use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
       & new_line_model
    use dda_text, only : to_text
-   use dda_word_list, only : check_number, largest_coordinate, split_words, take_material, &
+   use dda_word_list, only : check_number, largest_coordinate, largest_material, split_words, &
       & take_number, take_property, take_whole, take_word_numbers, this_row, warn_of_rest, &
       & word_list_t, words_left
    implicit none
@@ -109,7 +109,8 @@ contains
             & place(:n_number), error)
          if (n_number == 2) place(3:4) = place(1:2)
          material = 0
-         if (has_material) call take_material(words, "the material of "//name, material, error)
+         if (has_material) call take_whole(words, "the material of "//name, 1, largest_material, &
+            & material, error)
          if (allocated(error)) return
          call add_entity(entities, place, material, row)
       end do

@@ -11,8 +11,8 @@ module dda_read_limerick
    use dda_plain_files, only : read_plain_analysis, read_plain_geometry
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
-   use dda_word_list, only : check_number, largest_coordinate, take_material, take_number, &
-      & take_property, take_word_numbers, warn_of_rest, word_list_t
+   use dda_word_list, only : check_number, largest_coordinate, largest_material, take_number, &
+      & take_property, take_whole, take_word_numbers, warn_of_rest, word_list_t
    use dda_xml_parser, only : parse_xml
    use dda_xml_tree, only : attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
@@ -288,7 +288,7 @@ contains
          if (usual == own_material .or. usual == first_material &
             & .and. attribute_place(tree, at, "type") > 0) then
             call attribute_words(tree, at, "type", words, error)
-            call take_material(words, "the type of "//name, material, error)
+            call take_whole(words, "the type of "//name, 1, largest_material, material, error)
          end if
          n = merge(2, 4, name == "Point")
          call element_words(tree, at, words)

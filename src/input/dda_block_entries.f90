@@ -118,11 +118,9 @@ contains
       if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) &
          & call fatal_error(error, "expected increasing times from 0 [s]")
       if (allocated(error)) return
-      ! one by one, for an array made of both would lose the memory of their points
+      ! an array constructor would lose the memory of their points
       allocate (longer(size(plan%water) + 1))
-      do i = 1, size(plan%water)
-         longer(i) = plan%water(i)
-      end do
+      longer(:size(plan%water)) = plan%water
       longer(size(longer)) = water
       call move_alloc(longer, plan%water)
    end procedure take_water
@@ -154,7 +152,7 @@ contains
       n_before = size(plan%boundary%absorbing)
       allocate (near(0))
       if (norm2(ends(3:4) - ends(1:2)) > 0.0_wp) then
-         near = blocks_along(site, ends)
+         near = boxes_along(site%tree, ends)
          point%tangent = (ends(3:4) - ends(1:2))/norm2(ends(3:4) - ends(1:2))
       end if
       do i = 1, size(near)

@@ -47,26 +47,17 @@ contains
       type(entry_t), allocatable, intent(inout) :: list(:)  !! The others: (n or more)
       integer, intent(inout) :: n                           !! Their number
       type(entry_t), allocatable :: longer(:)
-      integer :: i
 
       if (n == size(list)) then
          allocate (longer(2*n + 8))
-         do i = 1, n
-            longer(i)%head%number = list(i)%head%number
-            longer(i)%head%n = list(i)%head%n
-            longer(i)%n_row = list(i)%n_row
-            longer(i)%n_column = list(i)%n_column
-            call move_alloc(list(i)%head%word, longer(i)%head%word)
-            call move_alloc(list(i)%head%quoted, longer(i)%head%quoted)
-            call move_alloc(list(i)%row, longer(i)%row)
-         end do
+         longer(:n) = list
          call move_alloc(longer, list)
       end if
       n = n + 1
       list(n)%head = entry%head
       list(n)%n_row = entry%n_row
       list(n)%n_column = entry%n_column
-      allocate (list(n)%row, source=entry%row(:, :entry%n_row))
+      list(n)%row = entry%row(:, :entry%n_row)
    end subroutine keep_entry
 
    !> Part a line into words; what follows a ! is a comment. One text may stand in quotes

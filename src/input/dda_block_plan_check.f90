@@ -29,21 +29,26 @@ contains
       type(area_moments_t) :: moments
       real(wp), allocatable :: vertex(:, :)
       real(wp) :: extent, point(2), perimeter
+      character(len=:), allocatable :: name
       integer :: edge(2)
       character(len=60) :: where_to
 
-      extent = 0.0_wp
-      if (size(corner) > 0) extent = norm2(maxval(corner, dim=2) - minval(corner, dim=2))
-      call merge_corners(corner, same_corner*extent, vertex)
-      if (size(vertex, 2) < size(corner, 2)) &
-         & call add_warning(warnings, "corners given twice are merged", file, line)
+      name = "block "//to_text(reading%n_block + 1)
+      associate (corner => reading%entry%row(:2, :reading%entry%n_row), &
+         & line => reading%entry%head%number)
+         extent = 0.0_wp
+         if (size(corner) > 0) extent = norm2(maxval(corner, dim=2) - minval(corner, dim=2))
+         call merge_corners(corner, same_corner*extent, vertex)
+         if (size(vertex, 2) < size(corner, 2)) &
+            & call add_warning(warnings, "corners given twice are merged", reading%file, line)
+      end associate
       if (size(vertex, 2) < 3) call fatal_error(error, &
-         & "expected three different corners or more of "//next_name(growing)//", got fewer")
+         & "expected three different corners or more of "//name//", got fewer")
       if (allocated(error)) return
       call find_crossing(vertex, edge, point)
       if (edge(1) > 0) then
          write (where_to, "('(', es14.7, ', ', es14.7, ')')") point
-         call fatal_error(error, next_name(growing)//" is no simple polygon: its edges " &
+         call fatal_error(error, name//" is no simple polygon: its edges " &
             & //to_text(edge(1))//" and "//to_text(edge(2))//" meet at "//trim(where_to))
          return
       end if
@@ -51,20 +56,20 @@ contains
       if (moments%area < 0.0_wp) vertex = vertex(:, size(vertex, 2):1:-1)
       perimeter = sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1))
       if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) call fatal_error(error, &
-         & "expected a block with an area, got "//next_name(growing) &
+         & "expected a block with an area, got "//name &
          & //", thinner than 1e-8 of its length")
       if (allocated(error)) return
-      call put_block(growing, vertex, fixed, material, line)
+      call put_block(reading, vertex, fixed, material)
    end procedure add_plan_block
 
    !> Put a block behind the others, at rest and free of stress
-   pure subroutine put_block(growing, vertex, fixed, material, line)
-      type(growing_plan_t), intent(inout) :: growing
+   pure subroutine put_block(reading, vertex, fixed, material)
+      type(reading_t), intent(inout) :: reading
       real(wp), intent(in) :: vertex(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
       logical, intent(in) :: fixed
-      integer, intent(in) :: material, line
+      integer, intent(in) :: material
 
-      associate (plan => growing%plan, n => growing%n_block, n_vertex => growing%n_vertex)
+      associate (plan => reading%plan, n => reading%n_block, n_vertex => reading%n_vertex)
          call make_room(plan%vertex, n_vertex + size(vertex, 2))
          call make_room(plan%first_vertex, n + 2)
          call make_room(plan%fixed, n + 1)
@@ -76,44 +81,13 @@ contains
          plan%first_vertex(n + 1) = n_vertex + 1
          plan%fixed(n) = fixed
          plan%material(n) = material
-         plan%line(n) = line
+         plan%line(n) = reading%entry%head%number
       end associate
    end subroutine put_block
 
-   !> Add a law
-   module procedure add_law_plan
-      type(law_plan_t), allocatable :: longer(:)
-
-      associate (n => growing%n_law)
-         if (n == size(growing%plan%laws)) then
-            allocate (longer(2*n + 8))
-            longer(:n) = growing%plan%laws
-            call move_alloc(longer, growing%plan%laws)
-         end if
-         n = n + 1
-         growing%plan%laws(n) = law
-      end associate
-   end procedure add_law_plan
-
-   !> Hand over the plan, its arrays as long as what they hold
-   module procedure close_plan
-      associate (from => growing%plan, n => growing%n_block)
-         plan%first_vertex = from%first_vertex(:n + 1)
-         plan%vertex = from%vertex(:, :growing%n_vertex)
-         plan%fixed = from%fixed(:n)
-         plan%material = from%material(:n)
-         plan%line = from%line(:n)
-         plan%starts = from%starts(:growing%n_start)
-         plan%start = from%start(:, :growing%n_start)
-         plan%materials = from%materials
-         plan%laws = from%laws(:growing%n_law)
-         plan%water = from%water
-      end associate
-   end procedure close_plan
-
    !> Leave out corners that follow one another at the same place
    pure subroutine merge_corners(corner, near, vertex)
-      real(wp), intent(in) :: corner(:, :)
+      real(wp), intent(in) :: corner(:, :)                !! Corners in order: (2, n) [m]
       real(wp), intent(in) :: near                        !! Corners nearer than this are one [m]
       real(wp), allocatable, intent(out) :: vertex(:, :)  !! The corners that are left: (2, m) [m]
       logical :: kept(size(corner, 2))
@@ -128,14 +102,6 @@ contains
       if (last > 1) kept(last) = norm2(corner(:, last) - corner(:, 1)) > near
       vertex = reshape(pack(corner, spread(kept, 1, 2)), [2, count(kept)])
    end subroutine merge_corners
-
-   !> Name of the block that comes next
-   pure function next_name(growing) result(name)
-      type(growing_plan_t), intent(in) :: growing
-      character(len=:), allocatable :: name  !! Such as: block 3
-
-      name = "block "//to_text(growing%n_block + 1)
-   end function next_name
 
    !> Check a plan as a whole and move its origin to where coordinates keep their digits
    module procedure check_plan

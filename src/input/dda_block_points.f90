@@ -1,8 +1,9 @@
 !> Points of a file of blocks, and what acts on them in time
 submodule (dda_read_blocks) dda_block_points
    use dda_block_lines, only : take_numbers, take_record
-   use dda_block_sites, only : add_held, block_at, blocks_along, close_held, holds_point, rivals_at
+   use dda_block_sites, only : add_held, block_at, close_held, depth_of, rivals_at, rounded
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
+   use dda_box_tree, only : boxes_along
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
    use dda_polygon, only : parts_inside
@@ -180,7 +181,7 @@ contains
       ends = ends - [plan%origin, plan%origin]
       n_before = site%n_held
       allocate (near(0))
-      if (norm2(ends(3:4) - ends(1:2)) > 0.0_wp) near = blocks_along(site, ends)
+      if (norm2(ends(3:4) - ends(1:2)) > 0.0_wp) near = boxes_along(site%tree, ends)
       do i = 1, size(near)
          b = near(i)
          part = parts_inside(plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1), &
@@ -282,7 +283,7 @@ contains
          block = block_at(plan, site, point)
          if (block == 0) call fatal_error(error, "expected a point of a block, got " &
             & //shown_point//", which lies in none")
-      else if (.not. holds_point(plan, site, block, point)) then
+      else if (depth_of(plan, site, block, point) < -rounded*site%size_of(block)) then
          call fatal_error(error, "expected a point of block "//to_text(block)//", got " &
             & //shown_point//", which lies outside it")
       end if

@@ -13,8 +13,8 @@ module dda_block_sites
    implicit none
    private
 
-   public :: compare_paths, site_t, add_held, block_at, blocks_along, close_held, holds_point
-   public :: rivals_at, survey
+   public :: compare_paths, site_t, add_held, block_at, close_held, depth_of, rivals_at, rounded
+   public :: survey
 
    !> Places nearer than this share of the block's size are the same
    real(wp), parameter :: same = 1.0e-9_wp
@@ -196,16 +196,6 @@ contains
       allocate (rival, source=near(:n))
    end function rivals_at
 
-   !> Whether a block holds a point or has it on its outline
-   pure logical function holds_point(plan, site, block, point)
-      type(block_plan_t), intent(in) :: plan
-      type(site_t), intent(in) :: site
-      integer, intent(in) :: block  !! Number of the block
-      real(wp), intent(in) :: point(2)
-
-      holds_point = depth_of(plan, site, block, point) >= -rounded*site%size_of(block)
-   end function holds_point
-
    !> How deep a point lies in a block, negative outside [m]
    pure real(wp) function depth_of(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
@@ -216,15 +206,6 @@ contains
       depth_of = depth_in(plan%vertex(:, plan%first_vertex(block): &
          & plan%first_vertex(block + 1) - 1), point, site%edges(site%edges_of(block)))
    end function depth_of
-
-   !> Blocks that a segment may meet
-   pure function blocks_along(site, segment) result(block)
-      type(site_t), intent(in) :: site
-      real(wp), intent(in) :: segment(4)  !! Its ends, seen from the origin of the plan: (4) [m]
-      integer, allocatable :: block(:)    !! Their numbers, rising: (n)
-
-      allocate (block, source=boxes_along(site%tree, segment))
-   end function blocks_along
 
    !> Add a held point, unless others hold the block in its way
    pure subroutine add_held(held, plan, site, error)
@@ -277,24 +258,15 @@ contains
       end do
    end function held_before
 
-   !> Give the list of held points another length; gfortran's array constructors would lose the
-   !> memory of histories
+   !> Give the list of held points another length
    pure subroutine close_held(n, list)
       integer, intent(in) :: n                                   !! The length
       type(held_point_t), allocatable, intent(inout) :: list(:)  !! The list
       type(held_point_t), allocatable :: other(:)
-      integer :: i
 
       if (n == size(list)) return
       allocate (other(n))
-      do i = 1, min(n, size(list))
-         other(i)%block = list(i)%block
-         other(i)%point = list(i)%point
-         other(i)%along = list(i)%along
-         other(i)%line = list(i)%line
-         call move_alloc(list(i)%path%time, other(i)%path%time)
-         call move_alloc(list(i)%path%value, other(i)%path%value)
-      end do
+      other(:min(n, size(list))) = list(:min(n, size(list)))
       call move_alloc(other, list)
    end subroutine close_held
 

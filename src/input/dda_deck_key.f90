@@ -6,7 +6,7 @@ module dda_deck_key
    private
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
-   public :: wanted, quoted_words, full_name, near_group, near_key, near_word
+   public :: wanted, quoted_words, full_name, near_group, near_key, near_word, split_words
    public :: near_one, or_leave_out, registry_help
 
    !> Longest name of a key [characters]
@@ -142,17 +142,26 @@ contains
    pure function quoted_words(words) result(text)
       character(len=*), intent(in) :: words  !! Words parted by one blank
       character(len=:), allocatable :: text  !! Such as: 'stress' or 'strain'
-      integer :: first, blank
+      character(len=word_length), allocatable :: list(:)
+      integer :: i
 
+      list = split_words(words)
       text = ""
-      first = 1
-      do while (first <= len_trim(words))
-         blank = index(words(first:)//" ", " ")
-         if (len(text) > 0) text = text//" or "
-         text = text//"'"//words(first:first + blank - 2)//"'"
-         first = first + blank
+      do i = 1, size(list)
+         text = text//" or '"//trim(list(i))//"'"
       end do
+      text = text(5:)
    end function quoted_words
+
+   !> Words one by one
+   pure function split_words(words) result(list)
+      character(len=*), intent(in) :: words               !! Words parted by one blank
+      character(len=word_length), allocatable :: list(:)  !! The words: (n)
+      integer :: i
+
+      allocate (list(1 + count([(words(i:i) == " ", i=1, len_trim(words))])))
+      read (words, *) list
+   end function split_words
 
    !> Name of a key with its group
    pure function full_name(key) result(name)
@@ -200,20 +209,9 @@ contains
       character(len=*), intent(in) :: text  !! Word that the key does not take
       !> Words after a colon that name the nearest one; empty for a key that takes no words
       character(len=:), allocatable :: near
-      character(len=word_length) :: list(len(key%words)/2)
-      integer :: i, first, blank
 
       near = ""
-      if (len_trim(key%words) == 0) return
-      list = ""
-      first = 1
-      do i = 1, size(list)
-         if (first > len_trim(key%words)) exit
-         blank = index(key%words(first:)//" ", " ")
-         list(i) = key%words(first:first + blank - 2)
-         first = first + blank
-      end do
-      near = near_one(lower_case(trim(text)), list(:i - 1))
+      if (len_trim(key%words) > 0) near = near_one(lower_case(trim(text)), split_words(key%words))
    end function near_word
 
    !> A word of a list that is much like another

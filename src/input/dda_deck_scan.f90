@@ -4,7 +4,7 @@ module dda_deck_scan
    use dda_text, only : to_text, lower_case, read_integer
    use dda_deck_key, only : max_items
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown, &
-      start, add_token, skip_blanks, word_end, starts_with
+      start, add_token, skip_blanks, word_end
    implicit none
    private
 
@@ -169,7 +169,7 @@ contains
          if (scan%text(last:last) == achar(10)) exit
          if (scan%text(last:last) /= quote) then
             last = last + 1
-         else if (starts_with(scan%text(last:), quote//quote)) then
+         else if (scan%text(last:min(last + 1, len(scan%text))) == quote//quote) then
             last = last + 2
          else
             call add_token(scan, token_kind%quoted, first, last - 1, count, error)
@@ -206,7 +206,7 @@ contains
          end if
       end if
       call skip_blanks(scan)
-      if (star == 0 .and. starts_with(scan%text(scan%position:), "=")) then
+      if (star == 0 .and. scan%text(scan%position:min(scan%position, len(scan%text))) == "=") then
          call add_token(scan, token_kind%key, first, last, 1, error)
          scan%position = scan%position + 1
       else

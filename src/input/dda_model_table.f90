@@ -1,7 +1,7 @@
 !> Which models there are, and what can be searched in them: the one place that says so. Decks are
 !> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
 module dda_model_table
-   use dda_deck_key, only : key_t
+   use dda_deck_key, only : key_t, split_words, word_length
    implicit none
    private
 
@@ -166,19 +166,18 @@ contains
       type(search_t), intent(in) :: rule
       character(len=*), intent(in) :: quote  !! What stands before and after a name
       character(len=:), allocatable :: text  !! Such as: tension, or: other numbers of &joint
-      integer :: first, blank
+      character(len=word_length), allocatable :: list(:)
+      integer :: i
 
       if (rule%names == "") then
          text = "numbers of "//quote//"&"//trim(rule%group)//quote
          if (count(search%group == rule%group) > 1) text = "other "//text
          return
       end if
+      list = split_words(rule%names)
       text = ""
-      first = 1
-      do while (first <= len_trim(rule%names))
-         blank = index(rule%names(first:)//" ", " ")
-         text = text//", "//quote//rule%names(first:first + blank - 2)//quote
-         first = first + blank
+      do i = 1, size(list)
+         text = text//", "//quote//trim(list(i))//quote
       end do
       text = text(3:)
    end function name_of

@@ -36,20 +36,16 @@ module dda_read_blocks
    !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
 
-   !> A plan whose arrays have room for more
-   type :: growing_plan_t
-      type(block_plan_t) :: plan  !! The plan; its arrays are longer than what they hold
-      integer :: n_block = 0      !! Number of blocks
-      integer :: n_vertex = 0     !! Number of corners
-      integer :: n_start = 0      !! Number of blocks that begin with a velocity or a stress
-      integer :: n_law = 0        !! Number of laws
-   end type growing_plan_t
-
    !> What has been read of a file
    type :: reading_t
       character(len=:), allocatable :: file  !! Name of the file
-      type(growing_plan_t) :: growing        !! Blocks, materials and laws so far
-      type(entry_t) :: entry                 !! The entry that is being read
+      !> Blocks, materials and laws so far; the arrays have room for more
+      type(block_plan_t) :: plan
+      integer :: n_block = 0   !! Number of blocks
+      integer :: n_vertex = 0  !! Number of corners
+      integer :: n_start = 0   !! Number of blocks that begin with a velocity or a stress
+      integer :: n_law = 0     !! Number of laws
+      type(entry_t) :: entry   !! The entry that is being read
       !> Entries of points, kept until all blocks are known: (n_later or more)
       type(entry_t), allocatable :: later(:)
       integer :: n_later = 0  !! Number of these
@@ -72,30 +68,14 @@ module dda_read_blocks
          class(watch_t), intent(inout), optional :: watch
       end subroutine add_points
 
-      !> Add a block; corners given twice are merged, clockwise ones are turned
-      pure module subroutine add_plan_block(growing, corner, fixed, material, line, file, &
-         & warnings, error)
-         type(growing_plan_t), intent(inout) :: growing
-         real(wp), intent(in) :: corner(:, :)              !! Corners in order: (2, n) [m]
+      !> Add the block of an entry; corners given twice are merged, clockwise ones are turned
+      pure module subroutine add_plan_block(reading, fixed, material, warnings, error)
+         type(reading_t), intent(inout) :: reading
          logical, intent(in) :: fixed                      !! Whether it cannot move
          integer, intent(in) :: material                   !! Number of its material
-         integer, intent(in) :: line                       !! Line of the file, 0 if there is none
-         character(len=*), intent(in) :: file              !! Name of the file, for warnings
          type(warnings_t), intent(inout) :: warnings
          type(error_t), allocatable, intent(out) :: error  !! Allocated if the corners make no block
       end subroutine add_plan_block
-
-      !> Add a law
-      pure module subroutine add_law_plan(growing, law)
-         type(growing_plan_t), intent(inout) :: growing
-         type(law_plan_t), intent(in) :: law
-      end subroutine add_law_plan
-
-      !> Hand over the plan, its arrays as long as what they hold
-      pure module subroutine close_plan(growing, plan)
-         type(growing_plan_t), intent(in) :: growing
-         type(block_plan_t), intent(out) :: plan
-      end subroutine close_plan
 
       !> Check a plan as a whole and move its origin to where coordinates keep their digits
       pure module subroutine check_plan(plan, file, warnings, error)
@@ -132,7 +112,7 @@ contains
       integer :: number, start, finish
 
       reading%file = file
-      call new_plan(reading%growing%plan)
+      call new_plan(reading%plan)
       allocate (reading%later(0), reading%entry%row(3, 0))
       call split_line("", 0, reading%entry%head, error)
       start = 1
@@ -148,7 +128,7 @@ contains
             & call watch%tell("reading blocks", real(start, wp)/real(len(text), wp))
       end do
       if (.not. allocated(error)) call close_entry(reading, warnings, error)
-      call close_plan(reading%growing, plan)
+      call close_plan(reading, plan)
       if (.not. allocated(error)) call check_plan(plan, file, warnings, error)
       if (.not. allocated(error)) call survey(plan, site)
       if (.not. allocated(error)) call check_overlaps(plan, site, error, watch)
@@ -229,6 +209,24 @@ contains
       end select
    end function row_wanted
 
+   !> Hand over the plan, its arrays as long as what they hold
+   pure subroutine close_plan(reading, plan)
+      type(reading_t), intent(inout) :: reading  !! What has been read; its plan goes
+      type(block_plan_t), intent(out) :: plan
+
+      associate (from => reading%plan, n => reading%n_block)
+         from%first_vertex = from%first_vertex(:n + 1)
+         from%vertex = from%vertex(:, :reading%n_vertex)
+         from%fixed = from%fixed(:n)
+         from%material = from%material(:n)
+         from%line = from%line(:n)
+         from%starts = from%starts(:reading%n_start)
+         from%start = from%start(:, :reading%n_start)
+         from%laws = from%laws(:reading%n_law)
+      end associate
+      plan = reading%plan
+   end subroutine close_plan
+
    !> Take in an entry that is complete; points wait until all blocks are known
    pure subroutine close_entry(reading, warnings, error)
       !> What has been read so far; its entry is left without rows
@@ -240,9 +238,9 @@ contains
       case ("block")
          call close_block(reading, warnings, error)
       case ("material")
-         call add_material(reading%entry%head, reading%growing%plan, error)
+         call add_material(reading%entry%head, reading%plan, error)
       case ("joint")
-         call add_law(reading%entry%head, reading%growing, error)
+         call add_law(reading%entry%head, reading, error)
       case ("")
          continue
       case default
@@ -265,18 +263,15 @@ contains
       logical :: given(4)
 
       value = [1.0_wp, spread(0.0_wp, 1, 6)]
-      associate (head => reading%entry%head, growing => reading%growing)
-         call take_words(head, 2, key, value, given, error)
-         if (allocated(error)) return
-         call add_plan_block(growing, reading%entry%row(:2, :reading%entry%n_row), given(1), &
-            & nint(value(1)), head%number, reading%file, warnings, error)
-         if (allocated(error) .or. .not. any(given(3:4))) return
-         growing%n_start = growing%n_start + 1
-         call make_room(growing%plan%starts, growing%n_start)
-         call make_room(growing%plan%start, growing%n_start)
-         growing%plan%starts(growing%n_start) = growing%n_block
-         growing%plan%start(:, growing%n_start) = value(2:7)
-      end associate
+      call take_words(reading%entry%head, 2, key, value, given, error)
+      if (allocated(error)) return
+      call add_plan_block(reading, given(1), nint(value(1)), warnings, error)
+      if (allocated(error) .or. .not. any(given(3:4))) return
+      reading%n_start = reading%n_start + 1
+      call make_room(reading%plan%starts, reading%n_start)
+      call make_room(reading%plan%start, reading%n_start)
+      reading%plan%starts(reading%n_start) = reading%n_block
+      reading%plan%start(:, reading%n_start) = value(2:7)
    end subroutine close_block
 
    !> Take in a material:
@@ -304,9 +299,9 @@ contains
 
    !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
    !> [slip_length d]
-   pure subroutine add_law(line, growing, error)
+   pure subroutine add_law(line, reading, error)
       type(line_t), intent(in) :: line
-      type(growing_plan_t), intent(inout) :: growing
+      type(reading_t), intent(inout) :: reading
       type(error_t), allocatable, intent(out) :: error
       type(law_plan_t) :: law
       logical :: ok(2)
@@ -324,9 +319,13 @@ contains
       if (law%given(1) .and. law%value(4) > law%value(1)) then
          call fatal_error(error, "residual_deg must be at most friction_deg, " &
             & //to_text(law%value(1))//", got "//to_text(law%value(4)))
-      else
-         law%line = line%number
-         call add_law_plan(growing, law)
+         return
       end if
+      law%line = line%number
+      ! the second half is room
+      if (reading%n_law == size(reading%plan%laws)) &
+         & reading%plan%laws = [reading%plan%laws, reading%plan%laws, law]
+      reading%n_law = reading%n_law + 1
+      reading%plan%laws(reading%n_law) = law
    end subroutine add_law
 end module dda_read_blocks

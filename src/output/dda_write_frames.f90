@@ -6,17 +6,9 @@ module dda_write_frames
    implicit none
    private
 
-   public :: frame_stamp_t, frame_joint_row_t
+   public :: frame_joint_row_t
    public :: frames_header, frame_lines, frame_joints_header, frame_joint_lines
    public :: points_header, point_lines
-
-   !> What all rows of a frame have in common
-   type :: frame_stamp_t
-      integer :: number = 0      !! Number of the case, from 1
-      integer :: frame = 0       !! Number of the frame, from 0
-      integer :: step = 0        !! Accepted steps before it
-      real(wp) :: time = 0.0_wp  !! Sum of the lengths of these steps [s]
-   end type frame_stamp_t
 
    !> One row of frame_joints.csv without what its frame has in common
    type :: frame_joint_row_t
@@ -39,8 +31,10 @@ module dda_write_frames
 contains
 
    !> Rows of one frame in frames.csv
-   pure function frame_lines(stamp, first_vertex, point, absent) result(lines)
-      type(frame_stamp_t), intent(in) :: stamp  !! Case, frame, step and time
+   pure function frame_lines(case_and_frame, step, time, first_vertex, point, absent) result(lines)
+      character(len=*), intent(in) :: case_and_frame  !! Numbers of the case and of the frame
+      integer, intent(in) :: step                     !! Accepted steps before it
+      real(wp), intent(in) :: time                    !! Sum of the lengths of these steps [s]
       !> First corner of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
       real(wp), intent(in) :: point(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
@@ -51,7 +45,7 @@ contains
       type(growing_text_t) :: rows
       integer :: block, vertex
 
-      common = stamp_text(stamp)//","//to_text(stamp%step)//","//to_text(stamp%time)//","
+      common = case_and_frame//","//to_text(step)//","//to_text(time)//","
       do block = 1, size(first_vertex) - 1
          if (present(absent)) then
             if (absent(block)) cycle
@@ -65,15 +59,15 @@ contains
    end function frame_lines
 
    !> Rows of one frame in frame_joints.csv
-   pure function frame_joint_lines(stamp, row) result(lines)
-      type(frame_stamp_t), intent(in) :: stamp
+   pure function frame_joint_lines(case_and_frame, row) result(lines)
+      character(len=*), intent(in) :: case_and_frame
       type(frame_joint_row_t), intent(in) :: row(:)  !! The joints: (n_joint)
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       integer :: j
 
       do j = 1, size(row)
-         call add_line(rows, stamp_text(stamp)//","//to_text(row(j)%joint)//"," &
+         call add_line(rows, case_and_frame//","//to_text(row(j)%joint)//"," &
             & //fields(row(j)%contact(:, 1))//","//fields(row(j)%contact(:, 2))//"," &
             & //fields(row(j)%point)//","//fields(row(j)%force)//"," &
             & //trim(row(j)%state(1))//","//trim(row(j)%state(2)))
@@ -107,12 +101,4 @@ contains
       end do
       lines = lines_of(rows)
    end function point_lines
-
-   !> Case and frame as the first fields of a row
-   pure function stamp_text(stamp) result(text)
-      type(frame_stamp_t), intent(in) :: stamp
-      character(len=:), allocatable :: text
-
-      text = to_text(stamp%number)//","//to_text(stamp%frame)
-   end function stamp_text
 end module dda_write_frames
