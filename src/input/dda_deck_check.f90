@@ -201,12 +201,13 @@ contains
       associate (sweep => deck%sweeps(s))
          name = parameter_name(sweep%parameter)
          problem = ""
-         if (same(sweep%parameter, deck%searched)) problem = name// &
+         if (sweep%parameter%key == deck%searched%key &
+            .and. sweep%parameter%item == deck%searched%item) problem = name// &
             " is both swept and searched; remove one of the two"
          if (deck_key(sweep%parameter%key)%group == "search" .and. deck%searched%key == 0) &
             problem = name//" is swept, but the deck has no &search; add one"
          do other = 1, s - 1
-            if (same(sweep%parameter, deck%sweeps(other)%parameter)) problem = name// &
+            if (sweep%name == deck%sweeps(other)%name) problem = name// &
                " is swept twice: first in line "//to_text(deck%sweeps(other)%place%line)// &
                "; put all values into one &sweep"
          end do
@@ -244,37 +245,35 @@ contains
       character(len=*), intent(in) :: how  !! swept or searched
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: why
-      logical :: is_weight
+      character(len=:), allocatable :: name, why
 
-      why = reason_of_no_effect(deck, deck_key(parameter%key))
-      is_weight = any(parameter%key == [material_density, load_gravity])
-      if (deck_key(parameter%key)%group == "arch" .and. deck%value(scene_kind)%text /= "arch") then
-         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: scene%kind is '"// &
-            deck%value(scene_kind)%text//"'; name another key", deck, place)
+      name = full_name(deck_key(parameter%key))
+      why = reason_of_no_effect(deck, parameter%key)
+      if (len(why) > 0) then
+         call deck_error(error, name//" is "//how//", but it has no effect: "//why, deck, place)
       else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
-         call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
-            how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
-            deck%value(parameter%key)%place)
-      else if (is_weight .and. deck%value(material_unit_weight)%given .and. &
-         deck%value(analysis_mode)%text == "static") then
-         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: material%unit_weight is given; remove that", deck, place)
-      else if (len(why) > 0) then
-         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: "//why, deck, place)
+         call deck_error(error, name//" cannot be set: it is "//how//" in line " &
+            & //to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
+            & deck%value(parameter%key)%place)
       end if
    end subroutine check_varied
 
    !> Why a key changes nothing beside the others of a deck, and what to do; empty if it may
-   pure function reason_of_no_effect(deck, key) result(why)
+   pure function reason_of_no_effect(deck, varied) result(why)
       type(deck_t), intent(in) :: deck
-      type(key_t), intent(in) :: key
+      integer, intent(in) :: varied  !! Place of the key in the registry
       character(len=:), allocatable :: why
+      type(key_t) :: key
 
       why = ""
-      if ((key%group == "limerick" .or. key%name(:9) == "abutment_") &
+      key = deck_key(varied)
+      if (key%group == "arch" .and. deck%value(scene_kind)%text /= "arch") then
+         why = "scene%kind is '"//deck%value(scene_kind)%text//"'; name another key"
+      else if (any(varied == [material_density, load_gravity]) &
+         .and. deck%value(material_unit_weight)%given &
+         .and. deck%value(analysis_mode)%text == "static") then
+         why = "material%unit_weight is given; remove that"
+      else if ((key%group == "limerick" .or. key%name(:9) == "abutment_") &
          & .and. deck%value(analysis_mode)%text /= "limerick" &
          & .and. .not. any(deck%sweeps%parameter%key == analysis_mode)) then
          why = "analysis%mode is '"//deck%value(analysis_mode)%text//"'; name another key"
@@ -299,14 +298,6 @@ contains
       is_known = deck%value(key)%given .or. deck%searched%key == key &
          & .or. any(deck%sweeps%parameter%key == key)
    end function is_known
-
-   !> Whether two parameters are the same
-   pure logical function same(a, b)
-      type(parameter_t), intent(in) :: a
-      type(parameter_t), intent(in) :: b
-
-      same = a%key == b%key .and. a%item == b%item
-   end function same
 
    !> Check every case of the sweeps
    pure subroutine check_cases(deck, cases, error)

@@ -9,7 +9,8 @@ module dda_deck_sweep
    use dda_error, only : error_t, fatal_error
    use dda_key_names, only : sweep_count, sweep_first, sweep_last, sweep_linked, sweep_parameter, &
       & sweep_texts, sweep_values
-   use dda_key_value, only : deck_place_t, default_value, is_numeric, number_problem, text_problem
+   use dda_key_value, only : deck_place_t, default_value, is_numeric, number_fits, number_problem, &
+      & text_problem
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_integer, to_text
    implicit none
@@ -35,6 +36,7 @@ contains
       !> Keys that do not go together, or a value that the parameter cannot take
       type(error_t), allocatable, intent(out) :: error
       type(deck_sweep_t) :: sweep
+      type(deck_sweep_t), allocatable :: longer(:)
       character(len=:), allocatable :: problem
       integer :: i
 
@@ -55,25 +57,15 @@ contains
       call take_values(deck, sweep, error)
       if (.not. allocated(error)) call check_values(deck, sweep, error)
       if (allocated(error)) return
-      call append(deck%sweeps, sweep)
+      ! an array constructor would lose the memory of values
+      allocate (longer(size(deck%sweeps) + 1))
+      longer(:size(deck%sweeps)) = deck%sweeps
+      longer(size(longer)) = sweep
+      call move_alloc(longer, deck%sweeps)
       do i = sweep_parameter, sweep_linked
          deck%value(i) = default_value(deck_key(i))
       end do
    end subroutine add_sweep
-
-   !> Append a sweep to a list of sweeps
-   pure subroutine append(list, sweep)
-      type(deck_sweep_t), allocatable, intent(inout) :: list(:)  !! The list: (n), then (n + 1)
-      type(deck_sweep_t), intent(in) :: sweep
-      type(deck_sweep_t), allocatable :: longer(:)
-      integer :: n
-
-      n = size(list)
-      allocate (longer(n + 1))
-      longer(:n) = list
-      longer(n + 1) = sweep
-      call move_alloc(longer, list)
-   end subroutine append
 
    !> Take the values of a sweep from exactly one of: values, texts, (first, last, count)
    pure subroutine take_values(deck, sweep, error)
@@ -145,6 +137,7 @@ contains
       character(len=:), allocatable :: problem
       type(key_t) :: key
       integer :: i
+      character(len=*), parameter :: advice = "; change or remove that value of the sweep"
 
       problem = ""
       key = deck_key(sweep%parameter%key)
@@ -153,24 +146,16 @@ contains
          & //full_name(key)//" must be "//wanted(key)//"; write " &
          & //trim(merge("values", "texts ", is_numeric(key)))//" = ..."
       do i = 1, size(sweep%numbers)
-         if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))
+         if (len(problem) == 0 .and. .not. number_fits(key, sweep%numbers(i))) &
+            & problem = number_problem(key, sweep%numbers(i))//advice
       end do
       do i = 1, size(sweep%texts)
-         if (len(problem) == 0) problem = advised(text_problem(key, sweep%texts(i)))
+         if (len(problem) > 0) exit
+         problem = text_problem(key, sweep%texts(i))
+         if (len(problem) > 0) problem = problem//advice
       end do
       if (len(problem) > 0) call deck_error(error, problem, deck, sweep%place)
    end subroutine check_values
-
-   !> What is wrong with one value of a sweep, with what to do about it
-   pure function advised(problem) result(text)
-      !> What was wanted and what was found; empty if nothing is wrong
-      character(len=*), intent(in) :: problem
-      !> The same with an advice; empty if nothing is wrong
-      character(len=:), allocatable :: text
-
-      text = problem
-      if (len(problem) > 0) text = problem//"; change or remove that value of the sweep"
-   end function advised
 
    !> Number of values of a sweep
    pure integer function n_values(sweep)

@@ -8,9 +8,6 @@ module dda_model_table
    public :: model_problem, models_of, models_help, search_problem, searches_of
 
    !> What blocks are made from
-   character(len=*), parameter :: kinds(4) = [character(len=6) :: "arch", "shape", "lines", &
-      & "blocks"]
-   !> All of them
    character(len=*), parameter :: all_kinds = "arch shape lines blocks"
    !> Those that the scheme of the original runs
    character(len=*), parameter :: of_original = "arch lines blocks"
@@ -185,8 +182,10 @@ contains
    !> Both tables as docs/input.md has them
    pure function models_help() result(text)
       character(len=:), allocatable :: text  !! Lines, each ended by a line feed
+      character(len=word_length), allocatable :: kinds(:)
       integer :: i, k
 
+      kinds = split_words(all_kinds)
       text = "| mode | geometry | arch | shape | lines | blocks | why not |"//lf &
          & //"| --- | --- | --- | --- | --- | --- | --- |"//lf
       do i = 1, size(model)
