@@ -27,13 +27,15 @@ contains
 
       value = 0.0_wp
       exponent = 0
-      mark = scan(text//"e", "eEdD")
+      mark = scan(text, "eEdD")
+      if (mark == 0) mark = len(text) + 1
       ok = len(text) <= longest_number .and. is_decimal(text(:mark - 1))
       if (ok .and. mark <= len(text)) call read_integer(text(mark + 1:), exponent, ok)
       if (.not. ok) return
       ! power of ten of the first digit that is not zero: nothing may overflow, which could trap
       first = scan(text(:mark - 1), "123456789")
-      point = index(text(:mark - 1)//".", ".")
+      point = index(text(:mark - 1), ".")
+      if (point == 0) point = mark
       power = point - first - merge(1, 0, first < point)
       ok = first == 0 .or. power + min(max(exponent, -1000), 1000) < border
       if (.not. ok) return
