@@ -6,7 +6,7 @@ module dda_deck_key
    private
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
-   public :: wanted, quoted_words, full_name, near_group, near_key, near_word, split_words
+   public :: wanted, quoted_words, full_name, near_group, near_key, near_word, listed_words
    public :: near_one, or_leave_out, registry_help
 
    !> Longest name of a key [characters]
@@ -145,7 +145,7 @@ contains
       character(len=word_length), allocatable :: list(:)
       integer :: i
 
-      list = split_words(words)
+      list = listed_words(words)
       text = ""
       do i = 1, size(list)
          text = text//" or '"//trim(list(i))//"'"
@@ -154,14 +154,14 @@ contains
    end function quoted_words
 
    !> Words one by one
-   pure function split_words(words) result(list)
+   pure function listed_words(words) result(list)
       character(len=*), intent(in) :: words               !! Words parted by one blank
       character(len=word_length), allocatable :: list(:)  !! The words: (n)
       integer :: i
 
       allocate (list(1 + count([(words(i:i) == " ", i=1, len_trim(words))])))
       read (words, *) list
-   end function split_words
+   end function listed_words
 
    !> Name of a key with its group
    pure function full_name(key) result(name)
@@ -211,7 +211,7 @@ contains
       character(len=:), allocatable :: near
 
       near = ""
-      if (len_trim(key%words) > 0) near = near_one(lower_case(trim(text)), split_words(key%words))
+      if (len_trim(key%words) > 0) near = near_one(lower_case(trim(text)), listed_words(key%words))
    end function near_word
 
    !> A word of a list that is much like another

@@ -1,7 +1,7 @@
 !> Which models there are, and what can be searched in them: the one place that says so. Decks are
 !> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
 module dda_model_table
-   use dda_deck_key, only : key_t, split_words, word_length
+   use dda_deck_key, only : key_t, listed_words, word_length
    implicit none
    private
 
@@ -171,7 +171,7 @@ contains
          if (count(search%group == rule%group) > 1) text = "other "//text
          return
       end if
-      list = split_words(rule%names)
+      list = listed_words(rule%names)
       text = ""
       do i = 1, size(list)
          text = text//", "//quote//trim(list(i))//quote
@@ -185,7 +185,7 @@ contains
       character(len=word_length), allocatable :: kinds(:)
       integer :: i, k
 
-      kinds = split_words(all_kinds)
+      kinds = listed_words(all_kinds)
       text = "| mode | geometry | arch | shape | lines | blocks | why not |"//lf &
          & //"| --- | --- | --- | --- | --- | --- | --- |"//lf
       do i = 1, size(model)
