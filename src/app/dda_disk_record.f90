@@ -7,7 +7,9 @@
 module dda_disk_record
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_error, only : error_t
+   use dda_kinds, only : wp
    use dda_table_file, only : close_table, open_table, part_name, rename_part, table_file_t
+   use dda_text, only : to_text
    use dda_text_file, only : read_text_file
    implicit none
    private
@@ -25,11 +27,9 @@ contains
       integer(int64), intent(in) :: length  !! Length of results.csv that is on the disk [bytes]
       type(error_t), allocatable, intent(inout) :: error
       type(table_file_t) :: record
-      character(len=20) :: bytes
 
       if (allocated(error)) return
-      write (bytes, "(i0)") length
-      call open_table(part_name(file), trim(bytes)//" "//start_name(), record, error)
+      call open_table(part_name(file), to_text(real(length, wp))//" "//start_name(), record, error)
       call close_table(record, error)
       if (.not. allocated(error)) call rename_part(file, error)
    end subroutine write_disk_record

@@ -9,7 +9,7 @@ submodule (dda_verbs) dda_lines
    use dda_read_joint_map, only : read_joint_map
    use dda_screen, only : print_line
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
-   use dda_text, only : to_text
+   use dda_text, only : fields, to_text
    use dda_write_limerick, only : ddaml_geometry, plain_geometry
    implicit none
 
@@ -20,6 +20,7 @@ contains
       type(joint_map_t) :: map
       type(line_model_t) :: model
       character(len=:), allocatable :: file
+      real(wp) :: length
       logical :: is_ddaml
 
       status = exit_status%bad_input
@@ -37,25 +38,16 @@ contains
       if (.not. allocated(error)) call write_table(table_name(file), model, error)
       if (allocated(error)) status = exit_status%not_written
       if (allocated(error) .or. command%quiet) return
+      associate (ends => model%line%place(:, model%n_boundary + 1:model%line%n))
+         length = sum(norm2(ends(3:4, :) - ends(1:2, :), dim=1))
+      end associate
       call print_line(command%screen, name//": "//to_text(model%n_boundary)//" boundary lines, " &
          & //to_text(model%line%n - model%n_boundary)//" joints of " &
-         & //to_text(total_length(model%line, model%n_boundary))//" m in all, " &
+         & //to_text(length)//" m in all, " &
          & //to_text(size(map%opening))//" openings, "//to_text(model%bolt%n)//" bolts")
       call print_line(command%screen, "   "//file//" is for 'dda cut', "//table_name(file) &
          & //" for pictures")
    end procedure draw_map
-
-   !> Length of all lines behind the first ones
-   pure real(wp) function total_length(line, first)
-      type(entities_t), intent(in) :: line
-      integer, intent(in) :: first  !! Lines that do not count
-      integer :: i
-
-      total_length = 0.0_wp
-      do i = first + 1, line%n
-         total_length = total_length + norm2(line%place(3:4, i) - line%place(1:2, i))
-      end do
-   end function total_length
 
    !> Name of the table beside a file of lines
    pure function table_name(file) result(name)
@@ -73,13 +65,10 @@ contains
       type(line_model_t), intent(in) :: model
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
-      integer :: i
 
       call open_table(file, "role,x1,y1,x2,y2,material,row", table, error)
-      do i = 1, model%line%n
-         call write_rows(table, trim(merge("boundary", "joint   ", i <= model%n_boundary)), &
-            & model%line, i, i, error)
-      end do
+      call write_rows(table, "boundary", model%line, 1, model%n_boundary, error)
+      call write_rows(table, "joint", model%line, model%n_boundary + 1, model%line%n, error)
       call write_rows(table, "material", model%material_line, 1, model%material_line%n, error)
       call write_rows(table, "fix", model%fixed, 1, model%fixed%n, error)
       call write_rows(table, "load", model%load, 1, model%load%n, error)
@@ -96,17 +85,12 @@ contains
       type(entities_t), intent(in) :: entities
       integer, intent(in) :: first, last    !! The first of them and the last
       type(error_t), allocatable, intent(inout) :: error
-      integer :: i, k
-      character(len=:), allocatable :: line
+      integer :: i
 
       do i = first, last
          if (allocated(error)) return
-         line = role
-         do k = 1, 4
-            line = line//","//to_text(entities%place(k, i))
-         end do
-         call append_line(table, line//","//to_text(entities%material(i))//"," &
-            & //to_text(entities%row(i)), error)
+         call append_line(table, role//","//fields(entities%place(:, i))//"," &
+            & //to_text(entities%material(i))//","//to_text(entities%row(i)), error)
       end do
    end subroutine write_rows
 end submodule dda_lines

@@ -6,7 +6,7 @@ module dda_deck_key
    private
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
-   public :: wanted, quoted_words, full_name, near_group, near_key, near_word, listed_words
+   public :: wanted, full_name, near_group, near_key, near_word, has_word, listed_words
    public :: near_one, or_leave_out, registry_help
 
    !> Longest name of a key [characters]
@@ -162,6 +162,15 @@ contains
       allocate (list(1 + count([(words(i:i) == " ", i=1, len_trim(words))])))
       read (words, *) list
    end function listed_words
+
+   !> Whether a list of words holds a word, whatever its case
+   pure logical function has_word(words, text)
+      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=*), intent(in) :: text   !! The word
+
+      has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
+      if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
+   end function has_word
 
    !> Name of a key with its group
    pure function full_name(key) result(name)

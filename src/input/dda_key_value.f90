@@ -1,7 +1,7 @@
 !> Values of the keys of a registry: their defaults, and what numbers and texts they take
 module dda_key_value
-   use dda_deck_key, only : full_name, in_range, key_kind, key_t, near_word, or_leave_out, wanted, &
-      & word_length
+   use dda_deck_key, only : full_name, has_word, in_range, key_kind, key_t, near_word, &
+      & or_leave_out, wanted, word_length
    use dda_deck_token, only : shown
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_number, to_text
@@ -147,15 +147,6 @@ contains
       if (.not. fits) problem = full_name(key)//" must be "// &
          wanted(key)//", got '"//shown(trim(text))//"'"//near_word(key, text)
    end function text_problem
-
-   !> Whether a list of words holds a word, whatever its case
-   pure logical function has_word(words, text)
-      character(len=*), intent(in) :: words  !! Words parted by one blank
-      character(len=*), intent(in) :: text   !! The word
-
-      has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
-      if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
-   end function has_word
 
    !> Read .true., .false., T, F and what is like them
    pure subroutine read_flag(text, flag, ok)

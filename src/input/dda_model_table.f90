@@ -1,7 +1,7 @@
 !> Which models there are, and what can be searched in them: the one place that says so. Decks are
 !> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
 module dda_model_table
-   use dda_deck_key, only : key_t, listed_words, word_length
+   use dda_deck_key, only : has_word, key_t, listed_words, word_length
    implicit none
    private
 
@@ -91,7 +91,7 @@ contains
       do i = 1, size(model)
          if (model(i)%mode /= mode .or. model(i)%geometry /= geometry) cycle
          why = trim(model(i)%why)
-         if (holds(model(i)%kinds, kind)) why = ""
+         if (has_word(model(i)%kinds, kind)) why = ""
       end do
    end function model_problem
 
@@ -105,9 +105,9 @@ contains
       why = "no rule says what it does"
       do i = size(search), 1, -1
          if (search(i)%group /= key%group) cycle
-         if (search(i)%names /= "" .and. .not. holds(search(i)%names, key%name)) cycle
+         if (search(i)%names /= "" .and. .not. has_word(search(i)%names, key%name)) cycle
          why = trim(search(i)%why)
-         if (holds(kinds_of(search(i), mode), kind)) why = ""
+         if (has_word(kinds_of(search(i), mode), kind)) why = ""
       end do
    end function search_problem
 
@@ -123,14 +123,6 @@ contains
       if (mode == "limerick") list = rule%limerick
    end function kinds_of
 
-   !> Whether a list of words holds one
-   pure logical function holds(list, word)
-      character(len=*), intent(in) :: list  !! The words, parted by blanks
-      character(len=*), intent(in) :: word  !! The word
-
-      holds = index(" "//list//" ", " "//trim(word)//" ") > 0
-   end function holds
-
    !> Modes and geometries that blocks of a kind are run with
    pure function models_of(kind) result(text)
       character(len=*), intent(in) :: kind
@@ -139,7 +131,7 @@ contains
 
       text = ""
       do i = 1, size(model)
-         if (holds(model(i)%kinds, kind)) text = text//", "//trim(model(i)%mode)//" " &
+         if (has_word(model(i)%kinds, kind)) text = text//", "//trim(model(i)%mode)//" " &
             & //trim(model(i)%geometry)
       end do
       text = text(3:)
@@ -153,7 +145,7 @@ contains
 
       text = ""
       do i = 1, size(search)
-         if (holds(kinds_of(search(i), mode), kind)) text = text//", "//name_of(search(i), "")
+         if (has_word(kinds_of(search(i), mode), kind)) text = text//", "//name_of(search(i), "")
       end do
       text = text(3:)
    end function searches_of
@@ -191,7 +183,7 @@ contains
       do i = 1, size(model)
          text = text//"| `"//trim(model(i)%mode)//"` | `"//trim(model(i)%geometry)//"` |"
          do k = 1, size(kinds)
-            text = text//" "//trim(merge("yes", "no ", holds(model(i)%kinds, kinds(k))))//" |"
+            text = text//" "//trim(merge("yes", "no ", has_word(model(i)%kinds, kinds(k))))//" |"
          end do
          text = text//ending(model(i)%why)
       end do
@@ -213,9 +205,9 @@ contains
       character(len=:), allocatable :: text  !! Such as: static, limerick
 
       text = ""
-      if (holds(rule%static, kind)) text = ", static"
-      if (holds(rule%dynamic, kind)) text = text//", dynamic"
-      if (holds(rule%limerick, kind)) text = text//", limerick"
+      if (has_word(rule%static, kind)) text = ", static"
+      if (has_word(rule%dynamic, kind)) text = text//", dynamic"
+      if (has_word(rule%limerick, kind)) text = text//", limerick"
       if (text == "") text = ", no"
       text = text(3:)
    end function modes_of
