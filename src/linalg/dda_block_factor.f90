@@ -88,7 +88,7 @@ contains
       !> Usable factor
       type(block_factor_t), intent(in) :: factor
       real(wp), intent(inout) :: x(:, :)  !! Right-hand side in, solution out: (n_dof, n_block)
-      real(wp) :: y(3, size(factor%panels%pivot, 2) + factor%plan%highest)
+      real(wp) :: y(3, factor%plan%n_triple*size(factor%plan%block) + factor%plan%highest)
       integer :: b, k
 
       associate (n => factor%plan%n_triple, block => factor%plan%block)

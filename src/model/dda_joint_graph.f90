@@ -14,8 +14,8 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, breaks, crushes, keep_joints, rubs, take_over
-   public :: unit_of_length
+   public :: add_joint_forces, breaks, crushes, joint_motion, keep_joints, open_joints
+   public :: push_blocks, rubs, take_over, unit_of_length
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -34,12 +34,10 @@ module dda_joint_graph
    type :: joint_graph_t
       !> Number of blocks that can move
       integer :: n_block = 0
-      !> Unknowns of a block: 3, or 6 with strain
-      integer :: n_dof = 3
       !> The two blocks of each joint, 0 for one that cannot move: (2, n_joint)
       integer, allocatable :: block(:, :)
       !> Opening at corner 1, at corner 2, and slip by unit motion of each block:
-      !> (n_dof, 3, 2, n_joint) [1, 1, m ...]
+      !> (3, 3, 2, n_joint) [1, 1, m]
       real(wp), allocatable :: row(:, :, :, :)
       !> What each joint can carry, one of joint_kind: (n_joint)
       integer, allocatable :: kind(:)
@@ -55,12 +53,12 @@ module dda_joint_graph
       real(wp), allocatable :: pull(:, :)
       !> Cohesion times length that each corner has while it is whole; likewise: (2, n_joint) [N/m]
       real(wp), allocatable :: cohesion(:, :)
-      !> Displacement by unit force at corner 1, corner 2 and along the joint: (3, n_joint) [m2/N]
-      real(wp), allocatable :: compliance(:, :)
+      !> Displacement by unit force at either corner and along the joint: (n_joint) [m2/N]
+      real(wp), allocatable :: compliance(:)
       !> Opening of the corners where nothing has moved, unallocated where there is none:
       !> (2, n_joint) [m]
       real(wp), allocatable :: gap(:, :)
-      !> Mass and moment of inertia of each block, for motion damped by mass: (n_dof, n_block)
+      !> Mass and moment of inertia of each block, for motion damped by mass: (3, n_block)
       real(wp), allocatable :: mass(:, :)
       !> Strength of bars that yield: each has a node of its own behind the blocks, on which it
       !> pulls against that load: (n_node) [N]
@@ -119,7 +117,7 @@ contains
       graph%kind = graph%kind(k)
       graph%friction = graph%friction(k)
       graph%length = graph%length(k)
-      graph%compliance = graph%compliance(:, k)
+      graph%compliance = graph%compliance(k)
       if (allocated(graph%gap)) graph%gap = graph%gap(:, k)
       if (allocated(graph%crush)) graph%crush = graph%crush(k)
       if (.not. breaks(graph)) return
@@ -133,7 +131,6 @@ contains
       type(joint_graph_t), intent(out) :: to
 
       to%n_block = from%n_block
-      to%n_dof = from%n_dof
       to%kind = from%kind
       if (allocated(from%bound)) to%bound = from%bound
       call move_alloc(from%block, to%block)
@@ -151,42 +148,24 @@ contains
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (3, n_block)
       !> Opening 1, opening 2, slip: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
-      integer :: b, d, j, k, side
-      real(wp) :: sum
 
-      if (graph%n_dof == 3) then
-         call joint_motion_3(size(graph%block, 2), graph%block, graph%row, motion, opening)
-         return
-      end if
-      do j = 1, size(graph%block, 2)
-         opening(:, j) = 0.0_wp
-         do side = 1, 2
-            b = graph%block(side, j)
-            if (b == 0) cycle
-            do k = 1, 3
-               sum = opening(k, j)
-               do d = 1, graph%n_dof
-                  sum = sum + graph%row(d, k, side, j)*motion(d, b)
-               end do
-               opening(k, j) = sum
-            end do
-         end do
-      end do
+      call open_joints(size(graph%block, 2), graph%block, graph%row, motion, opening)
    end subroutine joint_motion
 
-   !> The same for 3 unknowns of a block, with loops that the compiler unrolls
-   pure subroutine joint_motion_3(n_joint, block, row, motion, opening)
+   !> The same of some joints. Arrays are explicit here and below, for loops that the compiler
+   !> unrolls
+   pure subroutine open_joints(n_joint, block, row, motion, opening)
       integer, intent(in) :: n_joint            !! Number of joints
-      integer, intent(in) :: block(2, n_joint)  !! Blocks of each joint
+      integer, intent(in) :: block(2, n_joint)  !! Their blocks
       !> Opening and slip by unit motion of each block
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (3, n_block)
-      real(wp), intent(out), contiguous :: opening(:, :)
-      integer :: b, j, k, side
+      real(wp), intent(in), contiguous :: motion(:, :)
+      real(wp), intent(out) :: opening(3, n_joint)
       real(wp) :: x(3), y(3)
+      integer :: b, j, k, side
 
       do j = 1, n_joint
          y = 0.0_wp
@@ -202,38 +181,24 @@ contains
          end do
          opening(:, j) = y
       end do
-   end subroutine joint_motion_3
+   end subroutine open_joints
 
    !> Add what joint forces do to the blocks
    pure subroutine add_joint_forces(graph, force, load)
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in), contiguous :: force(:, :)
-      !> Forces on the blocks, to which theirs are added: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Forces on the blocks, to which theirs are added: (3, n_block) [N/m, N/m, N]
       real(wp), intent(inout), contiguous :: load(:, :)
-      integer :: b, j, k, side
 
-      if (graph%n_dof == 3) then
-         call add_joint_forces_3(size(graph%block, 2), graph%block, graph%row, force, load)
-         return
-      end if
-      do j = 1, size(graph%block, 2)
-         do side = 1, 2
-            b = graph%block(side, j)
-            if (b == 0) cycle
-            do k = 1, 3
-               load(:, b) = load(:, b) + graph%row(:, k, side, j)*force(k, j)
-            end do
-         end do
-      end do
+      call push_blocks(size(graph%block, 2), graph%block, graph%row, force, load)
    end subroutine add_joint_forces
 
-   !> The same for 3 unknowns of a block
-   pure subroutine add_joint_forces_3(n_joint, block, row, force, load)
+   !> The same of some joints
+   pure subroutine push_blocks(n_joint, block, row, force, load)
       integer, intent(in) :: n_joint, block(2, n_joint)
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      real(wp), intent(in), contiguous :: force(:, :)
-      !> Forces on the blocks, to which theirs are added: (3, n_block)
+      real(wp), intent(in) :: force(3, n_joint)
       real(wp), intent(inout), contiguous :: load(:, :)
       integer :: b, d, j, side
       real(wp) :: f(3)
@@ -250,5 +215,5 @@ contains
             end do
          end do
       end do
-   end subroutine add_joint_forces_3
+   end subroutine push_blocks
 end module dda_joint_graph

@@ -13,10 +13,10 @@
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : joint_stiffness, spring_forces
-   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix, &
-      & new_matrix
-   use dda_joint_graph, only : add_joint_forces, joint_motion
+   use dda_coulomb_law, only : add_springs, joint_stiffness
+   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix
+   use dda_joint_graph, only : joint_motion
+   use dda_joint_places, only : lay_out_joints
    use dda_kinds, only : small, wp
    use dda_small_systems, only : eliminate_full, substitute_full
    implicit none
@@ -29,7 +29,7 @@ module dda_coulomb_equations
    !> Of many blocks fewer are, so that they take no more numbers than this
    integer, parameter :: most_numbers = 40000
    !> Answers that are kept of any number of blocks
-   integer, parameter :: least_answers = 12
+   integer, parameter :: least_answers = 7
 
    !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, of soft
    !> assemblies more, in motion nearly all; results are the same from 1e-12 to 1e-9
@@ -56,7 +56,7 @@ module dda_coulomb_equations
       !> Their numbers in the order of their first change: (max_answer)
       integer, allocatable :: joint(:)
       !> Place of each joint among them, 0 for the others: (n_joint)
-      integer, allocatable :: place(:)
+      integer(small), allocatable :: place(:)
       !> What their stiffness is more than in the factor: (3, 3, max_answer)
       real(wp), allocatable :: difference(:, :, :)
       !> Number of the answer to a unit force along each of their parts, or 0: (3, max_answer)
@@ -65,7 +65,7 @@ module dda_coulomb_equations
       integer :: n_answer = 0, most_answers = max_answer
       !> Place and part that each belongs to: (2, max_answer)
       integer, allocatable :: origin(:, :)
-      !> Motion of all blocks: (n_dof, n_block, most_answers)
+      !> Motion of all blocks: (3, n_block, most_answers)
       real(wp), allocatable :: response(:, :, :)
       !> The largest of it: (max_answer)
       real(wp) :: reach(max_answer) = 0.0_wp
@@ -78,7 +78,7 @@ module dda_coulomb_equations
       !> Its exchanges of rows: (n_active)
       integer, allocatable :: exchange(:)
       !> The load that was solved for last with this factor, and the motion by the factor alone:
-      !> (n_dof, n_block); without entries if there is none
+      !> (3, n_block); without entries if there is none
       real(wp), allocatable :: last_load(:, :), last_motion(:, :)
       !> Largest force on a block by which a joint that sticks answers a unit motion
       real(wp) :: stiffest = 0.0_wp
@@ -96,18 +96,18 @@ contains
       integer :: j, n_joint
 
       n_joint = size(joints%shear_role)
-      call new_matrix(joints, equations%base)
+      call lay_out_joints(joints%graph, .false., equations%base%factor, equations%base%places)
       equations%most_answers = max(least_answers, min(max_answer, &
-         & most_numbers/(joints%graph%n_dof*max(1, joints%graph%n_block))))
+         & most_numbers/(3*max(1, joints%graph%n_block))))
       allocate (equations%base_face(3, n_joint), source=0_small)
-      allocate (equations%place(n_joint), source=0)
+      allocate (equations%place(n_joint), source=0_small)
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
       do j = 1, n_joint
          ! what slides answers along itself, too, by its friction
          equations%stiffest = max(equations%stiffest, (1.0_wp + joints%graph%friction(j)) &
-            & *maxval(joints%graph%row(:, :, :, j)**2)/minval(joints%graph%compliance(:, j)))
+            & *maxval(joints%graph%row(:, :, :, j)**2)/joints%graph%compliance(j))
       end do
    end subroutine new_coulomb_equations
 
@@ -149,14 +149,14 @@ contains
       do j = 1, size(equations%place)
          stiffness = joint_stiffness(joints, j, equations%face(:, j))
          do i = 1, 3
-            stiffness(i, i) = stiffness(i, i) + equations%viscosity/joints%graph%compliance(i, j)
+            stiffness(i, i) = stiffness(i, i) + equations%viscosity/joints%graph%compliance(j)
          end do
          call add_stiffness(equations%base, joints, j, stiffness)
       end do
       call factor_matrix(equations%base)
       equations%usable = equations%base%factor%usable
       equations%base_face = equations%face
-      equations%place(equations%joint(:equations%n_change)) = 0
+      equations%place(equations%joint(:equations%n_change)) = 0_small
       equations%n_change = 0
       equations%n_answer = 0
       equations%active = [integer ::]
@@ -178,7 +178,7 @@ contains
          if (equations%n_change == max_answer) return
          equations%n_change = equations%n_change + 1
          equations%joint(equations%n_change) = j
-         equations%place(j) = equations%n_change
+         equations%place(j) = int(equations%n_change, small)
          equations%answer(:, equations%n_change) = 0
          do k = 1, equations%n_answer
             equations%opening(:, equations%n_change, k) = opening_of(joints, j, &
@@ -213,7 +213,7 @@ contains
 
       ! a load at once that stands asks for none
       if (.not. allocated(equations%response)) allocate (equations%response( &
-         & joints%graph%n_dof, joints%graph%n_block, equations%most_answers))
+         & 3, joints%graph%n_block, equations%most_answers))
       equations%n_answer = equations%n_answer + 1
       a = equations%n_answer
       equations%answer(part, place) = a
@@ -236,7 +236,7 @@ contains
    pure function opening_of(joints, j, motion) result(opening)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j              !! Number of the joint
-      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (3, n_block)
       real(wp) :: opening(3)                !! Opening 1, opening 2, slip
       integer :: b, k, side
 
@@ -284,9 +284,9 @@ contains
       !> Usable equations; their matrix is factored again where changes have made them inexact
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> The load: (n_dof, n_block)
+      !> The load: (3, n_block)
       real(wp), intent(in), contiguous :: load(:, :)
-      !> Motion of the blocks: (n_dof, n_block)
+      !> Motion of the blocks: (3, n_block)
       real(wp), intent(out), contiguous :: motion(:, :)
       !> How the joints open with it: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
@@ -294,7 +294,7 @@ contains
       logical, intent(in), optional :: once
       !> What may be left of the load, and rounding of the openings of blocks that move far
       real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
-      real(wp), allocatable :: force(:, :), rest(:, :)
+      real(wp), allocatable :: rest(:, :)
       real(wp) :: bound, lost
       integer :: turn
 
@@ -305,12 +305,8 @@ contains
          if (size(equations%active) == 0) exit
          bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (turn == 1 .and. lost <= bound) exit
-         if (turn == 1) allocate (force, mold=opening)
-         call spring_forces(joints, equations%face, opening, force)
-         if (equations%viscosity > 0.0_wp) force = force &
-            & - equations%viscosity*opening/joints%graph%compliance
          rest = load - equations%damping*joints%graph%mass*motion
-         call add_joint_forces(joints%graph, force, rest)
+         call add_springs(joints, equations%face, opening, equations%viscosity, rest)
          if (maxval(abs(rest)) <= bound) exit
          if (turn == 1) then
             call substitute(equations%base%factor, rest)
@@ -354,7 +350,7 @@ contains
    pure subroutine add_changes(equations, joints, x, lost)
       type(coulomb_equations_t), intent(in) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(inout), contiguous :: x(:, :)  !! The motion: (n_dof, n_block)
+      real(wp), intent(inout), contiguous :: x(:, :)  !! The motion: (3, n_block)
       real(wp), intent(out) :: lost                   !! Force that the sum may lose by rounding
       real(wp) :: y(size(equations%active))
       integer :: i

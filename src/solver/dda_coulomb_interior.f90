@@ -16,8 +16,8 @@ module dda_coulomb_interior
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_coulomb_law, only : imbalance
    use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix
-   use dda_joint_graph, only : add_joint_forces, joint_motion
-   use dda_kinds, only : wp
+   use dda_joint_graph, only : joint_motion, open_joints, push_blocks
+   use dda_kinds, only : small, wp
    implicit none
    private
 
@@ -29,7 +29,7 @@ module dda_coulomb_interior
 
    !> An iterate, or a step from it
    type :: coulomb_interior_t
-      real(wp), allocatable :: motion(:, :)  !! Motion: (n_dof, n_block)
+      real(wp), allocatable :: motion(:, :)  !! Motion: (3, n_block)
       real(wp), allocatable :: force(:, :)   !! N1, N2, T: (3, n_joint)
       real(wp), allocatable :: slack(:, :)   !! Distance of the forces from each face: (4, n_joint)
       real(wp), allocatable :: flow(:, :)    !! Opening or slip at each face: (4, n_joint)
@@ -37,7 +37,7 @@ module dda_coulomb_interior
 
    !> What an iterate leaves of the equations
    type :: rest_t
-      real(wp), allocatable :: balance(:, :)  !! Of the balance of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: balance(:, :)  !! Of the balance of the blocks: (3, n_block)
       real(wp), allocatable :: opening(:, :)  !! Of the opening of the joints: (3, n_joint)
       real(wp) :: slack = 0.0_wp              !! The most of the slacks
    end type rest_t
@@ -48,7 +48,7 @@ contains
    pure subroutine interior_motion(joints, matrix, load, damping, tolerance, x, settled)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_matrix_t), intent(inout) :: matrix
-      !> The load: (n_dof, n_block)
+      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
@@ -64,7 +64,7 @@ contains
       type(rest_t) :: rest
       real(wp) :: best, gap, length, mean, merit
       integer :: i, n_face, waited
-      logical :: face(4, size(joints%shear_role))
+      logical(small) :: face(4, size(joints%shear_role))
 
       call list_faces(joints, face)
       n_face = count(face)
@@ -103,7 +103,7 @@ contains
    !> Which faces the forces of each joint have
    pure subroutine list_faces(joints, face)
       type(coulomb_joints_t), intent(in) :: joints
-      logical, intent(out) :: face(:, :)  !! Whether there is a face: (4, n_joint)
+      logical(small), intent(out) :: face(:, :)  !! Whether there is a face: (4, n_joint)
 
       face(:2, :) = joints%end_role == end_role%contact
       face(3, :) = joints%shear_role == shear_role%frictional
@@ -114,7 +114,7 @@ contains
    pure subroutine begin(joints, load, face, x)
       type(coulomb_joints_t), intent(in) :: joints
       real(wp), intent(in) :: load(:, :)
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(out) :: x
       real(wp) :: push
       integer :: j, n_joint
@@ -151,7 +151,7 @@ contains
    pure subroutine find_rest(joints, load, damping, face, x, rest)
       type(coulomb_joints_t), intent(in) :: joints
       real(wp), intent(in) :: load(:, :), damping
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       type(rest_t), intent(inout) :: rest
       integer :: j, n_joint
@@ -161,7 +161,9 @@ contains
          & allocate (rest%balance(size(load, 1), size(load, 2)), rest%opening(3, n_joint))
       call imbalance(joints, load - damping*joints%graph%mass*x%motion, x%force, rest%balance)
       call joint_motion(joints%graph, x%motion, rest%opening)
-      rest%opening = -rest%opening - joints%graph%compliance*x%force
+      do j = 1, n_joint
+         rest%opening(:, j) = -rest%opening(:, j) - joints%graph%compliance(j)*x%force(:, j)
+      end do
       if (allocated(joints%graph%gap)) &
          & rest%opening(:2, :) = rest%opening(:2, :) - joints%graph%gap
       rest%opening(:2, :) = rest%opening(:2, :) + x%flow(:2, :)
@@ -177,7 +179,7 @@ contains
    !> What an iterate leaves of the slacks of a joint
    pure function lack_of(joints, face, x, j) result(lack)
       type(coulomb_joints_t), intent(in) :: joints
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       integer, intent(in) :: j  !! Number of the joint
       real(wp) :: lack(4)       !! Distance of its forces from each face less the slack: (4)
@@ -190,7 +192,7 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_matrix_t), intent(inout) :: matrix
       real(wp), intent(in) :: damping
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       real(wp) :: ratio(4), spring(3, 3)
       integer :: i, j
@@ -201,10 +203,10 @@ contains
          ratio = ratio_of(x, face, j)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%absent) cycle
-            spring(i, i) = 1.0_wp/(joints%graph%compliance(i, j) + ratio(i))
+            spring(i, i) = 1.0_wp/(joints%graph%compliance(j) + ratio(i))
          end do
          if (joints%shear_role(j) /= shear_role%absent) then
-            spring(3, 3) = 1.0_wp/(joints%graph%compliance(3, j) + ratio(3) + ratio(4))
+            spring(3, 3) = 1.0_wp/(joints%graph%compliance(j) + ratio(3) + ratio(4))
             do i = 1, 2
                spring(3, i) = -joints%graph%friction(j)*(ratio(3) - ratio(4))*spring(i, i) &
                   & *spring(3, 3)
@@ -220,89 +222,94 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_matrix_t), intent(in) :: matrix
       real(wp), intent(in) :: damping
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       type(rest_t), intent(in) :: rest
       !> The step; its flow is what it is to change of the products of slack and flow before
       type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
       real(wp), parameter :: rounding = 1.0e-15_wp
-      real(wp) :: drive(3, size(face, 2)), force(3, size(face, 2))
-      real(wp), dimension(size(step%motion, 1), size(step%motion, 2)) :: left, motion
-      real(wp) :: last, source(4)
+      real(wp) :: drive(3), force(3), last, more(4), motion(3, size(step%motion, 2)), opening(3)
       integer :: j, turn
 
-      do j = 1, size(face, 2)
-         step%slack(:, j) = lack_of(joints, face, x, j)
-         source = merge(step%flow(:, j)/x%slack(:, j) - ratio_of(x, face, j)*step%slack(:, j), &
-            & 0.0_wp, face(:, j))
-         drive(:2, j) = rest%opening(:2, j) + source(:2)
-         drive(3, j) = rest%opening(3, j) + source(3) - source(4)
-      end do
       step%motion = 0.0_wp
       step%force = 0.0_wp
-      left = rest%balance
+      motion = rest%balance
+      do j = 1, size(face, 2)
+         step%slack(:, j) = lack_of(joints, face, x, j)
+         call answer_joint(joints, face, x, j, drive_of(face, x, rest, step, j), force, more)
+         call push_blocks(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), force, motion)
+      end do
       last = huge(1.0_wp)
       do turn = 0, max_correction
-         motion = left
-         call answer_joints(joints, face, x, drive, force)
-         call add_joint_forces(joints%graph, force, motion)
          call substitute(matrix%factor, motion)
          step%motion = step%motion + motion
-         call joint_motion(joints%graph, motion, force)
-         drive = drive - force
-         call answer_joints(joints, face, x, drive, force, step%slack)
-         step%force = step%force + force
-         drive = 0.0_wp
-         call imbalance(joints, rest%balance - damping*joints%graph%mass*step%motion, &
-            & step%force, left)
-         if (.not. maxval(abs(left)) < 0.5_wp*last .or. maxval(abs(left)) < rounding) exit
-         last = maxval(abs(left))
+         do j = 1, size(face, 2)
+            drive = 0.0_wp
+            if (turn == 0) drive = drive_of(face, x, rest, step, j)
+            call open_joints(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), motion, &
+               & opening)
+            call answer_joint(joints, face, x, j, drive - opening, force, more)
+            step%force(:, j) = step%force(:, j) + force
+            step%slack(:, j) = step%slack(:, j) + more
+         end do
+         call imbalance(joints, rest%balance - damping*joints%graph%mass*step%motion, step%force, &
+            & motion)
+         if (.not. maxval(abs(motion)) < 0.5_wp*last .or. maxval(abs(motion)) < rounding) exit
+         last = maxval(abs(motion))
       end do
       step%flow = merge((step%flow - x%flow*step%slack)/x%slack, 0.0_wp, face)
    end subroutine find_step
 
-   !> Forces of the springs under a drive, and what they add to the slacks, as sums that cancel
-   !> nothing
-   pure subroutine answer_joints(joints, face, x, drive, force, slack)
-      type(coulomb_joints_t), intent(in) :: joints
-      logical, intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      !> What the springs are pressed together by: (3, n_joint)
-      real(wp), intent(in) :: drive(:, :)
-      real(wp), intent(out) :: force(:, :)              !! The forces: (3, n_joint)
-      real(wp), intent(inout), optional :: slack(:, :)  !! Receives what is added: (4, n_joint)
-      real(wp) :: bound, more(4), r(4), spring
-      integer :: i, j
+   !> What the springs of a joint are pressed together by, while the step has the slacks that lack
+   pure function drive_of(face, x, rest, step, j) result(drive)
+      logical(small), intent(in) :: face(:, :)
+      type(coulomb_interior_t), intent(in) :: x, step
+      type(rest_t), intent(in) :: rest
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: drive(3)
+      real(wp) :: source(4)
 
-      do j = 1, size(drive, 2)
-         r = ratio_of(x, face, j)
-         more = 0.0_wp
-         associate (c => joints%graph%compliance(:, j), f => force(:, j))
-            f = 0.0_wp
-            do i = 1, 2
-               if (joints%end_role(i, j) == end_role%absent) cycle
-               f(i) = drive(i, j)/(c(i) + r(i))
-            end do
-            more(:2) = merge(f(:2), 0.0_wp, face(:2, j))
-            if (joints%shear_role(j) /= shear_role%absent) then
-               spring = 1.0_wp/(c(3) + r(3) + r(4))
-               bound = joints%graph%friction(j)*(f(1) + f(2))
-               f(3) = (drive(3, j) - (r(3) - r(4))*bound)*spring
-               if (face(3, j)) then
-                  more(3) = (bound*(c(3) + 2.0_wp*r(4)) + drive(3, j))*spring
-                  more(4) = (bound*(c(3) + 2.0_wp*r(3)) - drive(3, j))*spring
-               end if
-            end if
-         end associate
-         if (present(slack)) slack(:, j) = slack(:, j) + more
-      end do
-   end subroutine answer_joints
+      source = merge(step%flow(:, j)/x%slack(:, j) - ratio_of(x, face, j)*step%slack(:, j), &
+         & 0.0_wp, face(:, j))
+      drive = rest%opening(:, j) + source(:3)
+      drive(3) = drive(3) - source(4)
+   end function drive_of
+
+   !> Forces of the springs of a joint under a drive, and what they add to its slacks, as sums that
+   !> cancel nothing
+   pure subroutine answer_joint(joints, face, x, j, drive, force, more)
+      type(coulomb_joints_t), intent(in) :: joints
+      logical(small), intent(in) :: face(:, :)
+      type(coulomb_interior_t), intent(in) :: x
+      integer, intent(in) :: j          !! Number of the joint
+      real(wp), intent(in) :: drive(3)  !! What the springs are pressed together by
+      real(wp), intent(out) :: force(3), more(4)
+      real(wp) :: bound, r(4), spring
+      integer :: i
+
+      r = ratio_of(x, face, j)
+      more = 0.0_wp
+      force = 0.0_wp
+      associate (c => joints%graph%compliance(j))
+         do i = 1, 2
+            if (joints%end_role(i, j) /= end_role%absent) force(i) = drive(i)/(c + r(i))
+         end do
+         more(:2) = merge(force(:2), 0.0_wp, face(:2, j))
+         if (joints%shear_role(j) == shear_role%absent) return
+         spring = 1.0_wp/(c + r(3) + r(4))
+         bound = joints%graph%friction(j)*(force(1) + force(2))
+         force(3) = (drive(3) - (r(3) - r(4))*bound)*spring
+         if (.not. face(3, j)) return
+         more(3) = (bound*(c + 2.0_wp*r(4)) + drive(3))*spring
+         more(4) = (bound*(c + 2.0_wp*r(3)) - drive(3))*spring
+      end associate
+   end subroutine answer_joint
 
    !> Flow over slack at the faces of a joint
    pure function ratio_of(x, face, j) result(ratio)
       type(coulomb_interior_t), intent(in) :: x
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       integer, intent(in) :: j  !! Number of the joint
       real(wp) :: ratio(4)      !! None where there is no face: (4)
 
@@ -311,7 +318,7 @@ contains
 
    !> The longest step, 1 at most, that keeps a share of every slack and flow
    pure real(wp) function longest(face, x, step, share)
-      logical, intent(in) :: face(:, :)
+      logical(small), intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x, step
       real(wp), intent(in) :: share  !! How much of the way to the first zero is gone
       integer :: i, j

@@ -54,7 +54,7 @@ contains
    !> Joints in units of their own, of a graph that is kept
    pure subroutine new_coulomb_joints(graph, load, joints)
       type(joint_graph_t), intent(in) :: graph
-      !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
+      !> What they carry, by which their unit of force is chosen: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The same in units of their own
       type(coulomb_joints_t), intent(out) :: joints
@@ -67,7 +67,7 @@ contains
    !> Joints in units of their own, taken over from a graph
    pure subroutine take_coulomb_joints(graph, load, joints)
       type(joint_graph_t), intent(inout) :: graph
-      !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
+      !> What they carry, by which their unit of force is chosen: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The same in units of their own
       type(coulomb_joints_t), intent(out) :: joints
@@ -76,7 +76,7 @@ contains
       call take_over(graph, joints%graph)
       associate (scaled => joints%graph)
          joints%arm_unit = positive_or_one(0.5_wp*mean(scaled%length))
-         compliance = typical(sum(scaled%compliance, 1)/3.0_wp)
+         compliance = typical(scaled%compliance)
          mass = positive_or_one(mean(scaled%mass(1, :)))
          joints%motion_unit = compliance
          scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
@@ -90,6 +90,8 @@ contains
       call set_force_unit(joints, load)
       call drop_faint_strength(joints)
       call set_roles(joints)
+      ! roles tell what kinds have told
+      deallocate (joints%graph%kind)
    end subroutine take_coulomb_joints
 
    !> Strength that no force feels is none: dry joints have a start of their own
@@ -104,7 +106,7 @@ contains
    !> Choose the unit of force, and with it that of motion; not by a load that is zero
    pure subroutine set_force_unit(joints, load)
       type(coulomb_joints_t), intent(inout) :: joints
-      real(wp), intent(in) :: load(:, :)  !! What they carry: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)  !! What they carry: (3, n_block) [N/m, N/m, N]
       real(wp) :: unit
 
       unit = mean(norm2(load(:2, :), 1))
@@ -163,8 +165,8 @@ contains
    !> Loads in the units of the joints
    pure function in_units(joints, load) result(scaled)
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: load(:, :)                !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp) :: scaled(size(load, 1), size(load, 2))  !! The same in units: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)                !! Loads: (3, n_block) [N/m, N/m, N]
+      real(wp) :: scaled(size(load, 1), size(load, 2))  !! The same in units: (3, n_block)
 
       scaled(:2, :) = load(:2, :)/joints%force_unit
       scaled(3:, :) = load(3:, :)/(joints%force_unit*joints%arm_unit)
@@ -173,9 +175,9 @@ contains
    !> Loads in SI units
    pure function in_newtons(joints, load) result(newtons)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Loads in units: (n_dof, n_block)
+      !> Loads in units: (3, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Loads: (3, n_block) [N/m, N/m, N]
       real(wp) :: newtons(size(load, 1), size(load, 2))
 
       newtons(:2, :) = load(:2, :)*joints%force_unit
@@ -185,9 +187,9 @@ contains
    !> Motion of blocks in the units of the joints
    pure function in_motion_units(joints, motion) result(scaled)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Motion: (n_dof, n_block) [m, m, 1 ...]
+      !> Motion: (3, n_block) [m, m, 1]
       real(wp), intent(in) :: motion(:, :)
-      !> The same in units: (n_dof, n_block)
+      !> The same in units: (3, n_block)
       real(wp) :: scaled(size(motion, 1), size(motion, 2))
 
       scaled(:2, :) = motion(:2, :)/joints%motion_unit
@@ -197,9 +199,9 @@ contains
    !> Motion of blocks in SI units
    pure function in_metres(joints, motion) result(metres)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Motion in units: (n_dof, n_block)
+      !> Motion in units: (3, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> Motion: (n_dof, n_block) [m, m, 1 ...]
+      !> Motion: (3, n_block) [m, m, 1]
       real(wp) :: metres(size(motion, 1), size(motion, 2))
 
       metres(:2, :) = motion(:2, :)*joints%motion_unit

@@ -13,14 +13,14 @@
 !> Equation (M4) of docs/method.md
 module dda_coulomb_law
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_joint_graph, only : add_joint_forces, breaks
+   use dda_joint_graph, only : add_joint_forces, breaks, push_blocks
    use dda_kinds, only : small, wp
    implicit none
    private
 
    public :: coulomb_state_t, face, face_enum, break_joint, strength
-   public :: unloaded_state, apply_law, joint_stiffness, spring_forces, imbalance, &
-      & force_faces, shear_face
+   public :: unloaded_state, add_springs, apply_law, force_faces, imbalance, joint_stiffness
+   public :: shear_face, spring_forces
 
    !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
@@ -37,7 +37,7 @@ module dda_coulomb_law
 
    !> State of an assembly under a load
    type :: coulomb_state_t
-      !> Motion of the blocks since nothing was loaded: (n_dof, n_block)
+      !> Motion of the blocks since nothing was loaded: (3, n_block)
       real(wp), allocatable :: motion(:, :)
       !> N1, N2, T of each joint: (3, n_joint)
       real(wp), allocatable :: force(:, :)
@@ -49,7 +49,7 @@ module dda_coulomb_law
       integer(small), allocatable :: face(:, :)
       !> Corners that have kept their strength; unallocated where none has any: (2, n_joint)
       logical, allocatable :: whole(:, :)
-      !> Load that it carries: (n_dof, n_block)
+      !> Load that it carries: (3, n_block)
       real(wp), allocatable :: load(:, :)
    end type coulomb_state_t
 
@@ -59,12 +59,11 @@ contains
    !> gaps
    pure type(coulomb_state_t) function unloaded_state(joints) result(state)
       type(coulomb_joints_t), intent(in) :: joints
-      integer :: i, j, n_block, n_dof, n_joint
+      integer :: i, j, n_block, n_joint
 
-      n_dof = joints%graph%n_dof
       n_block = joints%graph%n_block
       n_joint = size(joints%shear_role)
-      allocate (state%motion(n_dof, n_block), state%load(n_dof, n_block))
+      allocate (state%motion(3, n_block), state%load(3, n_block))
       allocate (state%force(3, n_joint), state%gap(2, n_joint), state%slip(n_joint))
       allocate (state%face(3, n_joint))
       state%motion = 0.0_wp
@@ -138,7 +137,7 @@ contains
       do j = 1, size(opening, 2)
          bond = strength(joints, before, j)
          do i = 1, 2
-            associate (c => joints%graph%compliance(i, j), f => after%force(i, j))
+            associate (c => joints%graph%compliance(j), f => after%force(i, j))
                after%gap(i, j) = 0.0_wp
                select case (joints%end_role(i, j))
                case (end_role%contact)
@@ -155,7 +154,7 @@ contains
                end select
             end associate
          end do
-         trial = before%force(3, j) - opening(3, j)/joints%graph%compliance(3, j)
+         trial = before%force(3, j) - opening(3, j)/joints%graph%compliance(j)
          after%face(3, j) = face%stuck
          after%force(3, j) = trial
          if (joints%shear_role(j) == shear_role%frictional) then
@@ -167,7 +166,7 @@ contains
          end if
          after%face(3, j) = shear_face(joints, j, after%face(:2, j), after%face(3, j))
          if (after%face(3, j) == face%free) after%force(3, j) = 0.0_wp
-         after%slip(j) = before%slip(j) + joints%graph%compliance(3, j)*(after%force(3, j) - trial)
+         after%slip(j) = before%slip(j) + joints%graph%compliance(j)*(after%force(3, j) - trial)
       end do
       if (.not. allocated(before%whole)) return
       after%whole = before%whole
@@ -196,7 +195,7 @@ contains
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
             if (.not. state%force(i, j) < -bond(i)) cycle
-            state%gap(i, j) = -state%force(i, j)*joints%graph%compliance(i, j)
+            state%gap(i, j) = -state%force(i, j)*joints%graph%compliance(j)
             state%force(i, j) = 0.0_wp
             state%face(i, j) = face%open
             broken = .true.
@@ -216,7 +215,7 @@ contains
          end if
          if (.not. broken) exit
       end do
-      state%slip(j) = state%slip(j) + joints%graph%compliance(3, j)*(state%force(3, j) - shear)
+      state%slip(j) = state%slip(j) + joints%graph%compliance(j)*(state%force(3, j) - shear)
    end subroutine break_joint
 
    !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
@@ -229,7 +228,7 @@ contains
 
       stiffness = 0.0_wp
       do i = 1, 2
-         if (faces(i) == face%closed) stiffness(i, i) = 1.0_wp/joints%graph%compliance(i, j)
+         if (faces(i) == face%closed) stiffness(i, i) = 1.0_wp/joints%graph%compliance(j)
       end do
       select case (faces(3))
       case (face%slides, face%slides_back)
@@ -237,11 +236,34 @@ contains
             stiffness(3, i) = real(faces(3), wp)*joints%graph%friction(j)*stiffness(i, i)
          end do
       case (face%stuck)
-         stiffness(3, 3) = 1.0_wp/joints%graph%compliance(3, j)
+         stiffness(3, 3) = 1.0_wp/joints%graph%compliance(j)
       end select
    end function joint_stiffness
 
-   !> Forces by which the springs of all joints answer openings while the faces stay
+   !> Forces by which the springs of a joint answer its openings while the faces stay
+   pure function spring_force(joints, j, faces, opening) result(force)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j
+      integer(small), intent(in) :: faces(3)
+      real(wp), intent(in) :: opening(3)  !! Opening 1, opening 2, slip
+      real(wp) :: force(3)                !! N1, N2, T
+      integer :: i
+
+      do i = 1, 2
+         force(i) = 0.0_wp
+         if (faces(i) == face%closed) force(i) = -opening(i)/joints%graph%compliance(j)
+      end do
+      select case (faces(3))
+      case (face%stuck)
+         force(3) = -opening(3)/joints%graph%compliance(j)
+      case (face%free)
+         force(3) = 0.0_wp
+      case default
+         force(3) = real(faces(3), wp)*joints%graph%friction(j)*(force(1) + force(2))
+      end select
+   end function spring_force
+
+   !> The same of all joints
    pure subroutine spring_forces(joints, faces, opening, force)
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
@@ -249,31 +271,36 @@ contains
       real(wp), intent(in), contiguous :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
       real(wp), intent(out), contiguous :: force(:, :)
-      integer :: i, j
+      integer :: j
 
       do j = 1, size(faces, 2)
-         do i = 1, 2
-            force(i, j) = 0.0_wp
-            if (faces(i, j) == face%closed) &
-               & force(i, j) = -opening(i, j)/joints%graph%compliance(i, j)
-         end do
-         select case (faces(3, j))
-         case (face%stuck)
-            force(3, j) = -opening(3, j)/joints%graph%compliance(3, j)
-         case (face%free)
-            force(3, j) = 0.0_wp
-         case default
-            force(3, j) = real(faces(3, j), wp)*joints%graph%friction(j)*(force(1, j) + force(2, j))
-         end select
+         force(:, j) = spring_force(joints, j, faces(:, j), opening(:, j))
       end do
    end subroutine spring_forces
+
+   !> Add to a load what the springs of all joints make of openings while the faces stay, and how
+   !> viscous joints damp them
+   pure subroutine add_springs(joints, faces, opening, viscosity, load)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer(small), intent(in), contiguous :: faces(:, :)
+      real(wp), intent(in), contiguous :: opening(:, :)  !! Openings and slips: (3, n_joint)
+      real(wp), intent(in) :: viscosity                  !! Multiple of their stiffness
+      real(wp), intent(inout), contiguous :: load(:, :)  !! The load: (3, n_block)
+      integer :: j
+
+      do j = 1, size(opening, 2)
+         call push_blocks(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), &
+            & spring_force(joints, j, faces(:, j), opening(:, j)) &
+            & - viscosity*opening(:, j)/joints%graph%compliance(j), load)
+      end do
+   end subroutine add_springs
 
    !> What is not balanced of a load
    pure subroutine imbalance(joints, load, force, rest)
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in), contiguous :: load(:, :)   !! The load: (n_dof, n_block)
+      real(wp), intent(in), contiguous :: load(:, :)   !! The load: (3, n_block)
       real(wp), intent(in), contiguous :: force(:, :)  !! Joint forces: (3, n_joint)
-      real(wp), intent(out), contiguous :: rest(:, :)  !! Load and joint forces: (n_dof, n_block)
+      real(wp), intent(out), contiguous :: rest(:, :)  !! Load and joint forces: (3, n_block)
 
       rest = load
       call add_joint_forces(joints%graph, force, rest)
@@ -291,7 +318,7 @@ contains
          do i = 1, 2
             change(i, j) = -state%force(i, j)
             if (faces(i, j) == face%closed) then
-               change(i, j) = -state%gap(i, j)/joints%graph%compliance(i, j)
+               change(i, j) = -state%gap(i, j)/joints%graph%compliance(j)
             end if
          end do
          select case (faces(3, j))

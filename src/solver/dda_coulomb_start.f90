@@ -40,7 +40,8 @@ contains
       jump%tolerance = balance
       call find_elastic_motion(joints, equations, load, state, path_damping, largest)
       jump%far = far_factor*max(1.0_wp, largest)
-      call jump_to_balance(joints, equations, load, state, jump, end)
+      state%load = load
+      call jump_to_balance(joints, equations, (state%motion), state, jump, end)
    end procedure load_at_once
 
    !> See how soft an assembly is; what moves freely is not soft
@@ -137,6 +138,8 @@ contains
       passes = 0
       left = huge(1.0_wp)
       before = unloaded_state(joints)
+      ! the law does not ask for them
+      deallocate (before%motion, before%load)
       faces = after%face
       do pass = 1, most
          call use_faces(equations, joints, faces, damping)

@@ -6,13 +6,13 @@
 module dda_event_rates
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : coulomb_state_t, imbalance, spring_forces
-   use dda_joint_graph, only : add_joint_forces
+   use dda_coulomb_law, only : add_springs, coulomb_state_t, imbalance, spring_forces
+   use dda_joint_graph, only : push_blocks
    use dda_kinds, only : small, wp
    implicit none
    private
 
-   public :: find_rates, new_rates, pivot_to_load, rates_t, undamp_rates
+   public :: find_rates, pivot_to_load, rates_t, undamp_rates
    public :: rate_law_t, set_rate_law, weak_force
 
    !> What a state leaves open
@@ -45,7 +45,7 @@ module dda_event_rates
 
    !> Rates of a state while its joints keep what they do
    type :: rates_t
-      !> Motion: (n_dof, n_block)
+      !> Motion: (3, n_block)
       real(wp), allocatable :: motion(:, :)
       !> Opening 1, opening 2, slip: (3, n_joint)
       real(wp), allocatable :: opening(:, :)
@@ -123,18 +123,6 @@ module dda_event_rates
 
 contains
 
-   !> Room for rates, of a state that does not change
-   pure type(rates_t) function new_rates(state) result(rates)
-      type(coulomb_state_t), intent(in) :: state
-
-      allocate (rates%face, source=state%face)
-      allocate (rates%motion, mold=state%motion)
-      allocate (rates%force, rates%opening, mold=state%force)
-      rates%motion = 0.0_wp
-      rates%force = 0.0_wp
-      rates%opening = 0.0_wp
-   end function new_rates
-
    !> Find rates that agree with their faces. Where no faces do, friction lets the forces of the
    !> assembly drop however slowly the load grows: there are none
    pure subroutine find_rates(joints, equations, state, load_rate, viscosity, rates, found, &
@@ -143,7 +131,7 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
-      !> Rate of the load: (n_dof, n_block)
+      !> Rate of the load: (3, n_block)
       real(wp), intent(in), contiguous :: load_rate(:, :)
       !> Damping at the joints, as a multiple of their stiffness
       real(wp), intent(in) :: viscosity
@@ -153,14 +141,44 @@ contains
       logical, intent(out) :: found
       !> Rates of opening that are prescribed, none if absent: (3, n_joint)
       real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
-      type(rate_law_t) :: law
       real(wp), allocatable :: damped(:, :)
+      integer :: j
+
+      ! forces come last
+      if (allocated(rates%force)) deallocate (rates%force)
+      call find_faces(joints, equations, state, load_rate, viscosity, rates, found, opening_rate)
+      if (.not. found) return
+      allocate (rates%force, mold=rates%opening)
+      call spring_forces(joints, rates%face, rates%opening, rates%force)
+      damped = equations%damping*joints%graph%mass*rates%motion
+      if (viscosity > 0.0_wp) then
+         do j = 1, size(rates%opening, 2)
+            call push_blocks(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), &
+               & viscosity*rates%opening(:, j)/joints%graph%compliance(j), damped)
+         end do
+      end if
+      rates%unbalanced = maxval(abs(damped))/max(rates%drive, tiny(1.0_wp))
+   end subroutine find_rates
+
+   !> Find the faces, with motion and openings
+   pure subroutine find_faces(joints, equations, state, load_rate, viscosity, rates, found, &
+      & opening_rate)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      type(coulomb_state_t), intent(in) :: state
+      real(wp), intent(in), contiguous :: load_rate(:, :)
+      real(wp), intent(in) :: viscosity
+      type(rates_t), intent(inout) :: rates
+      logical, intent(out) :: found
+      real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
+      type(rate_law_t) :: law
       integer(small), dimension(3, size(state%face, 2)) :: target, seen
       integer :: n_wrong, pass
 
       found = .false.
       call set_rate_law(joints, state, law)
-      if (.not. allocated(rates%face)) rates = new_rates(state)
+      if (.not. allocated(rates%motion)) allocate (rates%motion, mold=state%motion)
+      if (.not. allocated(rates%opening)) allocate (rates%opening, mold=state%force)
       rates%face = state%face
       do pass = 1, most_passes
          call solve_rates(joints, equations, load_rate, viscosity, rates, opening_rate)
@@ -170,7 +188,8 @@ contains
          call follow_law(joints, law, rates%opening, rates%still, target)
          n_wrong = count(target /= rates%face)
          found = n_wrong == 0
-         if (found .or. (pass >= few_passes .and. n_wrong <= few_wrong)) exit
+         if (found) return
+         if (pass >= few_passes .and. n_wrong <= few_wrong) exit
          ! faces that have been seen come again for ever
          if (pass > 1) then
             if (all(target == seen)) exit
@@ -178,21 +197,14 @@ contains
          if (iand(pass, pass - 1) == 0) seen = rates%face
          rates%face = target
       end do
-      if (.not. found) then
-         call pivot_to_load(joints, equations, law, load_rate, rates%motion, rates%opening, &
-            & rates%face, found, opening_rate)
-         rates%still = no_rate(rates%motion, rates%opening)
-      end if
-      call spring_forces(joints, rates%face, rates%opening, rates%force)
-      damped = equations%damping*joints%graph%mass*rates%motion
-      if (viscosity > 0.0_wp) call add_joint_forces(joints%graph, &
-         & viscosity*rates%opening/joints%graph%compliance, damped)
-      rates%unbalanced = maxval(abs(damped))/max(rates%drive, tiny(1.0_wp))
-   end subroutine find_rates
+      call pivot_to_load(joints, equations, law, load_rate, rates%motion, rates%opening, &
+         & rates%face, found, opening_rate)
+      rates%still = no_rate(rates%motion, rates%opening)
+   end subroutine find_faces
 
    !> Rates of opening that may be none, because rounding makes as much
    pure real(wp) function no_rate(motion, opening)
-      real(wp), intent(in) :: motion(:, :)   !! Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)   !! Motion of the blocks: (3, n_block)
       real(wp), intent(in) :: opening(:, :)  !! How the joints open with it: (3, n_joint)
 
       ! what moves freely does so by any multiple of what forces open
@@ -209,8 +221,8 @@ contains
       type(rates_t), intent(inout) :: rates
       integer, parameter :: max_turn = 40
       real(wp), parameter :: exact = 1.0e-12_wp, less = 0.9_wp
-      real(wp) :: more(size(load_rate, 1), size(load_rate, 2)), opening(3, size(rates%face, 2))
-      real(wp) :: rest(size(load_rate, 1), size(load_rate, 2)), before, scale
+      real(wp), dimension(3, size(load_rate, 2)) :: more, rest
+      real(wp) :: before, scale
       integer :: turn
 
       scale = max(rates%drive, tiny(1.0_wp))
@@ -218,9 +230,10 @@ contains
          if (rates%unbalanced <= exact) exit
          before = rates%unbalanced
          call imbalance(joints, load_rate, rates%force, rest)
-         call solve_equations(equations, joints, rest, more, opening, once=.true.)
+         ! forces make room for openings, from which they are found anew
+         call solve_equations(equations, joints, rest, more, rates%force, once=.true.)
          rates%motion = rates%motion + more
-         rates%opening = rates%opening + opening
+         rates%opening = rates%opening + rates%force
          call spring_forces(joints, rates%face, rates%opening, rates%force)
          rates%unbalanced = equations%damping*maxval(abs(joints%graph%mass*more))/scale
          if (rates%unbalanced > less*before) exit
@@ -251,20 +264,15 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
       integer(small), intent(in), contiguous :: faces(:, :)
-      !> The load: (n_dof, n_block)
+      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> Both: (n_dof, n_block)
+      !> Both: (3, n_block)
       real(wp), intent(out), contiguous :: driven(:, :)
       !> The openings: (3, n_joint)
       real(wp), intent(in), contiguous, optional :: opening(:, :)
-      real(wp), allocatable :: force(:, :)
 
       driven = load
-      if (.not. present(opening)) return
-      if (.not. any(abs(opening) > 0.0_wp)) return
-      allocate (force, mold=opening)
-      call spring_forces(joints, faces, opening, force)
-      call imbalance(joints, load, force, driven)
+      if (present(opening)) call add_springs(joints, faces, opening, 0.0_wp, driven)
    end subroutine add_drive
 
    !> Lead a motion over to a load: the last word where an open-close loop goes round in circles.
@@ -277,9 +285,9 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       type(rate_law_t), intent(in) :: law
-      !> The load that is asked for: (n_dof, n_block)
+      !> The load that is asked for: (3, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> Any motion in, the rates out: (n_dof, n_block)
+      !> Any motion in, the rates out: (3, n_block)
       real(wp), intent(inout) :: motion(:, :)
       !> How the joints open with it and with the drive: (3, n_joint)
       real(wp), intent(inout) :: opening(:, :)

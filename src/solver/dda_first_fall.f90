@@ -41,13 +41,13 @@ contains
    !> Velocities of the fall, the largest one, and the forces with which it goes on
    pure subroutine find_coulomb_fall(graph, load, force, most, velocity, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
-      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
+      !> The load: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
       !> Forces that the joints can carry; those of the fall where one is found: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
       !> Factorisations that it may take
       integer, intent(in) :: most
-      !> Velocities: (n_dof, n_block)
+      !> Velocities: (3, n_block)
       real(wp), intent(inout) :: velocity(:, :)
       !> Whether a motion without end was found; otherwise velocities and forces are left alone
       logical, intent(out) :: found
@@ -69,7 +69,8 @@ contains
       jump%tolerance = nothing
       equations%most_factorisations = most
       equations%most_pivots = few_pivots
-      call jump_to_balance(joints, equations, in_units(joints, load), state, jump, end)
+      state%load = in_units(joints, load)
+      call jump_to_balance(joints, equations, (state%motion), state, jump, end)
       n_factorisation = equations%base%n_factorisation
       found = end == motion_end%endless .or. end == motion_end%far
       if (.not. found) return
@@ -102,8 +103,8 @@ contains
    !> Accelerations, the largest one
    pure subroutine find_first_motion(graph, load, motion, force, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: load(:, :)       !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(out) :: motion(:, :)    !! Accelerations: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)       !! Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(out) :: motion(:, :)    !! Accelerations: (3, n_block)
       real(wp), intent(out) :: force(:, :)     !! N1, N2, T of each joint: (3, n_joint) [N/m]
       logical, intent(out) :: found            !! Whether they were found
       integer, intent(out) :: n_factorisation  !! Factorisations
@@ -115,7 +116,7 @@ contains
       call plan_matrix(graph, springs)
       call scale_load(load, unit_of_force(load), unit_of_length(graph), driven)
       call set_path(graph, driven, 0.0_wp*driven, path)
-      path%mass(:, 1:) = graph%mass(1:3, :)/maxval(graph%mass(1, :))
+      path%mass(:, 1:) = graph%mass/maxval(graph%mass(1, :))
       path%mass(3, 1:) = path%mass(3, 1:)/path%length**2
       path%moves = .true.
       path%compliance = compliance

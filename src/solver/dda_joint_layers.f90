@@ -117,14 +117,13 @@ contains
       m = size(layers%joint)
       n = size(graph%kind)
       layered%n_block = graph%n_block + m
-      layered%n_dof = 3
       allocate (layered%block(2, n + 2*m), source=0)
       layered%block(:, :n) = graph%block
       layered%kind = [graph%kind, (joint_kind%pin, joint_kind%corner, i=1, m)]
       layered%friction = [graph%friction, spread(0.0_wp, 1, 2*m)]
       layered%length = [graph%length, spread(0.0_wp, 1, 2*m)]
       allocate (layered%row(3, 3, 2, n + 2*m), source=0.0_wp)
-      layered%row(:, :, :, :n) = graph%row(1:3, :, :, :)
+      layered%row(:, :, :, :n) = graph%row
       allocate (couple(3, layered%n_block), source=0.0_wp)
       do i = 1, m
          call place_layer(layers, i, graph%crush(layers%joint(i)), n + 2*i - 1, &
@@ -146,15 +145,11 @@ contains
          allocate (layered%gap(2, n + 2*m), source=0.0_wp)
          layered%gap(:, :n) = graph%gap
       end if
-      allocate (layered%compliance(3, n + 2*m))
-      layered%compliance(:, :n) = graph%compliance
-      do i = 1, m
-         layered%compliance(:, n + 2*i - 1) = stiff_share*graph%compliance(:, layers%joint(i))
-         layered%compliance(:, n + 2*i) = stiff_share*graph%compliance(:, layers%joint(i))
-      end do
+      layered%compliance = [graph%compliance, &
+         & (stiff_share*graph%compliance(layers%joint((i + 1)/2)), i=1, 2*m)]
       allocate (layered%mass(3, layered%n_block), source=plate_mass*sum(graph%mass(1, :)) &
          & /real(max(1, graph%n_block), wp))
-      layered%mass(:, :graph%n_block) = graph%mass(1:3, :)
+      layered%mass(:, :graph%n_block) = graph%mass
    end subroutine add_springs
 
    !> Put a plate in the place of a joint's second block, and a layer between the two

@@ -152,7 +152,7 @@ contains
 
    !> Loads of the blocks in the units of the rays
    pure subroutine scale_load(load, unit, length, scaled)
-      real(wp), intent(in) :: load(:, :)         !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)         !! Loads: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: unit               !! Unit of force: [N/m]
       real(wp), intent(in) :: length             !! Unit of length [m]
       !> In the units of the rays, none on what cannot move: (3, 0:n_block)
@@ -210,16 +210,15 @@ contains
          f = joint_force(graph%kind(j), graph%friction(j), x(:, j))
          do side = 1, 2
             b = graph%block(side, j)
-            call add_rows(graph%n_dof, graph%row(1, 1, side, j), arm, f, load(:, b))
+            call add_rows(graph%row(1, 1, side, j), arm, f, load(:, b))
          end do
       end do
       load(:, 0) = 0.0_wp
    end subroutine add_ray_forces
 
    !> Add what the forces of a joint do to one of its blocks
-   pure subroutine add_rows(n_dof, row, arm, f, load)
-      integer, intent(in) :: n_dof          !! Unknowns of a block
-      real(wp), intent(in) :: row(n_dof, 3) !! Opening 1, opening 2, slip by unit motion
+   pure subroutine add_rows(row, arm, f, load)
+      real(wp), intent(in) :: row(3, 3)     !! Opening 1, opening 2, slip by unit motion
       real(wp), intent(in) :: arm           !! One over the unit of length [1/m]
       real(wp), intent(in) :: f(3)          !! N1, N2, T
       real(wp), intent(inout) :: load(3)    !! Load to which theirs is added

@@ -24,9 +24,9 @@ contains
    !> Factor of the live load that forces carry best beside the dead load
    pure real(wp) function carried_factor(graph, dead, live, force) result(factor)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
+      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -39,8 +39,8 @@ contains
       factor = 0.0_wp
       size_of_live = 0.0_wp
       do b = 1, size(live, 2)
-         factor = factor - sum(weight*live(1:3, b)*left(1:3, b))
-         size_of_live = size_of_live + sum(weight*live(1:3, b)**2)
+         factor = factor - sum(weight*live(:, b)*left(:, b))
+         size_of_live = size_of_live + sum(weight*live(:, b)**2)
       end do
       factor = factor/max(size_of_live, tiny(factor))
    end function carried_factor
@@ -48,25 +48,25 @@ contains
    !> Factor at which the loads have no power on a mechanism: above it they drive it
    pure real(wp) function stopping_factor(dead, live, velocity) result(factor)
       real(wp), intent(in) :: dead(:, :), live(:, :)
-      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (3, n_block) [m/s, m/s, 1/s]
       real(wp) :: power
 
-      power = sum(live(1:3, :)*velocity(1:3, :))
+      power = sum(live*velocity)
       factor = no_limit
-      if (power > 0.0_wp) factor = -sum(dead(1:3, :)*velocity(1:3, :))/power
+      if (power > 0.0_wp) factor = -sum(dead*velocity)/power
    end function stopping_factor
 
    !> How far forces are from balance with a load and from the law of the joints
    pure subroutine check_forces(graph, load, force, imbalance, violation, part)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Loads: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
       real(wp), intent(in) :: force(:, :)
       !> Largest force or moment left on a block, over the largest load [1]
       real(wp), intent(out) :: imbalance
       !> Largest force beyond the law of a joint, over the largest load [1]
       real(wp), intent(out) :: violation
-      !> A part of the load, which the others may cancel: (n_dof, n_block) [N/m, N/m, N ...]
+      !> A part of the load, which the others may cancel: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in), optional :: part(:, :)
       real(wp) :: left(size(load, 1), size(load, 2)), largest
       integer :: j
@@ -95,7 +95,7 @@ contains
 
       left = load
       call add_joint_forces(graph, force, left)
-      margin = sum(abs(left(1:3, :)*velocity(1:3, :)))
+      margin = sum(abs(left*velocity))
    end function balance_margin
 
    !> Power that forces would put into velocities where these close joints that cannot close: by so
@@ -218,7 +218,7 @@ contains
       real(wp) :: rate(3, size(graph%kind)), largest
       integer :: j
 
-      power = sum(load(1:3, :)*velocity(1:3, :))
+      power = sum(load*velocity)
       call joint_motion(graph, velocity, rate)
       violation = 0.0_wp
       do j = 1, size(rate, 2)

@@ -41,7 +41,7 @@ module dda_limit_decision
       integer :: state = 0
       !> N1, N2, T of each joint that carry the load, where it stands: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Velocities of a mechanism, the largest one, where it falls: (n_dof, n_block)
+      !> Velocities of a mechanism, the largest one, where it falls: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
       !> Largest force left on a block where it stands, over the largest load [1]
       real(wp) :: imbalance = 0.0_wp
@@ -74,7 +74,7 @@ contains
    !> Whether a load can be carried
    pure subroutine decide_load(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: load(:, :)  !! Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       type(load_decision_t), intent(out) :: decision
 
       if (crushes(graph)) then
@@ -101,7 +101,7 @@ contains
       n = 0
       do k = 1, most_rounds
          call add_layers(graph, layers, layered, apex)
-         apex(:, :graph%n_block) = apex(:, :graph%n_block) + load(1:3, :)
+         apex(:, :graph%n_block) = apex(:, :graph%n_block) + load
          call decide_cones(layered, apex, decision)
          n = n + decision%n_factorisation
          decision%n_factorisation = n
@@ -131,7 +131,7 @@ contains
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
 
-      if (all(abs(load(1:3, :)) <= 0.0_wp)) then
+      if (all(abs(load) <= 0.0_wp)) then
          call prove_nothing(graph, decision)
          decision%state = load_state%stands
          return
@@ -149,9 +149,9 @@ contains
    !> does so in the mechanism in which it falls first, with the forces of then
    pure subroutine decide_on_way(graph, dead, load, tolerance, enough, decision)
       type(joint_graph_t), intent(in) :: graph
-      !> The load out of which it grows: (n_dof, n_block) [N/m, N/m, N ...]
+      !> The load out of which it grows: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
-      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
+      !> The load: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
       !> Relative gap of the two proofs of the load at which it falls
       real(wp), intent(in) :: tolerance
@@ -184,7 +184,7 @@ contains
       type(load_decision_t), intent(inout) :: decision
 
       allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
-      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
+      allocate (decision%velocity(3, graph%n_block), source=0.0_wp)
    end subroutine prove_nothing
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
@@ -309,7 +309,7 @@ contains
    pure subroutine keep_velocities(graph, v, velocity)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: v(:, 0:)         !! In the units of the rays: (3, 0:n_block)
-      real(wp), intent(out) :: velocity(:, :)  !! Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(out) :: velocity(:, :)  !! Velocities: (3, n_block) [m/s, m/s, 1/s]
       real(wp) :: largest
 
       largest = max(maxval(abs(v)), tiny(largest))
@@ -348,7 +348,7 @@ contains
       call check_forces(graph, load, decision%force, imbalance, beyond_cone)
       call check_velocities(graph, load, decision%velocity, beyond_flow, power)
       decision%state = state_at_end(point)
-      if (decision%state == load_state%falls .and. .not. drives(load(1:3, :), decision%velocity)) &
+      if (decision%state == load_state%falls .and. .not. drives(load, decision%velocity)) &
          & decision%state = load_state%undecided
       select case (decision%state)
       case (load_state%stands)

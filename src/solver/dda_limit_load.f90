@@ -64,7 +64,7 @@ module dda_limit_load
       !> N1, N2, T of each joint: with dead and lower*live; where unbounded, with live alone:
       !> (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Velocities of the mechanism, the largest one: (n_dof, n_block)
+      !> Velocities of the mechanism, the largest one: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
       !> Largest force that is left on a block, over the largest load [1]
       real(wp) :: imbalance = 0.0_wp
@@ -126,9 +126,9 @@ contains
    !> The limit load
    pure subroutine find_limit(graph, dead, live, tolerance, limit, stands)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
+      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)
       !> Relative gap of the two factors
       real(wp), intent(in) :: tolerance
@@ -206,9 +206,9 @@ contains
       real(wp), allocatable :: load(:, :), more(:, :)
 
       call add_layers(graph, layers, layered, load)
-      load(:, :graph%n_block) = load(:, :graph%n_block) + dead(1:3, :)
+      load(:, :graph%n_block) = load(:, :graph%n_block) + dead
       allocate (more(3, layered%n_block), source=0.0_wp)
-      more(:, :graph%n_block) = live(1:3, :)
+      more(:, :graph%n_block) = live
       call limit_cones(layered, load, more, tolerance, .true., limit)
       limit%force = limit%force(:, :size(graph%kind))
       limit%velocity = limit%velocity(:, :graph%n_block)
@@ -252,7 +252,7 @@ contains
          end if
       end if
       allocate (limit%force(3, size(graph%kind)))
-      allocate (limit%velocity(graph%n_dof, graph%n_block))
+      allocate (limit%velocity(3, graph%n_block))
       call forces_of_rays(graph, point%x, unit, limit%force)
       call keep_velocities(graph, point%v, limit%velocity)
       call certify(graph, dead, live, limit)
@@ -337,7 +337,7 @@ contains
          limit%lower = carried_factor(graph, dead, live, limit%force)
          limit%upper = stopping_factor(dead, live, limit%velocity)
          if (crushes(graph)) limit%upper = limit%upper + crushing_power(graph, limit%velocity) &
-            & /max(sum(live(1:3, :)*limit%velocity(1:3, :)), tiny(1.0_wp))
+            & /max(sum(live*limit%velocity), tiny(1.0_wp))
          call check_forces(graph, dead + limit%lower*live, limit%force, limit%imbalance, &
             & limit%cone_violation)
          call check_velocities(graph, live, limit%velocity, limit%flow_violation, limit%power)

@@ -8,6 +8,7 @@ module dda_load_jump
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
    use dda_event_rates, only : find_rates, rates_t, weak_force
+   use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
    use dda_path_event, only : event_kind, event_t, hold_forces, move_on, next_event
    implicit none
@@ -40,7 +41,7 @@ module dda_load_jump
       real(wp) :: far = huge(1.0_wp)
       !> Largest displacement of one that came to balance
       real(wp) :: way = 0.0_wp
-      !> Velocities of a motion without end: (n_dof, n_block)
+      !> Velocities of a motion without end: (3, n_block)
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
 
@@ -90,7 +91,7 @@ contains
       & gained, end, opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> What grows of the load: (n_dof, n_block)
+      !> What grows of the load: (3, n_block)
       real(wp), intent(in) :: load_rate(:, :)
       !> By how much
       real(wp), intent(in) :: width
@@ -160,18 +161,17 @@ contains
    end subroutine balance_rest
 
    !> Let the blocks share out anew what a joint has ceased to carry, at the same load
-   pure subroutine share_anew(joints, equations, load, far, state, jump, end)
+   pure subroutine share_anew(joints, equations, far, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      real(wp), intent(in) :: load(:, :)  !! The load: (n_dof, n_block)
-      real(wp), intent(in) :: far         !! A motion beyond this is far
+      real(wp), intent(in) :: far  !! A motion beyond this is far
       type(coulomb_state_t), intent(inout) :: state
       type(jump_t), intent(inout) :: jump
       integer, intent(out) :: end
 
       jump%far = far
       jump%tolerance = rounding*max(1.0_wp, maxval(abs(state%force)))
-      call jump_to_balance(joints, equations, load, state, jump, end)
+      call jump_to_balance(joints, equations, (state%motion), state, jump, end)
    end subroutine share_anew
 
    !> Let the blocks move at a load that is somewhat larger
@@ -189,12 +189,13 @@ contains
 
       jump%tolerance = max(rounding*max(1.0_wp, maxval(abs(state%force))), nudge_left*more)
       moved = state
+      moved%load = state%load + more*load_rate
       if (present(opening_rate)) then
          call apply_law(joints, state, more*opening_rate, moved)
       else
          call apply_law(joints, state, 0.0_wp*state%force, moved)
       end if
-      call jump_to_balance(joints, equations, state%load + more*load_rate, moved, jump, end)
+      call jump_to_balance(joints, equations, state%motion, moved, jump, end)
    end subroutine try_nudge
 
    !> Move from event to event at a load that does not change. Where friction lets forces drop, only
@@ -203,23 +204,21 @@ contains
    !> assembly that move as one are free while no joint snaps. What is minor beside what is left of
    !> the load is no event: far from what moves, joints at their limits change what they do by
    !> rounding alone, and would for ever
-   pure subroutine jump_to_balance(joints, equations, load, state, jump, end)
+   pure subroutine jump_to_balance(joints, equations, start, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> The state; where it is in balance it carries the load
+      real(wp), intent(in) :: start(:, :)  !! Motion of the state as it begins: (3, n_block)
+      !> The state, which may not carry its load yet
       type(coulomb_state_t), intent(inout) :: state
       type(jump_t), intent(inout) :: jump
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: viscosity, firm
-      real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2)), far
+      real(wp) :: far, firm, viscosity
+      real(wp) :: rest(3, size(state%load, 2))
       integer :: i, most, standstill
       logical :: calm, found, pushed, whole
 
-      start = state%motion
       standstill = 0
       pushed = .false.
       viscosity = 0.0_wp
@@ -229,10 +228,9 @@ contains
       far = jump%far
       most = least_patience + patience*size(state%slip)
       do i = 1, most
-         call imbalance(joints, load, state%force, rest)
+         call imbalance(joints, state%load, state%force, rest)
          if (i > most/brief) far = driven*jump%far
          call see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
-         if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
          call leave_minor(rest)
@@ -266,7 +264,7 @@ contains
    pure type(event_t) function next_turn(joints, state, rest, rates) result(event)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (n_dof, n_block)
+      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (3, n_block)
       type(rates_t), intent(in) :: rates
       real(wp) :: minor
 
@@ -278,7 +276,7 @@ contains
 
    !> Leave out what is next to nothing of what forces leave of a load
    pure subroutine leave_minor(rest)
-      real(wp), intent(inout) :: rest(:, :)  !! What forces leave: (n_dof, n_block)
+      real(wp), intent(inout) :: rest(:, :)  !! What forces leave: (3, n_block)
       real(wp) :: minor
       integer :: b
 
@@ -292,12 +290,14 @@ contains
    !> that they leave of the load are the same but for a factor; at least one
    pure real(wp) function stride(joints, rest, rates)
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (n_dof, n_block)
+      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (3, n_block)
       type(rates_t), intent(in) :: rates
       real(wp), parameter :: bend = 0.3_wp
       real(wp) :: change(size(rest, 1), size(rest, 2)), share, largest
 
-      call imbalance(joints, 0.0_wp*rest, -rates%force, change)
+      change = 0.0_wp
+      call add_joint_forces(joints%graph, rates%force, change)
+      change = -change
       share = sum(change*rest)/sum(rest**2)
       largest = maxval(abs(change - share*rest))
       ! rates that change nothing lead farther than any far, but not to infinity
@@ -312,7 +312,7 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: rest(:, :)
-      real(wp), intent(in) :: start(:, :)  !! Motion where it began: (n_dof, n_block)
+      real(wp), intent(in) :: start(:, :)  !! Motion where it began: (3, n_block)
       type(coulomb_state_t), intent(in) :: state
       real(wp), intent(in) :: far          !! A motion beyond this is far
       !> Whether the last step was to bring balance: then only forces that are none may be left
@@ -364,7 +364,7 @@ contains
 
    !> Keep the velocities of a motion without end
    pure subroutine keep_mechanism(motion, jump)
-      real(wp), intent(in) :: motion(:, :)  !! The velocities: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)  !! The velocities: (3, n_block)
       type(jump_t), intent(inout) :: jump
 
       if (allocated(jump%mechanism)) deallocate (jump%mechanism)

@@ -61,7 +61,7 @@ module dda_loading_path
 
    !> What grows along a path
    type :: path_rate_t
-      !> Load: (n_dof, n_block) [N/m, N/m, N ...]
+      !> Load: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: load(:, :)
       !> Opening 1, opening 2 and slip where supports move, else unallocated: (3, n_joint) [m]
       real(wp), allocatable :: opening(:, :)
@@ -85,7 +85,7 @@ module dda_loading_path
       integer :: n_factorisation = 0
       !> What the joint forces leave of the load at the end, by the mean weight of a block
       real(wp) :: imbalance = 0.0_wp
-      !> Velocities of the collapse, the largest 1: (n_dof, n_block) [1, 1, 1/m ...]; without
+      !> Velocities of the collapse, the largest 1: (3, n_block) [1, 1, 1/m]; without
       !> entries if there is none
       real(wp), allocatable :: mechanism(:, :)
    end type path_result_t
@@ -114,7 +114,7 @@ module dda_loading_path
       pure module subroutine see_softness(joints, equations, load, state)
          type(coulomb_joints_t), intent(in) :: joints
          type(coulomb_equations_t), intent(inout) :: equations  !! Receive their damping at rest
-         real(wp), intent(in) :: load(:, :)                     !! What grows: (n_dof, n_block)
+         real(wp), intent(in) :: load(:, :)                     !! What grows: (3, n_block)
          type(coulomb_state_t), intent(in) :: state
       end subroutine see_softness
 
@@ -122,7 +122,7 @@ module dda_loading_path
       pure module subroutine load_at_once(joints, equations, load, state, jump, end)
          type(coulomb_joints_t), intent(in) :: joints
          type(coulomb_equations_t), intent(inout) :: equations
-         real(wp), intent(in) :: load(:, :)   !! The load: (n_dof, n_block)
+         real(wp), intent(in) :: load(:, :)   !! The load: (3, n_block)
          type(coulomb_state_t), intent(out) :: state
          type(jump_t), intent(inout) :: jump  !! What a motion tells, where one was needed
          integer, intent(out) :: end          !! How it ends, one of motion_end
@@ -136,7 +136,7 @@ contains
    pure subroutine new_path(graph, load, path)
       !> Its joints, which the path takes over
       type(joint_graph_t), intent(inout) :: graph
-      !> A load that it carries, for the scale of forces: (n_dof, n_block) [N/m, N/m, N ...]
+      !> A load that it carries, for the scale of forces: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
       type(loading_path_t), intent(out) :: path
 
@@ -147,7 +147,7 @@ contains
 
    !> The state under the dead load, with which a path begins
    pure subroutine apply_dead_load(dead_load, path, state, result)
-      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
+      !> The load: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead_load(:, :)
       type(loading_path_t), intent(inout) :: path
       !> The state, where one was reached
@@ -190,7 +190,7 @@ contains
       real(wp), intent(in) :: h_end
       type(path_result_t), intent(out) :: result
       type(path_rate_t) :: way
-      real(wp) :: target(size(rate%load, 1), size(rate%load, 2)), strength
+      real(wp) :: first(3, size(rate%load, 2)), strength
 
       path%equations%base%n_factorisation = 0
       path%equations%most_factorisations = path%most_factorisations
@@ -204,10 +204,10 @@ contains
       strength = maxval(abs(way%load))
       if (allocated(rate%opening)) then
          way%opening = rate%opening/path%joints%motion_unit
-         strength = max(strength, maxval(abs(way%opening/path%joints%graph%compliance)))
+         strength = max(strength, maxval(maxval(abs(way%opening), 1)/path%joints%graph%compliance))
       end if
+      first = state%load
       if (strength > 0.0_wp) then
-         target = state%load + h_end*way%load
          way%load = plain(way%load/strength)
          if (allocated(way%opening)) way%opening = plain(way%opening/strength)
       end if
@@ -221,12 +221,12 @@ contains
       result%end = path_end%reached
       if (strength > 0.0_wp) then
          call see_softness(path%joints, path%equations, way%load, state)
-         call follow(path, state, way, strength*h_end, result)
+         call follow(path, first, way, strength*h_end, state, result)
          result%reached = result%reached/strength
       end if
       if (result%end == path_end%reached) then
          result%reached = h_end
-         if (strength > 0.0_wp) state%load = target
+         if (strength > 0.0_wp) state%load = first + h_end*in_units(path%joints, rate%load)
       end if
       call balance_rest(path%joints, path%equations, state)
       call finish(path, state, result)
@@ -240,22 +240,22 @@ contains
    end function plain
 
    !> From event to event, with jumps, which have rates of their own, where no rates go on
-   pure subroutine follow(path, state, way, h_end, result)
+   pure subroutine follow(path, first, way, h_end, state, result)
       type(loading_path_t), intent(inout) :: path
-      type(coulomb_state_t), intent(inout) :: state
+      real(wp), intent(in) :: first(:, :)  !! Load at the beginning: (3, n_block)
       !> What grows, in units of the joints; the largest force is one
       type(path_rate_t), intent(in) :: way
       real(wp), intent(in) :: h_end
+      type(coulomb_state_t), intent(inout) :: state
       type(path_result_t), intent(inout) :: result
       type(coulomb_state_t) :: last
       type(event_t) :: event
       type(rates_t) :: rates
-      real(wp) :: first_load(size(way%load, 1), size(way%load, 2)), last_jump, width
+      real(wp) :: last_jump, width
       type(jump_t) :: jump
       integer :: end, standstill, i
       logical :: found, slow
 
-      first_load = state%load
       end = motion_end%balanced
       standstill = 0
       last_jump = -1.0_wp
@@ -276,13 +276,12 @@ contains
                & event%kind == event_kind%none)
             result%n_event = result%n_event + 1
             if (allocated(state%whole)) then
+               state%load = first + result%reached*way%load
                if (any(last%whole .neqv. state%whole)) call share_anew(path%joints, &
-                  & path%equations, first_load + result%reached*way%load, far_of(path, state), &
-                  & state, jump, end)
+                  & path%equations, far_of(path, state), state, jump, end)
                if (end /= motion_end%balanced) then
                   call note_fall(end, jump, result)
-                  call go_back(path%joints, rates, event, first_load + result%reached*way%load, &
-                     & last, state)
+                  call go_back(path%joints, rates, event, last, state)
                   return
                end if
             end if
@@ -295,7 +294,7 @@ contains
             call jump_on(path, state, way, width, h_end, result)
             if (result%end /= path_end%reached) return
          end if
-         state%load = first_load + result%reached*way%load
+         state%load = first + result%reached*way%load
       end do
       result%end = path_end%undecided
       result%reason = path_reason%too_many

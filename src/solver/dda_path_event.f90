@@ -89,7 +89,7 @@ contains
          if (allocated(state%whole)) bond = strength(joints, state, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
-            associate (c => joints%graph%compliance(i, j))
+            associate (c => joints%graph%compliance(j))
                least%still = rates%still/c
                if (rates%face(i, j) == face%closed) then
                   call meet(state%force(i, j) + bond(i), rates%force(i, j), least, &
@@ -102,7 +102,7 @@ contains
          end do
          if (rates%face(3, j) /= face%stuck) cycle
          if (joints%shear_role(j) /= shear_role%frictional) cycle
-         least%still = rates%still/joints%graph%compliance(3, j)
+         least%still = rates%still/joints%graph%compliance(j)
          bound = joints%graph%friction(j) &
             & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
          bound(1) = bound(1) + bond(3)
@@ -160,7 +160,7 @@ contains
          call take_shear(joints, j, state%face(3, j), shear + event%distance*rates%force(3, j), &
             & state)
          state%slip(j) = state%slip(j) + event%distance*rates%opening(3, j) &
-            & + joints%graph%compliance(3, j)*(state%force(3, j) - shear)
+            & + joints%graph%compliance(j)*(state%force(3, j) - shear)
          if (allocated(state%whole)) call break_joint(joints, j, state)
       end do
       j = event%joint
@@ -168,7 +168,7 @@ contains
       case (event_kind%opens)
          ! what a tensile force has stretched is a gap
          state%gap(event%corner, j) = max(0.0_wp, -state%force(event%corner, j) &
-            & *joints%graph%compliance(event%corner, j))
+            & *joints%graph%compliance(j))
          state%force(event%corner, j) = 0.0_wp
          state%face(event%corner, j) = face%open
          state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
@@ -187,18 +187,17 @@ contains
    end subroutine move_on
 
    !> Go back from a fall to where it broke: forces are those just before, what has broken is told
-   pure subroutine go_back(joints, rates, event, load, last, state)
+   pure subroutine go_back(joints, rates, event, last, state)
       type(coulomb_joints_t), intent(in) :: joints
-      type(rates_t), intent(in) :: rates          !! Rates that led to the event
-      type(event_t), intent(in) :: event          !! What broke a joint
-      real(wp), intent(in) :: load(:, :)          !! Load at the event: (n_dof, n_block)
-      type(coulomb_state_t), intent(in) :: last   !! State after the event before
-      type(coulomb_state_t), intent(inout) :: state
+      type(rates_t), intent(in) :: rates             !! Rates that led to the event
+      type(event_t), intent(in) :: event             !! What broke a joint
+      type(coulomb_state_t), intent(in) :: last      !! State after the event before
+      type(coulomb_state_t), intent(inout) :: state  !! With the load at the event
       type(coulomb_state_t) :: there
 
       there = last
       call move_on(joints, rates, event_t(before_event*event%distance), there)
-      there%load = load
+      there%load = state%load
       ! what opens at once has broken at the event before
       if (any(there%whole .neqv. last%whole)) there = last
       there%whole = state%whole

@@ -27,7 +27,7 @@ contains
             pushes(i) = joints%end_role(i, j) == end_role%tied &
                & .or. state%force(i, j) + bond(i) > weak_force
             law%weak(i, j) = .not. (pushes(i) .or. joints%end_role(i, j) == end_role%absent &
-               & .or. state%gap(i, j) > weak_force*joints%graph%compliance(i, j))
+               & .or. state%gap(i, j) > weak_force*joints%graph%compliance(j))
             law%given(i, j) = merge(face%closed, face%open, pushes(i))
          end do
          law%holds(j) = bond(3) > weak_force
@@ -68,7 +68,7 @@ contains
             & faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
          beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
-         margin = still/joints%graph%compliance(3, j)
+         margin = still/joints%graph%compliance(j)
          if (law%limit(1, j) .and. &
             & beyond(1) > merge(0.0_wp, margin, before(3, j) == face%slides)) then
             faces(3, j) = face%slides
@@ -92,7 +92,7 @@ contains
       real(wp) :: beyond(2)
       real(wp) :: push(3)
 
-      push = -opening/joints%graph%compliance(:, j)
+      push = -opening/joints%graph%compliance(j)
       beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)
    end function beyond_limit
 
@@ -152,7 +152,7 @@ contains
       if (faces(3, j) /= face%free) then
          do i = 1, 2
             if (.not. law%limit(i, j)) cycle
-            sense = joints%graph%compliance(3, j)*merge(1.0_wp, -1.0_wp, &
+            sense = joints%graph%compliance(j)*merge(1.0_wp, -1.0_wp, &
                & faces(3, j) == merge(face%slides, face%slides_back, i == 1))
             beyond = sense*beyond_limit(joints, j, faces(:2, j), opening(:, j))
             far(i + 2) = beyond(i)

@@ -7,14 +7,15 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
-   use dda_block_factor, only : block_factor_t, factorise_in_place, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_block_plan, only : list_places
-   use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
+   use dda_block_factor, only : block_factor_t, factorise_in_place, substitute
+   use dda_extended_factor, only : extended_panels_t => panels_t, &
+      & factorise_extended => factorise_springs, substitute_extended => substitute_springs
    use dda_joint_graph, only : joint_graph_t, unit_of_length
+   use dda_joint_places, only : joint_places_t, lay_out_joints, side_of_rows
    use dda_joint_rays, only : joint_spring, n_side, ray_rates, scaled_rows
    use dda_kinds, only : wp
-   use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
+   use dda_wide_factor, only : factorise_wide => factorise_springs, &
+      & substitute_wide => substitute_springs, wide_panels_t => panels_t
    implicit none
    private
 
@@ -36,21 +37,16 @@ module dda_ray_matrix
       !> The factor
       type(block_factor_t) :: factor
       !> Factors with more digits
-      type(extended_factor_t) :: extended
-      type(wide_factor_t) :: wide
+      type(extended_panels_t) :: extended
+      type(wide_panels_t) :: wide
       !> The one that is used, one of digits_of
       integer :: digits = digits_of%working
       !> Whether one can be used
       logical :: usable = .false.
       !> Unit of length: [m]
       real(wp) :: length = 1.0_wp
-      !> First number of the diagonal block of each block: (n_block)
-      integer, allocatable :: diagonal(:)
-      !> First number of what each joint couples, negative for what is transposed there, 0 for
-      !> nothing: (n_joint)
-      integer, allocatable :: coupling(:)
-      !> Whether the second block of a joint has the rows of what it couples: (n_joint)
-      logical, allocatable :: second_is_row(:)
+      !> Where the joints have their numbers in it
+      type(joint_places_t) :: places
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
       !> Factorisations so far
@@ -65,29 +61,9 @@ contains
    pure subroutine plan_matrix(graph, springs)
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
-      type(block_matrix_t) :: matrix
-      integer, allocatable :: place(:)
-      logical :: couples(size(graph%block, 2))
-      integer :: e, j
 
       springs%length = unit_of_length(graph)
-      couples = all(graph%block /= 0, 1) .and. graph%block(1, :) /= graph%block(2, :)
-      call set_pattern(matrix, 3, graph%n_block, reshape(pack(graph%block, spread(couples, 1, 2)), &
-         & [2, count(couples)]))
-      ! numbers are assembled in the factor
-      deallocate (matrix%diagonal, matrix%coupling)
-      call plan_factor(matrix, springs%factor)
-      allocate (springs%diagonal(graph%n_block), place(count(couples)))
-      call list_places(springs%factor%plan, springs%diagonal, place)
-      allocate (springs%coupling(size(couples)), source=0)
-      allocate (springs%second_is_row(size(couples)), source=.false.)
-      e = 0
-      do j = 1, size(couples)
-         if (.not. couples(j)) cycle
-         e = e + 1
-         springs%coupling(j) = place(e)
-         springs%second_is_row(j) = matrix%pair(1, e) == graph%block(2, j)
-      end do
+      call lay_out_joints(graph, .true., springs%factor, springs%places)
       allocate (springs%stiffness(n_side, size(graph%block, 2)))
    end subroutine plan_matrix
 
@@ -107,7 +83,7 @@ contains
       call assemble(graph, springs)
       associate (number => springs%factor%panels%lower)
          do b = 1, graph%n_block
-            associate (own => number(springs%diagonal(b):springs%diagonal(b) + 8:4))
+            associate (own => number(springs%places%diagonal(b):springs%places%diagonal(b) + 8:4))
                largest = maxval(own + mass(:, b))
                if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
                do k = 1, 3
@@ -135,14 +111,12 @@ contains
       associate (plan => springs%factor%plan)
          if (digits == digits_of%extended) then
             call factorise_extended(graph, springs%length, springs%stiffness, mass, &
-               & springs%diagonal, springs%coupling, springs%second_is_row, plan, &
-               & springs%extended%panels)
-            usable = springs%extended%panels%usable
+               & springs%places, plan, springs%extended)
+            usable = springs%extended%usable
          else
             call factorise_wide(graph, springs%length, springs%stiffness, mass, &
-               & springs%diagonal, springs%coupling, springs%second_is_row, plan, &
-               & springs%wide%panels)
-            usable = springs%wide%panels%usable
+               & springs%places, plan, springs%wide)
+            usable = springs%wide%usable
          end if
       end associate
       if (usable) springs%digits = digits
@@ -166,12 +140,12 @@ contains
                if (graph%block(side, j) == 0) cycle
                pushed(:, :, side) = matmul(row(:, :, side), spring)
                call add_lower(pushed(:, :, side), row(:, :, side), &
-                  & number(springs%diagonal(graph%block(side, j))))
+                  & number(springs%places%diagonal(graph%block(side, j))))
             end do
-            if (springs%coupling(j) == 0) cycle
-            side = merge(2, 1, springs%second_is_row(j) .neqv. springs%coupling(j) < 0)
+            if (springs%places%coupling(j) == 0) cycle
+            side = side_of_rows(springs%places, j)
             call add_product(pushed(:, :, side), row(:, :, 3 - side), &
-               & number(abs(springs%coupling(j))))
+               & number(abs(springs%places%coupling(j))))
          end do
       end associate
    end subroutine assemble
@@ -219,9 +193,9 @@ contains
          call ray_rates(graph, springs%length, motion, rate)
       case (digits_of%extended)
          call substitute_extended(graph, springs%length, springs%factor%plan, &
-            & springs%extended%panels, motion(:, 1:), rate)
+            & springs%extended, motion(:, 1:), rate)
       case default
-         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide%panels, &
+         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide, &
             & motion(:, 1:), rate)
       end select
    end subroutine solve_springs

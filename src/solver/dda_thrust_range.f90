@@ -31,7 +31,7 @@ contains
       middle = way*dot_product(share, force(:, joint))
       call split_graph(graph, joint, side, split)
       dead = 0.0_wp
-      dead(:, :graph%n_block) = load(1:3, :)
+      dead(:, :graph%n_block) = load
       live = 0.0_wp
       live(1, graph%n_block + 1) = -way
       live(1, graph%block(side, joint)) = way
@@ -54,13 +54,12 @@ contains
 
       n = size(graph%kind)
       split%n_block = graph%n_block + 1
-      split%n_dof = 3
       allocate (split%block(2, n + 1), split%kind(n + 1))
       allocate (split%row(3, 3, 2, n + 1), split%friction(n + 1), split%length(n + 1), &
          & source=0.0_wp)
       split%block(:, :n) = graph%block
       split%kind(:n) = graph%kind
-      split%row(:, :, :, :n) = graph%row(1:3, :, :, :)
+      split%row(:, :, :, :n) = graph%row
       split%friction(:n) = graph%friction
       split%length(:n) = graph%length
       if (allocated(graph%crush)) split%crush = [graph%crush, huge(1.0_wp)]

@@ -69,7 +69,7 @@ contains
             end do
             j = j + 1
             graph%kind(j) = joint_kind%corner
-            graph%compliance(:, j) = 1.0_wp/bar%stiffness
+            graph%compliance(j) = 1.0_wp/bar%stiffness
             graph%block(:, j) = equation
             graph%row(:, 1, :, j) = row(:n_rigid, :)
             if (.not. bar%strength < unbounded) cycle
@@ -77,13 +77,13 @@ contains
             graph%block(2, j) = node
             graph%row(:, 1, 2, j) = [1.0_wp, 1.0_wp, 0.0_wp]
             graph%kind(j + 1) = joint_kind%mirror
-            graph%compliance(:, j + 1) = stiff_share/bar%stiffness
+            graph%compliance(j + 1) = stiff_share/bar%stiffness
             graph%block(:, j + 1) = [equation(2), node]
             graph%row(:, 1, 1, j + 1) = row(:n_rigid, 2)
             graph%row(:, 1, 2, j + 1) = [0.0_wp, -1.0_wp, 0.0_wp]
             graph%row(:, 2, 2, j + 1) = [0.0_wp, 0.0_wp, 1.0_wp]
             graph%kind(j + 2) = joint_kind%corner
-            graph%compliance(:, j + 2) = stiff_share/bar%stiffness
+            graph%compliance(j + 2) = stiff_share/bar%stiffness
             graph%block(:, j + 2) = [0, node]
             graph%row(:, 1, 2, j + 2) = [1.0_wp, 0.0_wp, 0.0_wp]
             j = j + 2

@@ -105,7 +105,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Their joints, then the pins of held points, then those of bounded forces
       type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(out) :: load(:, :)  !! Loads: (n_dof, n_block) [N/m, N/m, N]
+      real(wp), intent(out) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
       real(wp), intent(out), optional :: opening(:, :)
       real(wp) :: direction(2), force(2), shaking(2), of_block(6), total(size(load, 2))
@@ -121,7 +121,7 @@ contains
          if (e == 0) cycle
          of_block = body_load(system%unit_weight(b)*direction + system%density(b)*shaking, &
             & system%area(b))
-         load(:, e) = of_block(:size(load, 1))
+         load(:, e) = of_block(:3)
       end do
       if (allocated(graph%bound)) then
          b = graph%n_block - size(graph%bound)
@@ -138,7 +138,7 @@ contains
             force = factor_of(settings, loaded)*value_at(loaded%force, stations%time(station))
             if (loaded%live) force = stations%live(station)*force
             of_block = point_load(force, loaded%point, system%centroid(:, loaded%block))
-            load(:, e) = load(:, e) + of_block(:size(load, 1))
+            load(:, e) = load(:, e) + of_block(:3)
             total(e) = total(e) + norm2(force)
          end associate
       end do
@@ -156,7 +156,7 @@ contains
    pure subroutine press_carriers(settings, system, load)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Loads; theirs are set: (n_dof, n_block) [N/m, N/m, N]
+      !> Loads; theirs are set: (3, n_block) [N/m, N/m, N]
       real(wp), intent(inout) :: load(:, :)
       integer :: e, i
 

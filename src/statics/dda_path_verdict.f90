@@ -96,6 +96,25 @@ contains
       end associate
    end subroutine load_joints
 
+   !> What grows from the station before to this one
+   pure subroutine see_leg(stations, station, settings, system, graph, couple, rate)
+      type(load_stations_t), intent(in) :: stations
+      integer, intent(in) :: station
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in), optional :: couple(:, :)
+      type(path_rate_t), intent(inout) :: rate  !! With room for the load, and for openings if any
+      type(path_rate_t) :: before
+
+      before = rate
+      call load_joints(stations, station - 1, settings, system, graph, couple, before%load, &
+         & before%opening)
+      call load_joints(stations, station, settings, system, graph, couple, rate%load, rate%opening)
+      rate%load = rate%load - before%load
+      if (allocated(rate%opening)) rate%opening = rate%opening - before%opening
+   end subroutine see_leg
+
    !> Leave joints and blocks alone of those with layers
    pure subroutine take_layers_away(graph, verdict)
       type(joint_graph_t), intent(in) :: graph
@@ -128,33 +147,31 @@ contains
       type(coulomb_state_t) :: state
       type(path_rate_t) :: rate
       type(path_result_t) :: result
-      type(path_rate_t) :: there
       integer :: i, n
 
       verdict%flow = flow_rule%coulomb
       n = ubound(stations%tilt, 1)
       verdict%on_path = n > 0
-      allocate (there%load(3, layered%n_block))
-      if (allocated(settings%boundary%held)) allocate (there%opening(3, size(layered%kind)))
-      call load_joints(stations, 0, settings, system, graph, couple, there%load, there%opening)
-      call new_path(layered, there%load, path)
+      allocate (rate%load(3, layered%n_block))
+      call load_joints(stations, 0, settings, system, graph, couple, rate%load)
+      call new_path(layered, rate%load, path)
       if (present(start)) then
          ! what was taken away leaves its neighbours, and what was built gets its weight
          state = start
-         rate%load = there%load - state%load
+         rate%load = rate%load - state%load
          call follow_path(path, state, rate, 1.0_wp, result)
          verdict%on_path = .true.
       else
-         call apply_dead_load(there%load, path, state, result)
+         call apply_dead_load(rate%load, path, state, result)
       end if
+      if (allocated(settings%boundary%held)) allocate (rate%opening(3, size(layered%kind)))
+      ! the path knows what they can do
+      deallocate (layered%kind)
       call count_up(result, verdict)
       verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
       do i = 1, n
          if (result%end /= path_end%reached) exit
-         rate = there
-         call load_joints(stations, i, settings, system, graph, couple, there%load, there%opening)
-         rate%load = there%load - rate%load
-         if (allocated(rate%opening)) rate%opening = there%opening - rate%opening
+         call see_leg(stations, i, settings, system, graph, couple, rate)
          call follow_path(path, state, rate, 1.0_wp, result)
          call count_up(result, verdict)
          verdict%station = i - 1

@@ -77,7 +77,6 @@ contains
       allocate (pin, source=pins(settings, system))
       n = size(contacts%joint)
       graph%n_block = maxval(system%equation) + n_carrier(settings)
-      graph%n_dof = n_rigid
       call add_nodes(settings, graph)
       call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
          & any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp)), graph)
@@ -89,7 +88,7 @@ contains
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
             if (law%strength < huge(1.0_wp)) graph%crush(j) = law%strength*contacts%joint(j)%length
-            graph%compliance(:, j) = block_compliance(system, contacts%joint(j), place)
+            graph%compliance(j) = block_compliance(system, contacts%joint(j), place)
             if (law%no_slip) then
                graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, single)
             else
@@ -104,11 +103,11 @@ contains
       end do
       if (.not. has_pure_friction(contacts)) call add_strength(contacts, graph)
       compliance = 1.0_wp
-      if (n > 0) compliance = minval(graph%compliance(:, :n))/pin_stiffness
+      if (n > 0) compliance = minval(graph%compliance(:n))/pin_stiffness
       do i = 1, size(pin)
          j = n + i
          graph%kind(j) = joint_kind%pin
-         graph%compliance(:, j) = compliance
+         graph%compliance(j) = compliance
          graph%block(:, j) = [0, system%equation(pin(i)%block)]
          graph%row(:, :, 2, j) = pin_rows(pin(i), system%centroid(:, pin(i)%block))
       end do
@@ -193,7 +192,7 @@ contains
             graph%kind(j) = joint_kind%corner
             graph%block(:, j) = [0, system%equation(force%block)]
             graph%row(:, 1, 2, j) = matmul(force%direction, t(:, :n_rigid))
-            graph%compliance(:, j) = softness*compliance
+            graph%compliance(j) = softness*compliance
             if (.not. force%most < huge(force%most)) cycle
             ! the carrier moves along the force by its first unknown
             e = e + 1
@@ -206,7 +205,7 @@ contains
             graph%block(:, j + 2) = [0, e]
             graph%row(2, 1, 2, j + 2) = 1.0_wp
             graph%row(3, 3, 2, j + 2) = 1.0_wp
-            graph%compliance(:, j + 1:j + 2) = compliance
+            graph%compliance(j + 1:j + 2) = compliance
             j = j + 2
          end associate
       end do
@@ -282,7 +281,7 @@ contains
       allocate (graph%row(n_rigid, 3, 2, n), source=0.0_wp)
       allocate (graph%friction(n), graph%length(n), source=0.0_wp)
       if (crush) allocate (graph%crush(n), source=huge(1.0_wp))
-      allocate (graph%compliance(3, n), source=1.0_wp)
+      allocate (graph%compliance(n), source=1.0_wp)
    end subroutine allocate_joints
 
    !> Whether a scene is decided so: at rest, where the blocks are, by friction, or on a loading

@@ -37,6 +37,6 @@ contains
       !> Room for what grows
       type(path_rate_t), intent(out) :: rate
 
-      allocate (rate%load(graph%n_dof, graph%n_block), rate%opening(3, size(graph%kind)), source=0.0_wp)
+      allocate (rate%load(3, graph%n_block), rate%opening(3, size(graph%kind)), source=0.0_wp)
    end subroutine new_rate
 end module graph_path

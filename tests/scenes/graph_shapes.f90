@@ -20,11 +20,10 @@ contains
       type(joint_graph_t), intent(out) :: graph
 
       graph%n_block = n_block
-      graph%n_dof = 3
       allocate (graph%block(2, n_joint), graph%kind(n_joint), source=0)
       allocate (graph%row(3, 3, 2, n_joint), graph%friction(n_joint), source=0.0_wp)
       allocate (graph%length(n_joint), graph%gap(2, n_joint), source=0.0_wp)
-      allocate (graph%compliance(3, n_joint), graph%mass(3, n_block), source=1.0_wp)
+      allocate (graph%compliance(n_joint), graph%mass(3, n_block), source=1.0_wp)
    end subroutine new_graph
 
    !> Blocks of unit height one upon the other

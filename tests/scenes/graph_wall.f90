@@ -105,7 +105,7 @@ contains
       end do
       most = 3*sum(bricks) + size(bricks)
       allocate (graph%block(2, most), graph%row(3, 3, 2, most), graph%kind(most))
-      allocate (graph%friction(most), graph%length(most), graph%compliance(3, most))
+      allocate (graph%friction(most), graph%length(most), graph%compliance(most))
       allocate (graph%gap(2, most))
       call lay_joints(bricks, head, level, friction, centre, graph)
    end subroutine lay_courses
@@ -173,7 +173,7 @@ contains
       graph%kind = graph%kind(:n)
       graph%friction = graph%friction(:n)
       graph%length = graph%length(:n)
-      graph%compliance = graph%compliance(:, :n)
+      graph%compliance = graph%compliance(:n)
       graph%gap = graph%gap(:, :n)
    end subroutine keep_joints
 
@@ -185,9 +185,9 @@ contains
 
       do j = 1, size(graph%kind)
          ! the moment of a unit shear force about a centre is its distance from the joint
-         graph%compliance(:, j) = sum(abs(graph%row(3, 3, :, j)))/graph%length(j)
+         graph%compliance(j) = sum(abs(graph%row(3, 3, :, j)))/graph%length(j)
       end do
-      graph%compliance = graph%compliance*real(3*size(graph%kind), wp)/sum(graph%compliance)
+      graph%compliance = graph%compliance*real(size(graph%kind), wp)/sum(graph%compliance)
    end subroutine wide_springs
 
    !> One joint: the normal points from its first block to its second and lies to the right of the
@@ -217,7 +217,7 @@ contains
       graph%kind(j) = joint_kind%contact
       graph%friction(j) = friction
       graph%length(j) = norm2(finish - start)
-      graph%compliance(:, j) = 1.0_wp
+      graph%compliance(j) = 1.0_wp
       graph%gap(:, j) = 0.0_wp
       graph%row(:, :, :, j) = 0.0_wp
       do side = 1, 2
