@@ -162,8 +162,8 @@ contains
       integer, intent(in) :: block(2, n_joint)  !! Their blocks
       !> Opening and slip by unit motion of each block
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      real(wp), intent(in), contiguous :: motion(:, :)
-      real(wp), intent(out) :: opening(3, n_joint)
+      real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (3, n_block)
+      real(wp), intent(out) :: opening(3, n_joint)      !! Opening 1, opening 2, slip
       real(wp) :: x(3), y(3)
       integer :: b, j, k, side
 
@@ -198,7 +198,7 @@ contains
    pure subroutine push_blocks(n_joint, block, row, force, load)
       integer, intent(in) :: n_joint, block(2, n_joint)
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      real(wp), intent(in) :: force(3, n_joint)
+      real(wp), intent(in) :: force(3, n_joint)  !! N1, N2, T
       real(wp), intent(inout), contiguous :: load(:, :)
       integer :: b, d, j, side
       real(wp) :: f(3)

@@ -9,12 +9,27 @@ module dda_extended_factor
    implicit none
    private
 
-   public :: panels_t, factorise_springs, substitute_springs
+   public :: extended_factor_t, factorise_extended, substitute_extended
 
    !> Kind of numbers with 18 digits or more
    integer, parameter :: rk = selected_real_kind(18)
 
    include "../linalg/dda_panel_type.inc"
+
+   !> The factor; its plan is that of the factor in working precision
+   type :: extended_factor_t
+      type(panels_t) :: panels  !! The numbers
+   end type extended_factor_t
+
+   !> Assemble springs along all rays and masses, and factor
+   interface factorise_extended
+      module procedure factorise_springs
+   end interface factorise_extended
+
+   !> Solve for one right-hand side
+   interface substitute_extended
+      module procedure substitute_springs
+   end interface substitute_extended
 
 contains
 

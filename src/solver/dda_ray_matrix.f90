@@ -8,14 +8,12 @@
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise_in_place, substitute
-   use dda_extended_factor, only : extended_panels_t => panels_t, &
-      & factorise_extended => factorise_springs, substitute_extended => substitute_springs
+   use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
    use dda_joint_graph, only : joint_graph_t, unit_of_length
    use dda_joint_places, only : joint_places_t, lay_out_joints, side_of_rows
    use dda_joint_rays, only : joint_spring, n_side, ray_rates, scaled_rows
    use dda_kinds, only : wp
-   use dda_wide_factor, only : factorise_wide => factorise_springs, &
-      & substitute_wide => substitute_springs, wide_panels_t => panels_t
+   use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
    implicit none
    private
 
@@ -37,8 +35,8 @@ module dda_ray_matrix
       !> The factor
       type(block_factor_t) :: factor
       !> Factors with more digits
-      type(extended_panels_t) :: extended
-      type(wide_panels_t) :: wide
+      type(extended_factor_t) :: extended
+      type(wide_factor_t) :: wide
       !> The one that is used, one of digits_of
       integer :: digits = digits_of%working
       !> Whether one can be used
@@ -111,12 +109,14 @@ contains
       associate (plan => springs%factor%plan)
          if (digits == digits_of%extended) then
             call factorise_extended(graph, springs%length, springs%stiffness, mass, &
-               & springs%places, plan, springs%extended)
-            usable = springs%extended%usable
+               & springs%places, plan, &
+               & springs%extended%panels)
+            usable = springs%extended%panels%usable
          else
             call factorise_wide(graph, springs%length, springs%stiffness, mass, &
-               & springs%places, plan, springs%wide)
-            usable = springs%wide%usable
+               & springs%places, plan, &
+               & springs%wide%panels)
+            usable = springs%wide%panels%usable
          end if
       end associate
       if (usable) springs%digits = digits
@@ -193,9 +193,9 @@ contains
          call ray_rates(graph, springs%length, motion, rate)
       case (digits_of%extended)
          call substitute_extended(graph, springs%length, springs%factor%plan, &
-            & springs%extended, motion(:, 1:), rate)
+            & springs%extended%panels, motion(:, 1:), rate)
       case default
-         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide, &
+         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide%panels, &
             & motion(:, 1:), rate)
       end select
    end subroutine solve_springs

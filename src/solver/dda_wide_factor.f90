@@ -9,13 +9,28 @@ module dda_wide_factor
    implicit none
    private
 
-   public :: panels_t, factorise_springs, substitute_springs
+   public :: wide_factor_t, factorise_wide, substitute_wide
 
    !> Kind of numbers with 30 digits or more; where there is none, with 18
    integer, parameter :: rk = merge(selected_real_kind(30), selected_real_kind(18), &
       & selected_real_kind(30) > 0)
 
    include "../linalg/dda_panel_type.inc"
+
+   !> The factor; its plan is that of the factor in working precision
+   type :: wide_factor_t
+      type(panels_t) :: panels  !! The numbers
+   end type wide_factor_t
+
+   !> Assemble springs along all rays and masses, and factor
+   interface factorise_wide
+      module procedure factorise_springs
+   end interface factorise_wide
+
+   !> Solve for one right-hand side
+   interface substitute_wide
+      module procedure substitute_springs
+   end interface substitute_wide
 
 contains
 
