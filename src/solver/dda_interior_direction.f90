@@ -96,7 +96,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
-      call clear(size(turn%dv), turn%dv)
+      turn%dv = 0.0_wp
       turn%dfactor = 0.0_wp
       ! rates less what velocities make of them are to go
       call ray_rates(graph, path%length, point%v, turn%rate)
@@ -214,12 +214,4 @@ contains
 
       sum = sum + factor*more
    end subroutine add_multiple
-
-   !> Numbers that are zero
-   pure subroutine clear(n, number)
-      integer, intent(in) :: n             !! How many
-      real(wp), intent(out) :: number(n)   !! The numbers
-
-      number = 0.0_wp
-   end subroutine clear
 end module dda_interior_direction

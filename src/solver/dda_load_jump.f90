@@ -330,7 +330,7 @@ contains
       if (end == motion_end%balanced) then
          ! balance so far away is that of a shape that nobody has drawn
          end = motion_end%far
-         call keep_mechanism(state%motion - start, jump)
+         jump%mechanism = state%motion - start
          return
       end if
       call find_rates(joints, equations, state, rest, 0.0_wp, rates, found)
@@ -338,7 +338,7 @@ contains
          & call see_ray(joints, state, rest, rates, event, jump, end)
       if (end == motion_end%endless) return
       end = motion_end%far
-      call keep_mechanism(state%motion - start, jump)
+      jump%mechanism = state%motion - start
    end subroutine see_end
 
    !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
@@ -359,15 +359,6 @@ contains
       end = motion_end%unsettled
       if (event%kind /= event_kind%none .or. .not. sum(rest*rates%motion) > 0.0_wp) return
       end = motion_end%endless
-      call keep_mechanism(rates%motion, jump)
+      jump%mechanism = rates%motion
    end subroutine see_ray
-
-   !> Keep the velocities of a motion without end
-   pure subroutine keep_mechanism(motion, jump)
-      real(wp), intent(in) :: motion(:, :)  !! The velocities: (3, n_block)
-      type(jump_t), intent(inout) :: jump
-
-      if (allocated(jump%mechanism)) deallocate (jump%mechanism)
-      allocate (jump%mechanism, source=motion)
-   end subroutine keep_mechanism
 end module dda_load_jump
