@@ -89,7 +89,7 @@ contains
          length = longest(face, x, step, 1.0_wp)
          step%flow = -x%slack*x%flow - step%slack*step%flow + mean*min(1.0_wp, &
             & (sum((x%slack + length*step%slack)*(x%flow + length*step%flow), face) &
-            & /(real(max(1, n_face), wp)*mean))**3)
+            & /(real(max(1, n_face), wp)*max(mean, tiny(mean))))**3)
          call find_step(joints, matrix, damping, face, x, rest, step)
          length = longest(face, x, step, min(max(shortfall, 1.0_wp - gap), 1.0_wp - 1.0e-6_wp))
          x%motion = x%motion + length*step%motion
@@ -284,7 +284,8 @@ contains
       type(coulomb_interior_t), intent(in) :: x
       integer, intent(in) :: j          !! Number of the joint
       real(wp), intent(in) :: drive(3)  !! What the springs are pressed together by
-      real(wp), intent(out) :: force(3), more(4)
+      real(wp), intent(out) :: force(3)  !! N1, N2, T
+      real(wp), intent(out) :: more(4)   !! What is added to the slacks
       real(wp) :: bound, r(4), spring
       integer :: i
 

@@ -142,9 +142,9 @@ contains
       call set_springs(graph, path%mass, lift, springs)
       call solve_springs(graph, springs, path%dead, point%v, point%s)
       point%x = -point%s
-      point%x = path%bounded*(point%x + max(0.0_wp, -1.5_wp*minval(point%x)) &
+      point%x = path%bounded*(point%x + 1.5_wp*max(0.0_wp, -minval(point%x)) &
          & + inside*path%largest_dead)
-      point%s = path%bounded*(point%s + max(0.0_wp, -1.5_wp*minval(point%s)) &
+      point%s = path%bounded*(point%s + 1.5_wp*max(0.0_wp, -minval(point%s)) &
          & + inside*maxval(abs(point%v))) + (1.0_wp - path%bounded)
    end subroutine begin
 

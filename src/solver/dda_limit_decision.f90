@@ -15,6 +15,7 @@ module dda_limit_decision
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
@@ -130,18 +131,20 @@ contains
       type(load_decision_t), intent(out) :: decision
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
+      logical :: is_none, is_number
 
-      if (all(abs(load) <= 0.0_wp)) then
-         call prove_nothing(graph, decision)
-         decision%state = load_state%stands
+      is_number = all(ieee_is_finite(load))
+      is_none = .false.
+      if (is_number) is_none = all(abs(load) <= 0.0_wp)
+      if (is_none .or. .not. is_number) then
+         if (is_none) decision%state = load_state%stands
+         allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
+         allocate (decision%velocity(3, graph%n_block), source=0.0_wp)
          return
       end if
       call plan_matrix(graph, springs)
       call go_to_load(graph, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
-      call prove_nothing(graph, decision)
-      call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
-      call keep_velocities(graph, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
 
@@ -170,22 +173,10 @@ contains
       if (state_at_end(point) == load_state%stands) then
          call scale_load(load, unit_of_force(load), unit_of_length(graph), scaled)
          call go_on_to_load(graph, scaled, tolerance, springs, point, to_limit=enough)
-         call prove_nothing(graph, decision)
-         call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
-         call keep_velocities(graph, point%v, decision%velocity)
          call conclude(graph, load, point, decision)
       end if
       decision%n_factorisation = springs%n_factorisation
    end subroutine decide_on_way
-
-   !> A decision without forces and without motion
-   pure subroutine prove_nothing(graph, decision)
-      type(joint_graph_t), intent(in) :: graph
-      type(load_decision_t), intent(inout) :: decision
-
-      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
-      allocate (decision%velocity(3, graph%n_block), source=0.0_wp)
-   end subroutine prove_nothing
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(graph, load, springs, point)
@@ -337,7 +328,7 @@ contains
       end if
    end function state_at_end
 
-   !> The decision, and the figures that prove it
+   !> The decision, what proves it, and how well
    pure subroutine conclude(graph, load, point, decision)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
@@ -345,6 +336,9 @@ contains
       type(load_decision_t), intent(inout) :: decision
       real(wp) :: imbalance, beyond_cone, beyond_flow, power
 
+      allocate (decision%force(3, size(graph%kind)), decision%velocity(3, graph%n_block))
+      call forces_of_rays(graph, point%x, unit_of_force(load), decision%force)
+      call keep_velocities(graph, point%v, decision%velocity)
       call check_forces(graph, load, decision%force, imbalance, beyond_cone)
       call check_velocities(graph, load, decision%velocity, beyond_flow, power)
       decision%state = state_at_end(point)

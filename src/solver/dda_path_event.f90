@@ -125,7 +125,11 @@ contains
 
       if (.not. (rate < -least%slow .and. rest > 0.0_wp)) return
       if (rest <= weak_force .and. rate >= -least%still) return
-      if (least%minor > 0.0_wp .and. rest + least%longest*rate >= -least%minor) return
+      if (least%minor > 0.0_wp) then
+         if (rest + least%longest*rate >= -least%minor) return
+      end if
+      ! what is farther than the largest number never comes
+      if (rest > min(1.0_wp, -rate)*huge(rate)) return
       if (-rest/rate < event%distance) event = event_t(-rest/rate, kind, joint, corner)
    end subroutine meet
 

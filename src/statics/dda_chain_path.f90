@@ -334,7 +334,8 @@ contains
          call solve_3(matrix, matmul(transpose(row), matmul(state%stiffness, &
             & state%influence(corner%corner, :, corner%joint))), share)
          closing = 0
-         turn = huge(1.0_wp)
+         ! farther than any, and no product of it with a share is infinite
+         turn = sqrt(huge(1.0_wp))
          do i = 1, n
             if (.not. state%open(i)%gap < turn*share(i)) cycle
             turn = state%open(i)%gap/share(i)
