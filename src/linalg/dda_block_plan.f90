@@ -8,11 +8,12 @@ module dda_block_plan
    use dda_block_matrix, only : block_matrix_t, by_branches, elimination_t, new_elimination, &
       & products
    use dda_block_order, only : dissected_order, smallest_part
-   use dda_kinds, only : wp
+   use dda_kinds, only : small, wp
    implicit none
    private
 
-   public :: elimination_plan_t, most_columns, plan_panels, choose_order, list_places
+   public :: coupling_places_t, elimination_plan_t, most_columns, plan_panels, choose_order
+   public :: list_places, side_of_rows
 
    !> Panels; a place is one in the order of elimination
    type :: elimination_plan_t
@@ -40,6 +41,17 @@ module dda_block_plan
       !> Most rows of a panel, those of its diagonal among them, as triples
       integer :: highest = 0
    end type elimination_plan_t
+
+   !> Where what is added up in the factor itself has its numbers
+   type :: coupling_places_t
+      !> First number of the diagonal block of each block: (n_block)
+      integer, allocatable :: diagonal(:)
+      !> First number of each coupling, negative for what is transposed there, 0 for nothing:
+      !> (n_coupling)
+      integer, allocatable :: coupling(:)
+      !> Whether the second block of a coupling has its rows: (n_coupling)
+      logical(small), allocatable :: second_is_row(:)
+   end type coupling_places_t
 
    !> A matrix that is no wider than this in the narrow order is eliminated in it without a thought:
    !> no other order does with much less
@@ -284,4 +296,12 @@ contains
       end do
       coupling(abs(plan%given(1, :))) = sign(plan%given(2, :), plan%given(1, :))
    end subroutine list_places
+
+   !> The block of a coupling, 1 or 2, that has the rows of what stands in its place
+   pure integer function side_of_rows(places, coupling) result(side)
+      type(coupling_places_t), intent(in) :: places
+      integer, intent(in) :: coupling  !! Its number
+
+      side = merge(2, 1, places%second_is_row(coupling) .neqv. places%coupling(coupling) < 0)
+   end function side_of_rows
 end module dda_block_plan

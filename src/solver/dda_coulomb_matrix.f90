@@ -1,8 +1,8 @@
 !> The matrix A S A' + damping*mass of joints with any stiffness S, and its factor
 module dda_coulomb_matrix
    use dda_block_factor, only : block_factor_t, factorise_in_place
+   use dda_block_plan, only : coupling_places_t, side_of_rows
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_joint_places, only : joint_places_t, side_of_rows
    use dda_kinds, only : wp
    implicit none
    private
@@ -14,7 +14,7 @@ module dda_coulomb_matrix
       !> The factor
       type(block_factor_t) :: factor
       !> Where the joints have their numbers in it
-      type(joint_places_t) :: places
+      type(coupling_places_t) :: places
       !> Number of factorisations so far
       integer :: n_factorisation = 0
    end type coulomb_matrix_t

@@ -1,9 +1,8 @@
 !> Factor of the stiffness matrix of springs in numbers of some more digits that the processor has,
 !> for springs whose stiffness spreads over more decades than working precision has
 module dda_extended_factor
-   use dda_block_plan, only : elimination_plan_t, most_columns
+   use dda_block_plan, only : coupling_places_t, elimination_plan_t, most_columns
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_places, only : joint_places_t
    use dda_joint_rays, only : joint_rays, n_side, scaled_rows
    use dda_kinds, only : wp
    implicit none

@@ -2,24 +2,12 @@
 module dda_joint_places
    use dda_block_factor, only : block_factor_t, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_block_plan, only : list_places
+   use dda_block_plan, only : coupling_places_t, list_places
    use dda_joint_graph, only : joint_graph_t
-   use dda_kinds, only : small
    implicit none
    private
 
-   public :: joint_places_t, lay_out_joints, side_of_rows
-
-   !> The places
-   type :: joint_places_t
-      !> First number of the diagonal block of each block: (n_block)
-      integer, allocatable :: diagonal(:)
-      !> First number of what each joint couples, negative for what is transposed there, 0 for
-      !> nothing: (n_joint)
-      integer, allocatable :: coupling(:)
-      !> Whether the second block of a joint has the rows of what it couples: (n_joint)
-      logical(small), allocatable :: second_is_row(:)
-   end type joint_places_t
+   public :: lay_out_joints
 
 contains
 
@@ -28,7 +16,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       logical, intent(in) :: symmetric  !! Whether the matrix is
       type(block_factor_t), intent(out) :: factor
-      type(joint_places_t), intent(out) :: places
+      type(coupling_places_t), intent(out) :: places
       type(block_matrix_t) :: pattern
       logical :: couples(size(graph%block, 2))
       integer, allocatable :: second(:), pair(:, :), place(:)
@@ -46,12 +34,4 @@ contains
       places%coupling = unpack(place, couples, spread(0, 1, size(couples)))
       places%second_is_row = unpack(pattern%pair(1, :) == second, couples, .false.)
    end subroutine lay_out_joints
-
-   !> The block of a joint, 1 or 2, that has the rows of what stands in its place
-   pure integer function side_of_rows(places, j) result(side)
-      type(joint_places_t), intent(in) :: places
-      integer, intent(in) :: j  !! Number of the joint
-
-      side = merge(2, 1, places%second_is_row(j) .neqv. places%coupling(j) < 0)
-   end function side_of_rows
 end module dda_joint_places

@@ -8,9 +8,10 @@
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise_in_place, substitute
+   use dda_block_plan, only : coupling_places_t, side_of_rows
    use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
    use dda_joint_graph, only : joint_graph_t, unit_of_length
-   use dda_joint_places, only : joint_places_t, lay_out_joints, side_of_rows
+   use dda_joint_places, only : lay_out_joints
    use dda_joint_rays, only : joint_spring, n_side, ray_rates, scaled_rows
    use dda_kinds, only : wp
    use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
@@ -44,7 +45,7 @@ module dda_ray_matrix
       !> Unit of length: [m]
       real(wp) :: length = 1.0_wp
       !> Where the joints have their numbers in it
-      type(joint_places_t) :: places
+      type(coupling_places_t) :: places
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
       !> Factorisations so far

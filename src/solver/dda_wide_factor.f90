@@ -1,9 +1,8 @@
 !> Factor of the stiffness matrix of springs in numbers of twice the digits: each operation takes as
 !> long as dozens in numbers that the processor has
 module dda_wide_factor
-   use dda_block_plan, only : elimination_plan_t, most_columns
+   use dda_block_plan, only : coupling_places_t, elimination_plan_t, most_columns
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_places, only : joint_places_t
    use dda_joint_rays, only : joint_rays, n_side, scaled_rows
    use dda_kinds, only : wp
    implicit none
