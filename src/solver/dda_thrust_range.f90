@@ -37,7 +37,8 @@ contains
       live(1, graph%block(side, joint)) = way
       dead = dead + middle*live
       do k = 1, 2
-         call find_limit(split, dead, merge(-1.0_wp, 1.0_wp, k == 1)*live, tolerance, limit)
+         call find_limit(split, dead, merge(-1.0_wp, 1.0_wp, k == 1)*live, tolerance, limit, &
+            & stands=.true.)
          known(k) = limit%state == limit_state%found
          if (known(k)) thrust(k) = middle &
             & + merge(-0.5_wp, 0.5_wp, k == 1)*(limit%lower + limit%upper)
