@@ -10,8 +10,18 @@
 !> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
 !> 1992), of few joints with more correctors where products that stray shorten the step (Gondzio
 !> 1996). It begins with the forces of the step before.
-submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
+module dda_contact_interior
+   use dda_contact_types, only : joint_springs_t
+   use dda_contact_view, only : contact_view_t
+   use dda_face_passes, only : settle_faces, settle_many_faces
+   use dda_interior_problem, only : distances, factor_springs, interior_t, many, openings, &
+      & pose, problem_t, respond, see_lack
+   use dda_kinds, only : wp
+   use dda_step_state, only : equations_t
    implicit none
+   private
+
+   public :: keep_to_faces, solve_interior
 
    !> What slack and flow begin with at the least, over the size of a force
    real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 2.0e-1_wp
@@ -38,83 +48,82 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
    !> Iterations without progress that end the search
    integer, parameter :: patience = 5
 
-   interface
-
-      !> Find forces and motion whose faces agree, from those of an iterate
-      pure module subroutine settle_faces(equations, springs, view, p, x, passes, agreed)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
-         type(interior_t), intent(inout) :: x
-         integer, intent(inout) :: passes     !! Factorisations so far
-         logical, intent(out) :: agreed       !! Whether the faces agree
-      end subroutine settle_faces
-
-      !> The same of many joints, which rather end than keep to the way that the loads have led
-      !> them: with ever firmer springs, as far as these agree
-      pure module subroutine settle_many_faces(equations, springs, view, p, hasty, x, passes, &
-         & agreed, near)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         !> The problem; the size of a force is given, its springs are as they were in the end
-         type(problem_t), intent(inout) :: p
-         !> Whether joints are so many that sweeps rather go on where faces do not agree at once
-         logical, intent(in) :: hasty
-         type(interior_t), intent(inout) :: x
-         integer, intent(inout) :: passes
-         !> Whether the faces agree with springs as soft as those of few joints at the least
-         logical, intent(out) :: agreed
-         !> Whether they nearly agree at the least
-         logical, intent(out) :: near
-      end subroutine settle_many_faces
-
-   end interface
-
 contains
 
-   !> Forces of some joints if these keep nearly to the faces that they had
-   module procedure keep_to_faces
+   !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
+   !> the blocks those nearest to the ones before
+   pure subroutine keep_to_faces(equations, springs, view, joint, hasty, fineness, before, moved, &
+      & force, passes, agreed)
+      type(equations_t), intent(in) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(contact_view_t), intent(in) :: view
+      !> Numbers of the joints: (n)
+      integer, intent(in) :: joint(:)
+      !> Whether sweeps rather go on where joints are so many that faces take as long
+      logical, intent(in) :: hasty
+      !> How much smaller than usual forces must be that faces leave
+      real(wp), intent(in) :: fineness
+      !> Forces of all joints in the step before: (3, n_joint) [N/m]
+      real(wp), intent(in) :: before(:, :)
+      !> Motion of all blocks by these: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: moved(:, :)
+      !> Forces of all joints; those of these joints are set if they agree, or nearly where
+      !> joints are very many: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      !> Whether forces and faces agree
+      logical, intent(out) :: agreed
       type(problem_t) :: p
       type(interior_t) :: x
       logical :: near
 
-      call pose(equations, springs, view, joint, before, moved, p)
-      call begin(springs, view, before, moved, lift, p, x)
+      call pose(equations, springs, view, joint, before, p)
+      call begin(before, moved, lift, p, x)
       p%fineness = max(finest, fineness)
-      if (many) then
-         call settle_many_faces(equations, springs, view, p, hasty, x, passes, agreed, near)
+      if (size(joint) > many) then
+         call settle_many_faces(p, hasty, x, passes, agreed, near)
       else
-         call settle_faces(equations, springs, view, p, x, passes, agreed)
+         call settle_faces(p, x, passes, agreed)
          near = agreed
       end if
-      if (near) call take_forces(equations, springs, view, x, p, force)
-   end procedure keep_to_faces
+      if (near) call take_forces(x, p, force)
+   end subroutine keep_to_faces
 
    !> Forces of some joints, wherever the search for them begins
-   module procedure solve_interior
+   pure subroutine solve_interior(equations, springs, view, joint, left, before, force, motion, &
+      & passes, agreed)
+      type(equations_t), intent(in) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(contact_view_t), intent(in) :: view
+      integer, intent(in) :: joint(:)
+      !> Gap that springs of many joints may leave [m]
+      real(wp), intent(in) :: left
+      real(wp), intent(in) :: before(:, :)
+      !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of all blocks by these: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: motion(:, :)
+      integer, intent(inout) :: passes
+      logical, intent(out) :: agreed
       type(problem_t) :: p
       type(interior_t) :: on_faces, x
 
-      call pose(equations, springs, view, joint, before, motion, p)
+      call pose(equations, springs, view, joint, before, p)
       if (size(joint) > many) then
          p%left = left
          where (.not. p%follows) p%soft = softness_of_many*p%soft
       end if
-      call begin(springs, view, force, motion, lift, p, x)
-      call iterate(equations, springs, view, force, motion, p, x, passes)
+      call begin(force, motion, lift, p, x)
+      call iterate(force, motion, p, x, passes)
       on_faces = x
-      call settle_faces(equations, springs, view, p, on_faces, passes, agreed)
+      call settle_faces(p, on_faces, passes, agreed)
       if (agreed) x = on_faces
-      call take_forces(equations, springs, view, x, p, force)
-   end procedure solve_interior
+      call take_forces(x, p, force)
+   end subroutine solve_interior
 
    !> Iterate from slack and flow to the iterate that comes nearest to the law of contact
-   pure subroutine iterate(equations, springs, view, force, motion, p, x, passes)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine iterate(force, motion, p, x, passes)
       real(wp), intent(in) :: force(:, :), motion(:, :)
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
@@ -130,7 +139,7 @@ contains
       waited = 0
       near = .true.
       do i = 1, max_iterations
-         call find_rest(equations, springs, view, p, x, mean, merit)
+         call find_rest(p, x, mean, merit)
          waited = merge(0, waited + 1, merit < 0.9_wp*least)
          if (merit < least) best = x
          least = min(least, merit)
@@ -140,22 +149,21 @@ contains
             near = .false.
             waited = 0
             least = huge(least)
-            call begin(springs, view, force, motion, afar, p, x)
-            call find_rest(equations, springs, view, p, x, mean, merit)
+            call begin(force, motion, afar, p, x)
+            call find_rest(p, x, mean, merit)
          end if
          p%yield = x%flow/x%slack
-         call factor_springs(equations, springs, p)
+         call factor_springs(p)
          passes = passes + 1
          if (.not. p%factor%usable) exit
-         call improve(springs, mean, merit, p, x, length)
+         call improve(mean, merit, p, x, length)
       end do
       x = best
    end subroutine iterate
 
    !> One step from an iterate: a predictor, a corrector towards equal products, and of few joints
    !> more for those that stray
-   pure subroutine improve(springs, mean, merit, p, x, length)
-      type(joint_springs_t), intent(in) :: springs
+   pure subroutine improve(mean, merit, p, x, length)
       real(wp), intent(in) :: mean     !! Mean product of slack and flow, in squares of a force
       real(wp), intent(in) :: merit    !! Forces that are wrong, over the size of a force
       type(problem_t), intent(inout) :: p
@@ -166,15 +174,15 @@ contains
 
       step = x
       p%product = -x%slack*x%flow
-      call find_step(springs, p, x, step)
+      call find_step(p, x, step)
       length = longest(p, x, step, 1.0_wp)
       goal = weighted(p, mean*min(1.0_wp, &
          & mean_product(p, x%slack + length*step%slack, x%flow + length*step%flow)/mean)**3)
       p%product = p%product - length*step%slack*step%flow + goal
-      call find_step(springs, p, x, step)
+      call find_step(p, x, step)
       share = max(0.995_wp, 1.0_wp - merit**2)
       length = longest(p, x, step, share)
-      if (size(p%joint) <= many) call lengthen(springs, goal, share, p, x, step, length)
+      if (size(p%joint) <= many) call lengthen(goal, share, p, x, step, length)
       x%motion = x%motion + length*step%motion
       x%force = x%force + length*step%force
       x%slack = x%slack + length*step%slack
@@ -182,8 +190,7 @@ contains
    end subroutine improve
 
    !> Lengthen a step by correctors that bring products back which a longer one would let stray
-   pure subroutine lengthen(springs, goal, share, p, x, step, length)
-      type(joint_springs_t), intent(in) :: springs
+   pure subroutine lengthen(goal, share, p, x, step, length)
       real(wp), intent(in) :: goal(:, :)  !! What the products are to be: (4, n_joint)
       real(wp), intent(in) :: share       !! How much of the way to a bound may be gone
       type(problem_t), intent(inout) :: p
@@ -201,7 +208,7 @@ contains
          product_of = (x%slack + aim*step%slack)*(x%flow + aim*step%flow)
          p%product = p%product + merge(max(-astray*goal, &
             & min(max(product_of, goal/astray), goal*astray) - product_of), 0.0_wp, p%bounded)
-         call find_step(springs, p, x, other)
+         call find_step(p, x, other)
          longer = longest(p, x, other, share)
          if (longer < length + gain*(aim - length)) return
          step = other
@@ -210,9 +217,7 @@ contains
    end subroutine lengthen
 
    !> The forces of the step before, and the motion that they make, lifted off the bounds
-   pure subroutine begin(springs, view, force, motion, shallow, p, x)
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine begin(force, motion, shallow, p, x)
       real(wp), intent(in) :: force(:, :), motion(:, :)
       !> How far off the bounds at the least, over the size of a force
       real(wp), intent(in) :: shallow
@@ -223,13 +228,13 @@ contains
 
       x%motion = motion(:size(p%balance, 1), p%equation)
       x%force = force(:, p%joint)
-      allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
-      call see_openings(springs, view, p, x%motion, opening)
+      allocate (x%flow(4, size(p%joint)))
+      opening = openings(p, x%motion)
       where (p%follows) opening = opening + p%soft*(x%force - p%force_before)
       p%size = sum(max(abs(x%force(1:2, :)), -opening(1:2, :)/p%unit(1:2, :)), &
          & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
       p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
-      call see_bounds(springs, p, x%force, x%slack)
+      x%slack = distances(p, x%force)
       least = p%size*max(shallow, min(highest, 10.0_wp*sum(abs(min(x%slack(:2, :), &
          & opening(:2, :)/p%unit(:2, :))), p%given(:2, :)) &
          & /(p%size*real(max(1, count(p%given(:2, :))), wp))))
@@ -250,15 +255,12 @@ contains
    end subroutine begin
 
    !> What an iterate leaves of balance and openings
-   pure subroutine find_rest(equations, springs, view, p, x, mean, merit)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine find_rest(p, x, mean, merit)
       type(problem_t), intent(inout) :: p  !! The problem; the rests are set
       type(interior_t), intent(in) :: x
       real(wp), intent(out) :: mean, merit
 
-      call see_lack(equations, springs, view, x, p)
+      call see_lack(x, p)
       p%opening(1:2, :) = p%opening(1:2, :) + x%flow(1:2, :)
       p%opening(3, :) = p%opening(3, :) + x%flow(3, :) - x%flow(4, :)
       where (.not. p%given) p%opening = 0.0_wp
@@ -267,24 +269,23 @@ contains
    end subroutine find_rest
 
    !> The step that brings what is left to nothing
-   pure subroutine find_step(springs, p, x, step)
-      type(joint_springs_t), intent(in) :: springs
+   pure subroutine find_step(p, x, step)
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       type(interior_t), intent(inout) :: step
       real(wp) :: drive(3, size(p%joint)), rest(4, size(p%joint)), slack(4), source(4), bound
       integer :: i
 
-      rest = lacking_slack(springs, p, x)
+      rest = lacking_slack(p, x)
       do i = 1, size(p%joint)
          source = (p%product(:, i) - x%flow(:, i)*rest(:, i))/x%slack(:, i)
          drive(1:2, i) = p%opening(1:2, i) + source(1:2)
          drive(3, i) = p%opening(3, i) + source(3) - source(4)
       end do
-      call respond(springs, p, drive, step%force, step%motion)
+      call respond(p, drive, step%force, step%motion)
       do i = 1, size(p%joint)
          associate (f => step%force(:, i))
-            bound = springs%cone(p%joint(i))%friction*(f(1) + f(2))
+            bound = p%springs%cone(i)%friction*(f(1) + f(2))
             slack = [f(1), f(2), bound + f(3), bound - f(3)] + rest(:, i)
          end associate
          step%slack(:, i) = merge(slack, 0.0_wp, p%bounded(:, i))
@@ -294,16 +295,15 @@ contains
    end subroutine find_step
 
    !> What the slacks of an iterate lack
-   pure function lacking_slack(springs, p, x) result(rest)
-      type(joint_springs_t), intent(in) :: springs
+   pure function lacking_slack(p, x) result(rest)
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       real(wp) :: rest(4, size(p%joint))  !! What they lack: (4, n_joint) [N/m]
       integer :: i
 
       do i = 1, size(p%joint)
-         associate (cone => springs%cone(p%joint(i)), f => x%force(:, i), &
-            & shift => springs%shift(:, p%joint(i)))
+         associate (cone => p%springs%cone(i), f => x%force(:, i), &
+            & shift => p%springs%shift(:, i))
             rest(1:2, i) = f(1:2) + shift(1:2)
             rest(3, i) = cone%limit + cone%friction*(rest(1, i) + rest(2, i)) + f(3)
             rest(4, i) = rest(3, i) - 2.0_wp*f(3)
@@ -354,20 +354,17 @@ contains
    end function longest
 
    !> Forces of an iterate, those of open contacts none, and no shear force beyond its bound
-   pure subroutine take_forces(equations, springs, view, x, p, force)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine take_forces(x, p, force)
       type(interior_t), intent(in) :: x
       type(problem_t), intent(inout) :: p     !! The problem; what is lacking is set
       real(wp), intent(inout) :: force(:, :)  !! Receives the forces: (3, n_joint of all) [N/m]
       real(wp) :: bound
       integer :: i
 
-      call see_lack(equations, springs, view, x, p)
+      call see_lack(x, p)
       do i = 1, size(p%joint)
-         associate (f => force(:, p%joint(i)), shift => springs%shift(:, p%joint(i)), &
-            & cone => springs%cone(p%joint(i)))
+         associate (f => force(:, p%joint(i)), shift => p%springs%shift(:, i), &
+            & cone => p%springs%cone(i))
             where (p%given(:, i)) f = x%force(:, i)
             where (p%bounded(1:2, i) .and. (p%unit(1:2, i)*(f(1:2) + shift(1:2)) &
                & < -p%opening(1:2, i) .or. f(1:2) < -shift(1:2))) f(1:2) = -shift(1:2)
@@ -378,4 +375,4 @@ contains
       end do
    end subroutine take_forces
 
-end submodule dda_contact_interior
+end module dda_contact_interior

@@ -14,8 +14,10 @@
 !> Equation (M5) of docs/method.md
 submodule (dda_settle_in_time) dda_contact_sweeps
    use dda_contact_types, only : unbounded
-   use dda_contact_view, only : move_blocks, see_joints
+   use dda_contact_interior, only : keep_to_faces, solve_interior
+   use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
+   use dda_interior_problem, only : many
    use dda_small_systems, only : solved
    use dda_spring_products, only : relative_displacement
    implicit none
@@ -68,51 +70,6 @@ submodule (dda_settle_in_time) dda_contact_sweeps
    end type sweeps_t
 
    interface
-
-      !> Forces of some joints if these keep nearly to the faces that they had: of all forces that
-      !> stop the blocks those nearest to the ones before
-      pure module subroutine keep_to_faces(equations, springs, view, joint, many, hasty, &
-         & fineness, before, moved, force, passes, agreed)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         !> Numbers of the joints: (n)
-         integer, intent(in) :: joint(:)
-         !> Whether they are many, and whether sweeps rather go on where they are so many that faces
-         !> take as long
-         logical, intent(in) :: many, hasty
-         !> How much smaller than usual forces must be that faces leave
-         real(wp), intent(in) :: fineness
-         !> Forces of all joints in the step before: (3, n_joint) [N/m]
-         real(wp), intent(in) :: before(:, :)
-         !> Motion of all blocks by these: (n_dof, n_equation) [m]
-         real(wp), intent(in) :: moved(:, :)
-         !> Forces of all joints; those of these joints are set if they agree, or nearly where
-         !> joints are very many: (3, n_joint) [N/m]
-         real(wp), intent(inout) :: force(:, :)
-         !> Factorisations so far
-         integer, intent(inout) :: passes
-         !> Whether forces and faces agree
-         logical, intent(out) :: agreed
-      end subroutine keep_to_faces
-
-      !> Forces of some joints, wherever the search for them begins
-      pure module subroutine solve_interior(equations, springs, view, joint, left, before, &
-         & force, motion, passes, agreed)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         integer, intent(in) :: joint(:)
-         !> Gap that springs may leave: none of few joints [m]
-         real(wp), intent(in) :: left
-         real(wp), intent(in) :: before(:, :)
-         !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
-         real(wp), intent(inout) :: force(:, :)
-         !> Motion of all blocks by these: (n_dof, n_equation) [m]
-         real(wp), intent(in) :: motion(:, :)
-         integer, intent(inout) :: passes
-         logical, intent(out) :: agreed
-      end subroutine solve_interior
 
       !> Sweep one group until nothing changes, or until that is seen to take too long
       pure module subroutine sweep_group(springs, joint, purpose, enough, sweeps, settled)
@@ -195,8 +152,8 @@ contains
       if (settled) return
       hasty = size(joint) > vast .and. .not. state%effort%patient
       if (glued .or. asks_faces(sweeps%view, springs, joint, state)) then
-         call keep_to_faces(equations, springs, sweeps%view, joint, size(joint) > many, hasty, &
-            & state%fineness, state%force, sweeps%moved, sweeps%force, state%passes, settled)
+         call keep_to_faces(equations, springs, sweeps%view, joint, hasty, state%fineness, &
+            & state%force, sweeps%moved, sweeps%force, state%passes, settled)
          if (settled .or. hasty) call move_group(equations, springs, joint, sweeps)
          if (.not. settled) state%effort%swept = hasty
          state%effort%strayed = state%effort%strayed .or. .not. settled .and. size(joint) > many
@@ -224,9 +181,8 @@ contains
       if (size(joint) > many) &
          & call sweep_group(springs, joint, sweeps_for%patience, enough, sweeps, settled)
       if (settled) return
-      call solve_interior(equations, springs, sweeps%view, joint, &
-         & merge(state%unseen, 0.0_wp, size(joint) > many), state%force, sweeps%force, &
-         & sweeps%motion(:, 1:), state%passes, settled)
+      call solve_interior(equations, springs, sweeps%view, joint, state%unseen, state%force, &
+         & sweeps%force, sweeps%motion(:, 1:), state%passes, settled)
       call move_group(equations, springs, joint, sweeps)
       if (settled) return
       purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)

@@ -4,8 +4,14 @@
 !> linear equations, unsymmetric where joints slide; joints that disagree change their faces, all at
 !> once. Near the answer that ends after one to three passes and leaves rounding; far from it, it
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
-submodule (dda_settle_in_time:dda_contact_interior) dda_face_passes
+module dda_face_passes
+   use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
+   use dda_interior_problem, only : factor_springs, interior_t, problem_t, respond, see_lack
+   use dda_kinds, only : wp
    implicit none
+   private
+
+   public :: settle_faces, settle_many_faces
 
    !> Compliance of a force that does not follow its opening, over that of the blocks
    real(wp), parameter :: free = 1.0e20_wp
@@ -36,14 +42,18 @@ submodule (dda_settle_in_time:dda_contact_interior) dda_face_passes
 contains
 
    !> Find forces and motion whose faces agree, from those of an iterate
-   module procedure settle_faces
+   pure subroutine settle_faces(p, x, passes, agreed)
+      type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
+      type(interior_t), intent(inout) :: x
+      integer, intent(inout) :: passes     !! Factorisations so far
+      logical, intent(out) :: agreed       !! Whether the faces agree
       type(joint_face_t) :: face(size(p%joint))
       real(wp) :: last_rest, rest
       integer :: changes, last, pass, turn
       logical :: held
 
       agreed = .false.
-      call read_faces(equations, springs, view, p, x, face)
+      call read_faces(p, x, face)
       held = .false.
       last = size(face)/2
       last_rest = huge(last_rest)
@@ -53,12 +63,12 @@ contains
             if (pass == max_passes) return
             pass = pass + 1
             passes = passes + 1
-            call hold_faces(springs, face, p, x)
-            call factor_springs(equations, springs, p)
+            call hold_faces(face, p, x)
+            call factor_springs(p)
             if (.not. p%factor%usable) return
          end if
-         call move_on(equations, springs, view, p, x)
-         call change_faces(springs, p, x, face, changes)
+         call move_on(p, x)
+         call change_faces(p, x, face, changes)
          held = changes == 0
          if (held) then
             rest = maxval(p%soft/p%unit*abs(x%force - p%force_before), .not. p%follows)/p%size
@@ -73,10 +83,21 @@ contains
          end if
          last = changes
       end do
-   end procedure settle_faces
+   end subroutine settle_faces
 
-   !> The same of many joints, which rather end than keep to the way that the loads have led them
-   module procedure settle_many_faces
+   !> The same of many joints, which rather end than keep to the way that the loads have led them:
+   !> with ever firmer springs, as far as these agree
+   pure subroutine settle_many_faces(p, hasty, x, passes, agreed, near)
+      !> The problem; the size of a force is given, its springs are as they were in the end
+      type(problem_t), intent(inout) :: p
+      !> Whether joints are so many that sweeps rather go on where faces do not agree at once
+      logical, intent(in) :: hasty
+      type(interior_t), intent(inout) :: x
+      integer, intent(inout) :: passes
+      !> Whether the faces agree with springs as soft as those of few joints at the least
+      logical, intent(out) :: agreed
+      !> Whether they nearly agree at the least
+      logical, intent(out) :: near
       type(joint_face_t) :: face(size(p%joint))
       type(interior_t) :: firmer
       real(wp) :: soft(3, size(p%joint))
@@ -90,8 +111,8 @@ contains
       do k = 1, size(softness)
          where (.not. p%follows) p%soft = softness(k)*soft
          if (k == 2) firmer = x
-         if (k <= 2) call read_faces(equations, springs, view, p, firmer, face)
-         call pass_faces(equations, springs, view, p, hasty, firmer, face, passes, changes)
+         if (k <= 2) call read_faces(p, firmer, face)
+         call pass_faces(p, hasty, firmer, face, passes, changes)
          ended = changes == 0
          agreed = agreed .or. ended
          near = hasty .and. changes <= nearly*size(face)
@@ -100,13 +121,10 @@ contains
       end do
       near = near .or. agreed
       p%soft = soft
-   end procedure settle_many_faces
+   end subroutine settle_many_faces
 
    !> Solve with the faces as they are and change those that disagree, again and again
-   pure subroutine pass_faces(equations, springs, view, p, hasty, x, face, passes, changes)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine pass_faces(p, hasty, x, face, passes, changes)
       type(problem_t), intent(inout) :: p
       logical, intent(in) :: hasty
       type(interior_t), intent(inout) :: x
@@ -120,64 +138,57 @@ contains
       least = huge(least)/2
       do pass = 1, many_passes
          passes = passes + 1
-         call hold_faces(springs, face, p, x)
-         call factor_springs(equations, springs, p)
+         call hold_faces(face, p, x)
+         call factor_springs(p)
          if (.not. p%factor%usable) return
-         call move_on(equations, springs, view, p, x)
-         call change_faces(springs, p, x, face, changes)
+         call move_on(p, x)
+         call change_faces(p, x, face, changes)
          if (changes == 0) exit
          stale = merge(0, stale + 1, changes < falling*least)
          if (stale == merge(1, patience, hasty) .or. changes > most_changes*size(face)) return
          least = min(least, changes)
       end do
       ! what rounding has left
-      if (changes == 0) call move_on(equations, springs, view, p, x)
+      if (changes == 0) call move_on(p, x)
    end subroutine pass_faces
 
    !> Add what forces and motion lack, but to forces that their faces give
-   pure subroutine move_on(equations, springs, view, p, x)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine move_on(p, x)
       !> The problem, factored; what is lacking afterwards is set
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
       real(wp) :: force(3, size(p%joint)), motion(size(p%balance, 1), size(p%equation))
 
-      call see_lack(equations, springs, view, x, p)
+      call see_lack(x, p)
       where (p%yield(:3, :) > 0.0_wp) p%opening = 0.0_wp
       where (p%yield(4, :) > 0.0_wp) p%opening(3, :) = 0.0_wp
-      call respond(springs, p, p%opening, force, motion)
+      call respond(p, p%opening, force, motion)
       x%force = x%force + force
       x%motion = x%motion + motion
-      call see_lack(equations, springs, view, x, p)
+      call see_lack(x, p)
    end subroutine move_on
 
    !> The faces that forces and openings of the joints speak for
-   pure subroutine read_faces(equations, springs, view, p, x, face)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
+   pure subroutine read_faces(p, x, face)
       type(problem_t), intent(inout) :: p         !! The problem; what is lacking is set
       type(interior_t), intent(in) :: x
       type(joint_face_t), intent(out) :: face(:)  !! The faces: (n_joint)
       real(wp) :: force(3), trial(3)
       integer :: i
 
-      call see_lack(equations, springs, view, x, p)
+      call see_lack(x, p)
       do i = 1, size(face)
-         force = x%force(:, i) + springs%shift(:, p%joint(i))
+         force = x%force(:, i) + p%springs%shift(:, i)
          trial = force + p%opening(:, i)/p%unit(:, i)
          face(i)%open = .not. (p%given(1:2, i) .and. trial(1:2) >= 0.0_wp)
-         if (abs(trial(3)) > shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force)) &
+         if (abs(trial(3)) > shear_bound(p%springs%cone(i), max(0.0_wp, force)) &
             & .or. all(face(i)%open)) face(i)%slip = merge(1, -1, trial(3) > 0.0_wp)
          if (.not. p%given(3, i)) face(i)%slip = 0
       end do
    end subroutine read_faces
 
    !> Put the forces onto their faces, and let the springs keep them there
-   pure subroutine hold_faces(springs, face, p, x)
-      type(joint_springs_t), intent(in) :: springs
+   pure subroutine hold_faces(face, p, x)
       type(joint_face_t), intent(in) :: face(:)
       type(problem_t), intent(inout) :: p  !! The problem; how the bounds yield is set
       type(interior_t), intent(inout) :: x
@@ -185,7 +196,7 @@ contains
 
       p%yield = 0.0_wp
       do i = 1, size(face)
-         associate (shift => springs%shift(:, p%joint(i)), cone => springs%cone(p%joint(i)), &
+         associate (shift => p%springs%shift(:, i), cone => p%springs%cone(i), &
             & slip => face(i)%slip, force => x%force(:, i))
             where (face(i)%open .and. p%given(1:2, i))
                force(1:2) = -shift(1:2)
@@ -199,8 +210,7 @@ contains
    end subroutine hold_faces
 
    !> Let joints that disagree with their faces change them
-   pure subroutine change_faces(springs, p, x, face, changes)
-      type(joint_springs_t), intent(in) :: springs
+   pure subroutine change_faces(p, x, face, changes)
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       type(joint_face_t), intent(inout) :: face(:)
@@ -212,7 +222,7 @@ contains
       changes = 0
       least = p%fineness*tolerance*p%size
       do i = 1, size(face)
-         force = x%force(:, i) + springs%shift(:, p%joint(i))
+         force = x%force(:, i) + p%springs%shift(:, i)
          ! of open contacts and sliding joints, over what the blocks give; others have none
          opening = -p%opening(:, i)/p%unit(:, i)
          do k = 1, 2
@@ -222,8 +232,8 @@ contains
             changes = changes + 1
          end do
          if (.not. p%given(3, i)) cycle
-         excess = abs(force(3)) - shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force))
-         sticks = springs%cone(p%joint(i))%kind == cone_kind%no_slip
+         excess = abs(force(3)) - shear_bound(p%springs%cone(i), max(0.0_wp, force))
+         sticks = p%springs%cone(i)%kind == cone_kind%no_slip
          if (all(face(i)%open)) then
             if (face(i)%slip == 0) changes = changes + 1
             if (face(i)%slip == 0) face(i)%slip = 1
@@ -238,4 +248,4 @@ contains
       end do
    end subroutine change_faces
 
-end submodule dda_face_passes
+end module dda_face_passes

@@ -6,10 +6,7 @@
 !> momentum; so a step in which they change a little to the end counts.
 module dda_settle_in_time
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
-   use dda_block_factor, only : block_factor_t
-   use dda_block_matrix, only : block_matrix_t
    use dda_contact_types, only : joint_springs_t
-   use dda_contact_view, only : contact_view_t
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction_cone, only : cone_kind
    use dda_friction, only : accelerate, anderson_t, coulomb_bound
@@ -20,71 +17,7 @@ module dda_settle_in_time
    implicit none
    private
 
-   public :: settle_in_time, group_joints, many, vast, factor_springs, interior_t, pose
-   public :: problem_t, respond, see_bounds, see_lack, see_openings
-
-   !> One iterate, or a step from it
-   type :: interior_t
-      !> Motion of the blocks: (n_dof, n_block) [m]
-      real(wp), allocatable :: motion(:, :)
-      !> Forces: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Distance of the forces from each bound: (4, n_joint) [N/m]
-      real(wp), allocatable :: slack(:, :)
-      !> Opening or slip at each bound: (4, n_joint) [m]
-      real(wp), allocatable :: flow(:, :)
-   end type interior_t
-
-   !> Joints and blocks of the problem, and what an iterate leaves of its equations
-   type :: problem_t
-      !> Numbers of the joints: (n_joint)
-      integer, allocatable :: joint(:)
-      !> Equations of the blocks: (n_block)
-      integer, allocatable :: equation(:)
-      !> Blocks of each joint, 0 for one that cannot move: (2, n_joint)
-      integer, allocatable :: block(:, :)
-      !> Coupling of each joint in the matrix, or 0: (n_joint)
-      integer, allocatable :: entry(:)
-      !> Which forces there are: (3, n_joint)
-      logical, allocatable :: given(:, :)
-      !> Which bounds the forces of each joint have: (4, n_joint)
-      logical, allocatable :: bounded(:, :)
-      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: unit(:, :)
-      !> Compliance of the springs: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: soft(:, :)
-      !> Which openings follow their forces for good: (3, n_joint)
-      logical, allocatable :: follows(:, :)
-      !> Forces of the step before, or those without opening: (3, n_joint) [N/m]
-      real(wp), allocatable :: force_before(:, :)
-      !> Size of a force [N/m]
-      real(wp) :: size = 0.0_wp
-      !> How much smaller than usual forces must be that faces leave
-      real(wp) :: fineness = 1.0_wp
-      !> Gap that springs may leave [m]
-      real(wp) :: left = 0.0_wp
-      !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
-      real(wp), allocatable :: yield(:, :)
-      !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)
-      !> [m/(N/m)]
-      real(wp), allocatable :: held(:, :)
-      !> What the springs answer as their bounds yield: to each opening, to slip [N/m per m], and
-      !> what slip takes of the forces of the openings: (4, n_joint)
-      real(wp), allocatable :: stiff(:, :)
-      !> Matrix with the springs
-      type(block_matrix_t) :: matrix
-      !> Its factor
-      type(block_factor_t) :: factor
-      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
-      real(wp), allocatable :: balance(:, :)
-      !> Of the openings: (3, n_joint) [m]
-      real(wp), allocatable :: opening(:, :)
-      !> Change of slack times flow that a step is to bring: (4, n_joint)
-      real(wp), allocatable :: product(:, :)
-   end type problem_t
-
-   !> Groups of more joints than this are swept for long before interior springs are tried
-   integer, parameter :: many = 300
+   public :: settle_in_time, group_joints
 
    !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
    !> end wherever they are, and only the firmest springs are tried before them
@@ -145,61 +78,6 @@ module dda_settle_in_time
          !> The joints, group by group, rising in each: (n_joint)
          integer, intent(out) :: joint(:)
       end subroutine group_joints
-
-      !> The joints with their blocks numbered anew, and the pattern of their matrix
-      pure module subroutine pose(equations, springs, view, joint, force, motion, p)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         integer, intent(in) :: joint(:)       !! Numbers of the joints: (n)
-         real(wp), intent(in) :: force(:, :)   !! Forces of all joints: (3, n_joint) [N/m]
-         real(wp), intent(in) :: motion(:, :)  !! Motion of all blocks: (n_dof, n_equation) [m]
-         type(problem_t), intent(out) :: p
-      end subroutine pose
-
-      !> Openings and slips after a motion, from the gaps before it
-      pure module subroutine see_openings(springs, view, p, motion, opening)
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         type(problem_t), intent(in) :: p
-         real(wp), intent(in) :: motion(:, :)    !! The motion: (n_dof, n_block) [m]
-         real(wp), intent(out) :: opening(:, :)  !! The openings: (3, n_joint) [m]
-      end subroutine see_openings
-
-      !> What forces and motion lack of balance, and of openings that are closed
-      pure module subroutine see_lack(equations, springs, view, x, p)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(contact_view_t), intent(in) :: view
-         type(interior_t), intent(in) :: x
-         type(problem_t), intent(inout) :: p  !! The problem; balance and openings are set
-      end subroutine see_lack
-
-      !> Forces and motion that give what is lacking
-      pure module subroutine respond(springs, p, drive, force, motion)
-         type(joint_springs_t), intent(in) :: springs
-         !> The problem, factored, with what it lacks of balance
-         type(problem_t), intent(in) :: p
-         !> By how much the springs are pressed together: (3, n_joint) [m]
-         real(wp), intent(in) :: drive(:, :)
-         real(wp), intent(out) :: force(:, :), motion(:, :)
-      end subroutine respond
-
-      !> Distance of the forces from their bounds
-      pure module subroutine see_bounds(springs, p, force, slack)
-         type(joint_springs_t), intent(in) :: springs
-         type(problem_t), intent(in) :: p
-         real(wp), intent(in) :: force(:, :)
-         real(wp), intent(out) :: slack(:, :)  !! The distances: (4, n_joint) [N/m]
-      end subroutine see_bounds
-
-      !> The matrix with the springs as their bounds yield, and its factor, of which stays what they
-      !> do not change
-      pure module subroutine factor_springs(equations, springs, p)
-         type(equations_t), intent(in) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         type(problem_t), intent(inout) :: p  !! The problem; matrix and factor are made anew
-      end subroutine factor_springs
 
    end interface
 

@@ -7,7 +7,7 @@ module dda_spring_products
    implicit none
    private
 
-   public :: projected, add_product, add_load, relative_displacement
+   public :: projected, add_product, add_forces, add_load, relative_displacement
 
 contains
 
@@ -48,25 +48,47 @@ contains
       integer, intent(in) :: j
       real(wp), intent(inout) :: load(:, :)  !! Receives the load: (n_dof, n_equation)
       real(wp) :: tangent(3, 3), constant(3)
-      integer :: c, e, side
 
       constant = trial
       if (.not. is_stuck(face)) then
          call apply_face(cone, face, tangent, constant)
          constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
       end if
-      if (.not. any(abs(constant) > 0.0_wp)) return
+      call add_force(springs, constant, j, load)
+   end subroutine add_load
+
+   !> Let forces of all joints act on the blocks: add R f
+   pure subroutine add_forces(springs, force, load)
+      type(joint_springs_t), intent(in) :: springs
+      real(wp), intent(in) :: force(:, :)    !! The forces: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: load(:, :)
+      integer :: j
+
+      do j = 1, size(force, 2)
+         call add_force(springs, force(:, j), j, load)
+      end do
+   end subroutine add_forces
+
+   !> Let the force of one joint act on its blocks
+   pure subroutine add_force(springs, force, j, load)
+      type(joint_springs_t), intent(in) :: springs
+      real(wp), intent(in) :: force(3)       !! The force: (3) [N/m]
+      integer, intent(in) :: j
+      real(wp), intent(inout) :: load(:, :)
+      integer :: c, e, side
+
+      if (.not. any(abs(force) > 0.0_wp)) return
       do side = 1, 2
          e = springs%equation(side, j)
          if (e == 0) cycle
          ! blocks have 3 or 6 unknowns: three at a time, so that the compiler knows the length
          do c = 1, size(load, 1), 3
-            load(c:c + 2, e) = load(c:c + 2, e) + springs%row(c:c + 2, 1, side, j)*constant(1) &
-               & + springs%row(c:c + 2, 2, side, j)*constant(2) &
-               & + springs%row(c:c + 2, 3, side, j)*constant(3)
+            load(c:c + 2, e) = load(c:c + 2, e) + springs%row(c:c + 2, 1, side, j)*force(1) &
+               & + springs%row(c:c + 2, 2, side, j)*force(2) &
+               & + springs%row(c:c + 2, 3, side, j)*force(3)
          end do
       end do
-   end subroutine add_load
+   end subroutine add_force
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)
