@@ -1,5 +1,6 @@
 !> Carry an accepted step over to blocks and contacts (Shi: df25)
 module dda_block_update
+   use dda_bar_springs, only : keep_bars
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : mohr_coulomb
    use dda_contacts, only : contacts_t
@@ -7,13 +8,24 @@ module dda_block_update
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix, loses_strength
    use dda_settings, only : flow_rule, settings_t
-   use dda_step_context, only : step_context_t
+   use dda_step_context, only : run_t, step_context_t
    implicit none
    private
 
-   public :: update_blocks, update_contacts, displaced_blocks
+   public :: carry_over, update_blocks, update_contacts, displaced_blocks
 
 contains
+
+   !> Contacts, blocks and bars at the end of a step
+   pure subroutine carry_over(run)
+      type(run_t), intent(inout) :: run
+      logical :: breaks
+
+      call update_contacts(run%step, run%settings, run%contacts, breaks)
+      call update_blocks(run%step, run%settings, run%system)
+      call keep_bars(run%equations%bars, run%settings, run%step%state%motion, run%system)
+      run%step%whole = .not. breaks
+   end subroutine carry_over
 
    !> Add the motion of a step; stress follows the strain, velocity the constant acceleration or the
    !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are

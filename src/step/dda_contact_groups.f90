@@ -1,11 +1,24 @@
 !> Groups of joints whose blocks hang together: each is a problem of its own
-submodule (dda_settle_in_time) dda_contact_groups
+module dda_contact_groups
+   use dda_contact_types, only : joint_springs_t
    implicit none
+   private
+
+   public :: group_joints
 
 contains
 
    !> Groups of joints whose blocks hang together
-   module procedure group_joints
+   pure subroutine group_joints(springs, n_equation, n, first, joint)
+      type(joint_springs_t), intent(in) :: springs
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Number of groups
+      integer, intent(out) :: n
+      !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
+      integer, intent(out) :: first(:)
+      !> The joints, group by group, rising in each: (n_joint)
+      integer, intent(out) :: joint(:)
       integer :: group(size(joint)), i, j
 
       call number_groups(springs, n_equation, n, group)
@@ -23,7 +36,7 @@ contains
          first(group(j)) = first(group(j)) - 1
          joint(first(group(j))) = j
       end do
-   end procedure group_joints
+   end subroutine group_joints
 
    !> Which group each joint is of
    pure subroutine number_groups(springs, n_equation, n, group)
@@ -65,4 +78,4 @@ contains
       end function root_of
    end subroutine number_groups
 
-end submodule dda_contact_groups
+end module dda_contact_groups

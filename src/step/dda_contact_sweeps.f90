@@ -12,35 +12,22 @@
 !> itself, and those that would take long go on by interior springs (`dda_contact_interior`).
 !>
 !> Equation (M5) of docs/method.md
-submodule (dda_settle_in_time) dda_contact_sweeps
-   use dda_contact_types, only : unbounded
+module dda_contact_sweeps
+   use dda_contact_groups, only : group_joints
    use dda_contact_interior, only : keep_to_faces, solve_interior
+   use dda_contact_types, only : joint_springs_t, unbounded
    use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
+   use dda_group_sweeps, only : coarsest, sweep_group, sweeps_for, sweeps_t, vast
    use dda_interior_problem, only : many
+   use dda_kinds, only : wp
    use dda_small_systems, only : solved
    use dda_spring_products, only : relative_displacement
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
+   private
 
-   !> The same where they bring no less without haste either, or where many joints move
-   real(wp), parameter :: coarsest = 5.0e3_wp
-
-   !> After this many sweeps the change must have fallen noticeably
-   integer, parameter :: patience = 100
-
-   !> What a group is swept for
-   type :: sweeps_for_enum
-      integer :: a_look = 0    !! To see whether its forces stay
-      integer :: rounding = 1  !! To rounding
-      integer :: haste = 2     !! To see whether it settles soon
-      integer :: patience = 3  !! Until no step notices what is left
-      integer :: the_rest = 4  !! To make good what interior springs leave
-      integer :: the_last = 5  !! The same where more may be left
-      integer :: the_end = 6   !! The same where a longer step has failed by what was left
-   end type sweeps_for_enum
-
-   !> Names of what a group is swept for
-   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
+   public :: sweep_contacts
 
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
@@ -53,44 +40,16 @@ submodule (dda_settle_in_time) dda_contact_sweeps
    !> the next step begins with, a finer one
    real(wp), parameter :: look = 1.0e-3_wp, look_at_speeds = 3.0e-5_wp
 
-   !> What sweeps work on
-   type :: sweeps_t
-      !> How the blocks answer
-      type(contact_view_t) :: view
-      !> Gap that rounding can make [m]
-      real(wp) :: noise = 0.0_wp
-      !> Changes that count as none, of a force [N/m] and of a gap [m]
-      real(wp) :: enough(2) = 0.0_wp
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> That by the forces before: (n_dof, n_equation) [m]
-      real(wp), allocatable :: moved(:, :)
-   end type sweeps_t
-
-   interface
-
-      !> Sweep one group until nothing changes, or until that is seen to take too long
-      pure module subroutine sweep_group(springs, joint, purpose, enough, sweeps, settled)
-         type(joint_springs_t), intent(in) :: springs
-         !> Joints of the group: (n)
-         integer, intent(in) :: joint(:)
-         !> One of sweeps_for
-         integer, intent(in) :: purpose
-         !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
-         real(wp), intent(in) :: enough(2)
-         type(sweeps_t), intent(inout) :: sweeps
-         !> Whether it is settled
-         logical, intent(out) :: settled
-      end subroutine sweep_group
-
-   end interface
-
 contains
 
    !> Settle contact forces and motion of one step, or begin to
-   module procedure sweep_contacts
+   pure subroutine sweep_contacts(equations, springs, state)
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints; their stiffness only measures gaps here
+      type(joint_springs_t), intent(in) :: springs
+      !> Forces and trial forces to begin with in; motion, forces and faces out, as far as they
+      !> came
+      type(step_state_t), intent(inout) :: state
       type(sweeps_t) :: sweeps
       integer :: begun, g, most, n, joint(size(springs%stiffness)), first(size(joint) + 1)
       real(wp) :: size_of
@@ -123,7 +82,7 @@ contains
       state%passes = begun + most + 1
       state%settled = all(settled(:n))
       call keep_forces(equations, springs, sweeps, state)
-   end procedure sweep_contacts
+   end subroutine sweep_contacts
 
    !> Settle one group: forces that stay need no more than a look; those nearest to the ones before
    !> are found by the faces that these had, or else by interior springs; many joints that move are
@@ -131,11 +90,11 @@ contains
    pure subroutine settle_group(equations, springs, joint, state, sweeps, settled)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      integer, intent(in) :: joint(:)
+      integer, intent(in) :: joint(:)  !! Joints of the group: (n)
       !> The step, for the forces before; passes are counted
       type(step_state_t), intent(inout) :: state
       type(sweeps_t), intent(inout) :: sweeps
-      logical, intent(out) :: settled
+      logical, intent(out) :: settled  !! Whether it is settled
       real(wp) :: enough(2)
       logical :: glued, hasty
 
@@ -293,4 +252,4 @@ contains
       if (all(face%open) .and. .not. abs(force(3)) > 0.0_wp) face%slip = 0
    end function face_of
 
-end submodule dda_contact_sweeps
+end module dda_contact_sweeps

@@ -1,13 +1,19 @@
 !> Augmented Lagrangian: the forces of the springs become multipliers until the springs carry
 !> nothing, so that the penalty leaves no trace
-submodule (dda_step) dda_multipliers
+module dda_multipliers
    use dda_bar_springs, only : add_bars, couple_bars, judge_bars
+   use dda_contact_types, only : joint_springs_t
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : iterate_friction
+   use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
-   use dda_settings, only : flow_rule
+   use dda_settings, only : flow_rule, settings_t
    use dda_settle_in_time, only : settle_in_time
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
+   private
+
+   public :: settle_joints
 
    !> Most passes of one step in which forces become multipliers
    integer, parameter :: max_force_passes = 100
@@ -18,8 +24,16 @@ submodule (dda_step) dda_multipliers
 
 contains
 
-   !> Settle the joints of one step
-   module procedure settle_joints
+   !> Settle the joints of one step: once in reference geometry, where the penalty has no
+   !> influence, and where springs give for good; until the multipliers stay the same where
+   !> blocks move
+   pure subroutine settle_joints(settings, equations, springs, state)
+      type(settings_t), intent(in) :: settings
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
       integer :: pass
       logical :: agreed
 
@@ -34,7 +48,7 @@ contains
          equations%changed = .true.
       end do
       state%settled = .false.
-   end procedure settle_joints
+   end subroutine settle_joints
 
    !> Settle the joints for given conditions of the bars
    pure subroutine settle_with_bars(settings, equations, springs, state)
@@ -102,4 +116,4 @@ contains
       end if
    end subroutine settle_once
 
-end submodule dda_multipliers
+end module dda_multipliers

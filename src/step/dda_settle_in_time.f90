@@ -5,7 +5,9 @@
 !> and around it they follow the normal forces. Whatever they are, friction takes energy and no
 !> momentum; so a step in which they change a little to the end counts.
 module dda_settle_in_time
-   use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_bar_springs, only : add_bars, couple_bars, judge_bars
+   use dda_bars_in_time, only : append_bars, drop_bars
+   use dda_contact_sweeps, only : sweep_contacts
    use dda_contact_types, only : joint_springs_t
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction_cone, only : cone_kind
@@ -17,11 +19,7 @@ module dda_settle_in_time
    implicit none
    private
 
-   public :: settle_in_time, group_joints
-
-   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
-   !> end wherever they are, and only the firmest springs are tried before them
-   integer, parameter :: vast = 2000
+   public :: settle_in_time
 
    !> Most passes in which forces become multipliers, for given bounds
    integer, parameter :: max_passes = 100
@@ -35,51 +33,6 @@ module dda_settle_in_time
    real(wp), parameter :: coarse = 1.0e-7_wp
    !> Change of a bound that a step may end with
    real(wp), parameter :: coarse_bound = 1.0e-4_wp
-
-   interface
-
-      !> The joints of a step and behind them its bars
-      pure module subroutine append_bars(bars, contacts, step, springs, state, load)
-         type(bar_springs_t), intent(in) :: bars
-         type(joint_springs_t), intent(in) :: contacts
-         type(step_state_t), intent(in) :: step
-         !> Springs of joints and bars
-         type(joint_springs_t), intent(out) :: springs
-         type(step_state_t), intent(out) :: state
-         !> Receives what the bars carry in the middle of their bounds: (n_dof, n_equation) [N/m]
-         real(wp), intent(inout) :: load(:, :)
-      end subroutine append_bars
-
-      !> Give the joints of a step back what was found beside its bars
-      pure module subroutine drop_bars(state, step)
-         type(step_state_t), intent(in) :: state
-         type(step_state_t), intent(inout) :: step
-      end subroutine drop_bars
-
-      !> Settle contact forces and motion of one step, or begin to
-      pure module subroutine sweep_contacts(equations, springs, state)
-         type(equations_t), intent(in) :: equations
-         !> The springs of the joints; their stiffness only measures gaps here
-         type(joint_springs_t), intent(in) :: springs
-         !> Forces and trial forces to begin with in; motion, forces and faces out, as far as they
-         !> came
-         type(step_state_t), intent(inout) :: state
-      end subroutine sweep_contacts
-
-      !> Groups of joints whose blocks hang together
-      pure module subroutine group_joints(springs, n_equation, n, first, joint)
-         type(joint_springs_t), intent(in) :: springs
-         !> Number of movable blocks
-         integer, intent(in) :: n_equation
-         !> Number of groups
-         integer, intent(out) :: n
-         !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
-         integer, intent(out) :: first(:)
-         !> The joints, group by group, rising in each: (n_joint)
-         integer, intent(out) :: joint(:)
-      end subroutine group_joints
-
-   end interface
 
 contains
 

@@ -1,10 +1,20 @@
 !> Steps in which blocks come to rest, or go on standing
-submodule (dda_step) dda_step_at_rest
+module dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
-   use dda_block_update, only : displaced_blocks
-   use dda_step_context, only : run_state_t
+   use dda_block_update, only : carry_over, displaced_blocks
+   use dda_energy, only : audit_step
+   use dda_kinds, only : wp
+   use dda_multipliers, only : settle_joints
+   use dda_spring_products, only : add_forces
+   use dda_step_context, only : in_time, run_state_t, run_t
+   use dda_step_motion, only : assemble_step, begin_step, place_contacts, predict_step, &
+      & solve_contacts
+   use dda_velocity, only : solve_impacts, stiffen_contacts
    implicit none
+   private
+
+   public :: rest
 
    !> Slow blocks are tried for rest after so many steps, after twice as many, and so on until every
    !> so many
@@ -16,10 +26,20 @@ submodule (dda_step) dda_step_at_rest
    !> How much smaller than usual the gaps are that a try leaves
    real(wp), parameter :: of_try = 1.0e-6_wp
 
+   !> Speed that may be noise of contact forces, over what free fall makes in a step
+   real(wp), parameter :: slow = 1.0e-3_wp
+   !> Speed that finer contact forces leave of it, over the same
+   real(wp), parameter :: no_speed = 1.0e-7_wp
+   !> Acceleration that a block in balance has left, over that of free fall
+   real(wp), parameter :: balanced = 1.0e-9_wp
+
 contains
 
-   !> A step of blocks that stand still, or are found to
-   module procedure rest
+   !> A step of blocks that stand still, or are found to: nothing moves in it
+   pure subroutine rest(run, still)
+      type(run_t), intent(inout) :: run
+      logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
+
       still = .false.
       if (.not. in_time(run)) return
       call stands_still(run, still)
@@ -38,7 +58,7 @@ contains
       run%march%steps = run%march%steps + 1
       run%march%time = run%march%time + run%step%dt
       call audit_step(run)
-   end procedure rest
+   end subroutine rest
 
    !> Bring blocks to rest whose speeds may be what contact forces leave: finer forces take all
    !> speed in few steps, but not of what slides without resistance, and then balance the loads.
@@ -90,11 +110,11 @@ contains
 
       taken = .false.
       do i = 1, most_steps
-         call predict(run)
+         call predict_step(run)
          call place_contacts(run)
          run%step%state%fineness = of_try
          run%step%state%effort%patient = .true.
-         call assemble(run)
+         call assemble_step(run)
          call solve_contacts(run)
          if (.not. run%step%state%settled) return
          call solve_impacts(run)
@@ -135,4 +155,81 @@ contains
       end associate
    end subroutine balance_forces
 
-end submodule dda_step_at_rest
+   !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
+   !> forces that it was
+   pure logical function is_slow(run, velocity, finer)
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_equation)
+      logical, intent(in) :: finer            !! Whether forces were finer
+      real(wp) :: least
+      integer :: e
+
+      is_slow = .false.
+      least = merge(no_speed, slow, finer)*run%march%free_acceleration*run%march%dt
+      associate (mass => run%equations%mass)
+         do e = 1, size(velocity, 2)
+            if (dot_product(velocity(:, e), matmul(mass(:, :, e), velocity(:, e))) &
+               & > least**2*mass(1, 1, e)) return
+         end do
+      end associate
+      is_slow = .true.
+   end function is_slow
+
+   !> Length of a step in which rounding of gaps moves blocks less than forces that are not
+   !> balanced
+   pure real(wp) function balancing_time(run) result(time)
+      type(run_t), intent(in) :: run
+
+      time = 0.0_wp
+      if (run%march%free_acceleration > 0.0_wp) time = sqrt(8.0_wp*run%equations%gap_noise &
+         & /(balanced*run%march%free_acceleration))
+   end function balancing_time
+
+   !> Whether no block moves and the contact forces at hand balance the loads of the coming step,
+   !> which are assembled
+   pure subroutine stands_still(run, still)
+      type(run_t), intent(inout) :: run
+      logical, intent(out) :: still  !! The answer
+      real(wp) :: left(size(run%equations%load, 1), size(run%equations%load, 2))
+      integer :: b, e, i
+
+      still = .false.
+      do b = 1, size(run%system%equation)
+         if (run%system%equation(b) > 0 .and. any(abs(run%system%velocity(:, b)) > 0.0_wp)) return
+      end do
+      call assemble_blocks(run%system, run%settings, run%march%dt, run%equations, run%march%time)
+      left = run%equations%load
+      associate (contacts => run%contacts, mass => run%equations%mass)
+         call add_forces(contacts%springs, contacts%force, left)
+         do e = 1, size(left, 2)
+            do i = 1, size(left, 1)
+               if (abs(left(i, e)) > balanced*run%march%free_acceleration &
+                  & *sqrt(mass(1, 1, e)*mass(i, i, e))) return
+            end do
+         end do
+      end associate
+      still = .true.
+   end subroutine stands_still
+
+   !> A step, begun, in which nothing moves: its forces are those before
+   pure subroutine stand_still(run)
+      type(run_t), intent(inout) :: run
+
+      associate (step => run%step)
+         run%contacts%increment = 0.0_wp
+         step%dt = run%march%dt
+         step%state%increment = run%contacts%increment
+         step%state%force = run%contacts%force
+         step%state%settled = .true.
+         step%velocity = step%state%motion
+         step%has_velocity = .true.
+         step%mean_force = run%contacts%force
+         step%held_mean_force = run%equations%fixed%force
+         step%impact = 0.0_wp
+         step%farthest = 0.0_wp
+         step%acceleration = 0.0_wp
+         step%whole = .true.
+      end associate
+   end subroutine stand_still
+
+end module dda_step_at_rest

@@ -1,13 +1,22 @@
 !> How blocks would move in a try of a step: contacts placed, equations assembled, joints settled
-submodule (dda_step) dda_step_motion
+module dda_step_motion
    use dda_assembly, only : renew_springs, take_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : joint_t
    use dda_contacts, only : contacts_t, follow_contacts
+   use dda_curved_motion, only : follow_curves, foresee_curves
+   use dda_kinds, only : wp
+   use dda_multipliers, only : settle_joints
+   use dda_step_context, only : in_time, run_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
+   use dda_step_state, only : effort_t
+   use dda_velocity, only : stiffen_contacts
    implicit none
+   private
+
+   public :: assemble_step, begin_step, place_contacts, predict_step, solve_contacts
 
    !> Opening against the law of contact that many blocks may leave, over what the speed of the
    !> longest step's fall brings in a step: a speed matters in a short step as much as in a long one
@@ -17,8 +26,11 @@ submodule (dda_step) dda_step_motion
 
 contains
 
-   !> What a step begins with
-   module procedure predict
+   !> What a step begins with: masses as the blocks have turned, whether contacts remember their
+   !> slip, and how corners are about to move
+   pure subroutine predict_step(run)
+      type(run_t), intent(inout) :: run
+
       run%contacts%remember = .not. in_time(run)
       associate (step => run%step)
          step%was_cut = .false.
@@ -37,10 +49,11 @@ contains
       if (.not. in_time(run)) return
       run%march%reach = first_reach(run%system, run%settings, run%march)
       call reach_like_neighbours(run%contacts%joint, run%system%equation, run%march%reach)
-   end procedure predict
+   end subroutine predict_step
 
-   !> Contacts where the blocks are now
-   module procedure place_contacts
+   !> Contacts where the blocks are now: those that were given, or those that a search finds
+   pure subroutine place_contacts(run)
+      type(run_t), intent(inout) :: run
       integer, allocatable :: before(:, :)
       type(contacts_t) :: solved
 
@@ -66,7 +79,7 @@ contains
             call take_springs(run%equations)
          end if
       end associate
-   end procedure place_contacts
+   end subroutine place_contacts
 
    !> Whether joints are of the same corners and edges
    pure logical function are_same(joint, other)
@@ -88,7 +101,9 @@ contains
    end function are_same
 
    !> Equations of the blocks, and the forces that their joints begin with
-   module procedure assemble
+   pure subroutine assemble_step(run)
+      type(run_t), intent(inout) :: run
+
       run%step%dt = run%march%dt
       if (in_time(run)) call stiffen_contacts(run)
       call begin_step(run)
@@ -98,10 +113,12 @@ contains
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
          & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
       if (in_time(run)) call foresee_curves(run)
-   end procedure assemble
+   end subroutine assemble_step
 
    !> Contact forces and motion of one try
-   module procedure solve_contacts
+   pure subroutine solve_contacts(run)
+      type(run_t), intent(inout) :: run
+
       associate (step => run%step)
          call settle_joints(run%settings, run%equations, run%contacts%springs, step%state)
          if (in_time(run) .and. step%state%settled) call follow_curves(run)
@@ -109,6 +126,24 @@ contains
          step%last_farthest = step%farthest
          if (step%state%settled) step%farthest = largest_motion(run%system, step%state%motion)
       end associate
-   end procedure solve_contacts
+   end subroutine solve_contacts
 
-end submodule dda_step_motion
+   !> The state that a step starts from: the joints as they are, no motion
+   pure subroutine begin_step(run)
+      type(run_t), intent(inout) :: run
+
+      associate (state => run%step%state)
+         if (.not. allocated(state%motion)) allocate (state%motion, mold=run%equations%weight)
+         state%motion = 0.0_wp
+         state%increment = run%contacts%increment
+         state%force = run%contacts%force
+         state%trial = run%contacts%trial
+         state%face = run%contacts%face
+         state%cone = run%contacts%springs%cone
+         state%unsettled_work = 0.0_wp
+         state%settled = .false.
+         state%effort = effort_t(patient=state%effort%patient)
+         state%passes = 0
+      end associate
+   end subroutine begin_step
+end module dda_step_motion

@@ -11,20 +11,24 @@
 !> that is not taken back, and N is what the impact adds. So a closed contact ends at rest if e = 0,
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
-submodule (dda_step) dda_velocity
+module dda_velocity
    use dda_assembly, only : take_springs
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : place_rows
+   use dda_contact_types, only : joint_springs_t, place_rows
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
-   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
    use dda_settle_in_time, only : settle_in_time
-   use dda_spring_products, only : add_load, relative_displacement
-   use dda_step_context, only : near_gap
+   use dda_spring_products, only : add_forces, relative_displacement
+   use dda_step_context, only : near_gap, run_t
+   use dda_step_state, only : equations_t, step_state_t
    use dda_vector, only : cross
    implicit none
+   private
+
+   public :: solve_impacts, stiffen_contacts
 
    !> Stiffness of the springs that stand for impulses, over the inertia m/dt**2
    real(wp), parameter :: over_inertia = 1.0e3_wp
@@ -59,8 +63,12 @@ submodule (dda_step) dda_velocity
 
 contains
 
-   !> Velocities of the blocks at the end of a settled step
-   module procedure solve_impacts
+   !> Velocities of the blocks at the end of a settled step, if they settle. Newton's restitution
+   !> may bring in energy where there is friction, or where blocks are hit in several places;
+   !> then there is less of it. What contacts have done to the energy of the motion is no part of
+   !> what is allowed; without contacts only held points change it, which turn with their blocks
+   pure subroutine solve_impacts(run)
+      type(run_t), intent(inout) :: run
       type(impact_t) :: impact
       real(wp) :: allowed, before, less, share
       integer :: try
@@ -90,7 +98,7 @@ contains
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          step%impact = before - kinetic_energy(equations, step%velocity)
       end associate
-   end procedure solve_impacts
+   end subroutine solve_impacts
 
    !> Energy that contacts may bring in by what they leave [J/m]
    pure real(wp) function energy_left_over(run, kinetic)
@@ -186,7 +194,7 @@ contains
    pure subroutine assemble_rates(run, impact)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
-      integer :: e, i, j
+      integer :: e, i
 
       associate (dt => run%step%dt, equations => run%equations, springs => impact%springs)
          equations%base = (1.0_wp/dt + damping_rate(run%settings, dt)/2.0_wp)/dt*equations%mass
@@ -195,10 +203,7 @@ contains
          do e = 1, size(impact%steady, 2)
             equations%load(:, e) = dt*matmul(equations%base(:, :, e), impact%steady(:, e))
          end do
-         do j = 1, size(run%contacts%joint)
-            call add_load(springs, springs%cone(j), joint_face_t(), &
-               & impact%force_before(:, j) - run%step%state%force(:, j), j, equations%load)
-         end do
+         call add_forces(springs, impact%force_before - run%step%state%force, equations%load)
          do i = 1, size(equations%fixed%point)
             e = equations%fixed%equation(i)
             call turn_fixed_row(run%system, run%settings, i, run%step%state%motion(:, e), &
@@ -333,8 +338,11 @@ contains
       end do
    end function excess
 
-   !> Springs of contacts whose forces are multipliers
-   module procedure stiffen_contacts
+   !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the
+   !> step, and without memory of slip, which would bring in work. What sticks has no speed to
+   !> slip with
+   pure subroutine stiffen_contacts(run)
+      type(run_t), intent(inout) :: run
       integer :: j
 
       associate (contacts => run%contacts)
@@ -346,7 +354,7 @@ contains
          end do
       end associate
       call take_springs(run%equations)
-   end procedure stiffen_contacts
+   end subroutine stiffen_contacts
 
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
    pure real(wp) function joint_mass(system, pair)
@@ -356,4 +364,4 @@ contains
       joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)
    end function joint_mass
 
-end submodule dda_velocity
+end module dda_velocity
