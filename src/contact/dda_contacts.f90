@@ -136,7 +136,6 @@ contains
       call move_alloc(from%springs%shift, to%springs%shift)
       call move_alloc(from%search%near%pair, to%search%near%pair)
       call move_alloc(from%search%near%vertex, to%search%near%vertex)
-      call move_alloc(from%search%outline%direction, to%search%outline%direction)
    end subroutine move_large
 
    !> Joints of the pairs of edges that lie together in the reference shape, closed and free of

@@ -5,8 +5,7 @@ module dda_entrance
    use dda_contact_types, only : contact_t, joint_t
    use dda_key_set, only : add_key, has_key, key_set_t, new_key_set
    use dda_kinds, only : wp
-   use dda_outline, only : corner_view_t, edge_direction, edge_length, is_convex, outline_t
-   use dda_outline, only : view_corner
+   use dda_outline, only : corner_view_t, is_convex, outline_t, view_corner
    use dda_sort, only : place_in
    use dda_vector, only : cross
    implicit none
@@ -17,7 +16,7 @@ module dda_entrance
 
    !> What a search looks at
    type :: neighbourhood_t
-      !> How the corners follow one another
+      !> How the corners follow one another, measured
       type(outline_t) :: outline
       !> First corner of each block, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
@@ -104,8 +103,8 @@ contains
       integer :: corner(2), edge(2), k
 
       associate (v => near%vertex, next => near%outline%next)
-         first = edge_direction(near%outline, v, pair(1))
-         second = edge_direction(near%outline, v, pair(2))
+         first = near%outline%direction(:, pair(1))
+         second = near%outline%direction(:, pair(2))
          angle = abs(cross(first, second))
          if (dot_product(first, second) > 0.0_wp .or. angle > parallel) return
          direction = (first - second)/norm2(first - second)
@@ -257,9 +256,8 @@ contains
       integer, intent(in) :: corner, edge
       real(wp) :: zone(2)  !! At the start and at the end of the edge: (2) [m]
 
-      associate (outline => near%outline, v => near%vertex)
-         zone = met*min(edge_length(outline, v, edge), edge_length(outline, v, corner), &
-            & edge_length(outline, v, outline%previous(corner)))
+      associate (length => near%outline%length)
+         zone = met*min(length(edge), length(corner), length(near%outline%previous(corner)))
       end associate
    end function meeting_zone
 

@@ -7,7 +7,6 @@ module dda_outline
    private
 
    public :: outline_t, outline_of, measure_edges, corner_view_t, view_corner, is_convex
-   public :: edge_direction, edge_length
 
    !> How corners follow one another: (n_vertex) each
    type :: outline_t
@@ -64,10 +63,9 @@ contains
    !> Measure all edges, which are asked for again and again
    pure subroutine measure_edges(vertex, outline)
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
-      type(outline_t), intent(inout) :: outline
+      type(outline_t), intent(inout) :: outline  !! The outline, not yet measured
       integer :: e
 
-      if (allocated(outline%length)) deallocate (outline%direction, outline%length)
       allocate (outline%direction(2, size(vertex, 2)), outline%length(size(vertex, 2)))
       do e = 1, size(vertex, 2)
          associate (next => outline%next(e))
@@ -79,22 +77,22 @@ contains
 
    !> See a corner from an edge
    pure type(corner_view_t) function view_corner(outline, vertex, corner, edge, reach) result(view)
-      type(outline_t), intent(in) :: outline
+      type(outline_t), intent(in) :: outline  !! The outline, measured
       real(wp), intent(in) :: vertex(:, :)
       integer, intent(in) :: corner  !! Number of the corner
       integer, intent(in) :: edge    !! Number of the edge
       real(wp), intent(in) :: reach  !! A corner farther from the line does not face the edge [m]
-      real(wp) :: tangent(2), sides(2)
+      real(wp) :: sides(2)
 
-      tangent = edge_direction(outline, vertex, edge)
-      view%length = edge_length(outline, vertex, edge)
-      view%normal = right_normal(tangent)
-      view%gap = dot_product(view%normal, vertex(:, corner) - vertex(:, edge))
-      view%way = dot_product(tangent, vertex(:, corner) - vertex(:, edge))
-      if (abs(view%gap) > reach) return
-      sides(1) = -dot_product(view%normal, edge_direction(outline, vertex, &
-         & outline%previous(corner)))
-      sides(2) = dot_product(view%normal, edge_direction(outline, vertex, corner))
+      associate (direction => outline%direction)
+         view%length = outline%length(edge)
+         view%normal = right_normal(direction(:, edge))
+         view%gap = dot_product(view%normal, vertex(:, corner) - vertex(:, edge))
+         view%way = dot_product(direction(:, edge), vertex(:, corner) - vertex(:, edge))
+         if (abs(view%gap) > reach) return
+         sides(1) = -dot_product(view%normal, direction(:, outline%previous(corner)))
+         sides(2) = dot_product(view%normal, direction(:, corner))
+      end associate
       view%faces = all(sides > -dip) .and. is_convex(outline, vertex, corner)
    end function view_corner
 
@@ -110,31 +108,4 @@ contains
       is_convex = cross(before, after) > 0.0_wp
       if (.not. is_convex) is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
    end function is_convex
-
-   !> Unit vector along an edge
-   pure function edge_direction(outline, vertex, edge) result(direction)
-      type(outline_t), intent(in) :: outline
-      real(wp), intent(in) :: vertex(:, :)
-      integer, intent(in) :: edge
-      real(wp) :: direction(2)  !! The vector: (2)
-
-      if (allocated(outline%direction)) then
-         direction = outline%direction(:, edge)
-      else
-         direction = along(vertex(:, edge), vertex(:, outline%next(edge)))
-      end if
-   end function edge_direction
-
-   !> Length of an edge [m]
-   pure real(wp) function edge_length(outline, vertex, edge)
-      type(outline_t), intent(in) :: outline
-      real(wp), intent(in) :: vertex(:, :)
-      integer, intent(in) :: edge
-
-      if (allocated(outline%length)) then
-         edge_length = outline%length(edge)
-      else
-         edge_length = norm2(vertex(:, outline%next(edge)) - vertex(:, edge))
-      end if
-   end function edge_length
 end module dda_outline

@@ -109,7 +109,7 @@ contains
       end do
       if (widest%gap > reach) best = widest
       if (held%edge == 0) return
-      if (held%gap >= widest%gap - lasting*edge_size(near, held%edge)) best = held
+      if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
    end function parting_line
 
    !> One edge and the other block
@@ -131,7 +131,7 @@ contains
          height(:) = heights(near%ahead, edge, next, from, to)
          after = minval(height)
       end associate
-      margin = slack*edge_size(near, edge)
+      margin = slack*near%outline%length(edge)
       line%time = sign(huge(1.0_wp), line%gap + margin)
       if (line%gap - after > tiny(1.0_wp)) then
          if (line%gap + margin < huge(1.0_wp)**0.5_wp*(line%gap - after)) &
@@ -144,23 +144,11 @@ contains
    pure integer function facing_edge(near, line)
       type(neighbourhood_t), intent(in) :: near
       type(line_t), intent(in) :: line
-      real(wp) :: direction(2)
 
-      associate (v => near%vertex, next => near%outline%next, &
-         & before => near%outline%previous(line%corner))
-         direction = along(v(:, line%edge), v(:, next(line%edge)))
-         facing_edge = line%corner
-         if (dot_product(direction, along(v(:, before), v(:, line%corner))) &
-            & < dot_product(direction, along(v(:, line%corner), v(:, next(line%corner))))) &
-            & facing_edge = before
+      associate (direction => near%outline%direction, before => near%outline%previous(line%corner))
+         facing_edge = merge(before, line%corner, &
+            & dot_product(direction(:, line%edge), direction(:, before)) &
+            & < dot_product(direction(:, line%edge), direction(:, line%corner)))
       end associate
    end function facing_edge
-
-   !> Length of an edge [m]
-   pure real(wp) function edge_size(near, edge)
-      type(neighbourhood_t), intent(in) :: near
-      integer, intent(in) :: edge
-
-      edge_size = norm2(near%vertex(:, near%outline%next(edge)) - near%vertex(:, edge))
-   end function edge_size
 end module dda_parting_line
