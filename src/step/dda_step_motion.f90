@@ -3,7 +3,7 @@ module dda_step_motion
    use dda_assembly, only : renew_springs, take_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
-   use dda_contact_types, only : joint_t
+   use dda_contact_types, only : same_joint
    use dda_contacts, only : contacts_t, follow_contacts
    use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_kinds, only : wp
@@ -67,7 +67,9 @@ contains
             call renew_contacts(system, run%step%travel, run%march%reach, settings%penalty_ratio, &
                & settings%n_dof, run%contacts)
             if (run%step%is_solved) &
-               & run%step%is_solved = are_same(run%contacts%joint, solved%joint)
+               & run%step%is_solved = size(run%contacts%joint) == size(solved%joint)
+            if (run%step%is_solved) &
+               & run%step%is_solved = all(same_joint(run%contacts%joint, solved%joint))
             if (run%step%is_solved) then
                solved%search = run%contacts%search
                run%contacts = solved
@@ -80,25 +82,6 @@ contains
          end if
       end associate
    end subroutine place_contacts
-
-   !> Whether joints are of the same corners and edges
-   pure logical function are_same(joint, other)
-      type(joint_t), intent(in) :: joint(:), other(:)  !! The joints: (n_joint)
-      integer :: j, k
-
-      are_same = size(joint) == size(other)
-      if (.not. are_same) return
-      do j = 1, size(joint)
-         are_same = joint(j)%n_contact == other(j)%n_contact
-         do k = 1, joint(j)%n_contact
-            associate (a => joint(j)%contact(k), b => other(j)%contact(k))
-               are_same = are_same .and. a%vertex_block == b%vertex_block .and. &
-                  & a%vertex == b%vertex .and. a%edge_block == b%edge_block .and. a%edge == b%edge
-            end associate
-         end do
-         if (.not. are_same) return
-      end do
-   end function are_same
 
    !> Equations of the blocks, and the forces that their joints begin with
    pure subroutine assemble_step(run)
