@@ -299,33 +299,16 @@ contains
       end do
    end function is_peak
 
-   !> A number that tells sets of faces apart
-   pure function hash(face) result(number)
+   !> A number that tells sets of faces apart: the rest of their digits by a large prime
+   pure integer(int64) function hash(face)
       type(joint_face_t), intent(in) :: face(:)  !! Faces: (n_joint)
-      integer(int64) :: number
-      integer(int64) :: code
+      integer(int64), parameter :: prime = 2_int64**47 - 115_int64
       integer :: j
 
-      number = 0_int64
+      hash = 0_int64
       do j = 1, size(face)
-         code = face(j)%slip + 1
-         if (face(j)%open(1)) code = code + 3
-         if (face(j)%open(2)) code = code + 6
-         number = ieor(ishft(number, 7) + ishft(number, -57), mixed(12_int64*j + code))
+         hash = modulo(30011_int64*hash + face(j)%slip + 1 + merge(3, 0, face(j)%open(1)) &
+            & + merge(6, 0, face(j)%open(2)), prime)
       end do
-
-   contains
-
-      !> A number spread over all bits by shifts, which cannot overflow
-      pure function mixed(code)
-         integer(int64), intent(in) :: code  !! Number to spread
-         integer(int64) :: mixed
-
-         mixed = ieor(code, ishft(code, 21))
-         mixed = ieor(mixed, ishft(mixed, -35))
-         mixed = ieor(mixed, ishft(mixed, 4))
-         mixed = ieor(mixed, ishft(mixed, 41))
-      end function mixed
    end function hash
-
 end module dda_open_close
