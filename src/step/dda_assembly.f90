@@ -18,7 +18,7 @@ module dda_assembly
    implicit none
    private
 
-   public :: new_equations, renew_springs, take_springs, refresh, solve_faces
+   public :: new_equations, renew_springs, refresh, solve_faces
 
 contains
 
@@ -87,13 +87,6 @@ contains
       equations%new_pattern = equations%new_pattern .or. .not. same
       equations%new_numbers = .true.
    end subroutine renew_springs
-
-   !> Springs whose rows have changed while the coupled pairs have not are to be taken over
-   pure subroutine take_springs(equations)
-      type(equations_t), intent(inout) :: equations
-
-      equations%new_numbers = .true.
-   end subroutine take_springs
 
    !> Bring pattern and numbers up to these springs, if they are not
    pure subroutine refresh(springs, equations)

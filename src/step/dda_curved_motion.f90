@@ -5,7 +5,6 @@
 !> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
 !> Tarnow 1992, ZAMP 43, 757-792).
 module dda_curved_motion
-   use dda_assembly, only : take_springs
    use dda_block_inertia, only : packed_velocity
    use dda_block_update, only : displaced_blocks
    use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
@@ -66,7 +65,7 @@ contains
             state%effort%again = .true.
             state%effort%in_vain = error <= jammed*size_of
             call take_turned_rows(run, last%motion)
-            call take_springs(run%equations)
+            run%equations%new_numbers = .true.
             call settle_in_time(run%settings, (run%equations%fixed%target), run%equations, &
                & run%contacts%springs, state)
             if (state%settled) cycle

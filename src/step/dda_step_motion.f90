@@ -1,6 +1,6 @@
 !> How blocks would move in a try of a step: contacts placed, equations assembled, joints settled
 module dda_step_motion
-   use dda_assembly, only : renew_springs, take_springs
+   use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : same_joint
@@ -78,7 +78,7 @@ contains
             call renew_springs(before, run%contacts%springs, run%equations)
          else
             call follow_contacts(system, settings%penalty_ratio, settings%n_dof, run%contacts)
-            call take_springs(run%equations)
+            run%equations%new_numbers = .true.
          end if
       end associate
    end subroutine place_contacts

@@ -112,7 +112,7 @@ module dda_step_state
       !> Whether joints and springs are others than those that pattern and numbers were made for: in
       !> time few steps need them
       logical :: new_pattern = .false.
-      !> Whether only the springs are others
+      !> Whether springs, or their rows, are others
       logical :: new_numbers = .false.
       !> Factorisations so far, whole or in part
       integer :: factorisations = 0

@@ -12,7 +12,6 @@
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
 module dda_velocity
-   use dda_assembly, only : take_springs
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
@@ -213,7 +212,7 @@ contains
          call couple_bars(equations%bars, equations%matrix%pair, .false., equations%matrix%coupling)
          call add_fixed_springs(equations%fixed, dt*equations%fixed%rate, equations%base, &
             & equations%load)
-         call take_springs(equations)
+         equations%new_numbers = .true.
       end associate
    end subroutine assemble_rates
 
@@ -353,7 +352,7 @@ contains
                & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
          end do
       end associate
-      call take_springs(run%equations)
+      run%equations%new_numbers = .true.
    end subroutine stiffen_contacts
 
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]

@@ -1,7 +1,7 @@
 !> The cost of a step by its parts, for walls and loose blocks of rising size
 module dda_step_benchmark
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_assembly, only : new_equations, refresh, solve_faces, take_springs
+   use dda_assembly, only : new_equations, refresh, solve_faces
    use dda_block_factor, only : factorise, substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_contact_search, only : look_around, near_joints
@@ -170,7 +170,7 @@ contains
             call renew_contacts(scene%system, travel_of(scene%system, settings, job%march), &
                & job%march%reach, settings%penalty_ratio, settings%n_dof, scene%contacts)
          case ("assemble")
-            call take_springs(job%equations)
+            job%equations%new_numbers = .true.
             call refresh(scene%contacts%springs, job%equations)
             call assemble_blocks(scene%system, settings, job%march%dt, job%equations)
          case ("factorise")
