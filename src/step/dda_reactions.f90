@@ -21,28 +21,20 @@ contains
       type(block_system_t), intent(in) :: system
       type(boundary_t), intent(in) :: boundary
       integer, allocatable :: support(:, :)  !! Block, and number of the held point or 0: (2, n)
-      integer :: i, n
+      logical :: stands(size(system%equation))
+      integer, allocatable :: fixed(:), held(:)
+      integer :: i
 
-      n = 0
-      if (allocated(boundary%held)) n = size(boundary%held)
-      allocate (support(2, count(system%equation == 0) + n))
-      n = 0
-      do i = 1, size(system%equation)
-         if (system%equation(i) > 0) cycle
-         if (allocated(system%absent)) then
-            if (system%absent(i)) cycle
-         end if
-         n = n + 1
-         support(:, n) = [i, 0]
-      end do
-      if (allocated(boundary%held)) then
-         do i = 1, size(boundary%held)
-            if (system%equation(boundary%held(i)%block) == 0) cycle
-            n = n + 1
-            support(:, n) = [boundary%held(i)%block, i]
-         end do
-      end if
-      support = support(:, :n)
+      stands = system%equation == 0
+      if (allocated(system%absent)) stands = stands .and. .not. system%absent
+      fixed = pack([(i, i=1, size(stands))], stands)
+      allocate (held(0))
+      if (allocated(boundary%held)) held = pack([(i, i=1, size(boundary%held))], &
+         & system%equation(boundary%held%block) > 0)
+      allocate (support(2, size(fixed) + size(held)), source=0)
+      support(1, :size(fixed)) = fixed
+      support(2, size(fixed) + 1:) = held
+      if (size(held) > 0) support(1, size(fixed) + 1:) = boundary%held(held)%block
    end function supports_of
 
    !> Force of a joint on one of its blocks, and its moment about the origin of coordinates
