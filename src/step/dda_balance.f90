@@ -10,7 +10,7 @@ module dda_balance
    implicit none
    private
 
-   public :: free_acceleration, is_drowned, is_felt, measure_balance
+   public :: free_acceleration, gyration, is_drowned, measure_balance
 
    !> A block that bears less than this share of the mean load, or of the mean mass, is light
    real(wp), parameter :: light = 1.0e-2_wp
@@ -176,14 +176,4 @@ contains
          end do
       end associate
    end function forces_around
-
-   !> Whether the acceleration of a block is more than the open-close loop may leave to a light one
-   elemental logical function is_felt(mass, mean_mass, whole, acceleration)
-      real(wp), intent(in) :: mass          !! Mass of the block [kg/m]
-      real(wp), intent(in) :: mean_mass     !! Mean mass of all blocks [kg/m]
-      real(wp), intent(in) :: whole         !! Sum of all loads [N/m]
-      real(wp), intent(in) :: acceleration  !! Acceleration of the block [m/s2]
-
-      is_felt = mass >= light*mean_mass .or. mass*acceleration >= left_over*whole
-   end function is_felt
 end module dda_balance

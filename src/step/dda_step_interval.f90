@@ -2,9 +2,9 @@
 module dda_step_interval
    use dda_assembly, only : solve_faces
    use dda_bar_springs, only : longest_give
-   use dda_balance, only : free_acceleration
+   use dda_balance, only : free_acceleration, gyration
    use dda_boundary, only : history_t
-   use dda_block_inertia, only : assemble_blocks, packed_velocity
+   use dda_block_inertia, only : assemble_blocks, kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
    use dda_friction_cone, only : cone_t, joint_face_t
@@ -18,7 +18,7 @@ module dda_step_interval
    private
 
    public :: check_length, first_interval, next_interval, largest_motion, measure_scales
-   public :: longest_motion, longest_static_step
+   public :: longest_motion
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
@@ -85,8 +85,8 @@ contains
          & equations => run%equations, state => run%step%state)
          stiffest = maxval(run%system%materials%young)
          if (size(glued) > 0) stiffest = maxval(springs%stiffness)
-         march%longest = longest_static_step(sum(equations%mass(1, 1, :) &
-            & /real(size(equations%mass, 3), wp)), stiffest)
+         march%longest = sqrt(2.0_wp*sum(equations%mass(1, 1, :)/real(size(equations%mass, 3), wp)) &
+            & /(least_inertia*stiffest))
          march%dt = march%longest
          call assemble_first_loads(run)
          call solve_faces(equations, springs, glued, closed, state%trial, state%motion)
@@ -105,19 +105,22 @@ contains
       end associate
    end subroutine first_static_interval
 
-   !> The scale of elastic motion, once the glued system has moved [m]
+   !> The scale of elastic motion, once the glued system has moved. Where blocks fall even so, as
+   !> one that stands on a corner does, most work of the loads is speed [m]
    pure real(wp) function elastic_motion(run)
       type(run_t), intent(in) :: run
       real(wp) :: whole
+      logical :: falls
 
       associate (springs => run%contacts%springs, equations => run%equations, &
          & motion => run%step%state%motion)
          whole = sum(norm2(equations%felt(1:2, :), dim=1))
          elastic_motion = max(largest_motion(run%system, motion), &
             & least_of_strain*straining_motion(run%system, motion))
-         if (falls_glued(equations, motion, run%march%dt) .and. size(springs%stiffness) > 0) &
-            & elastic_motion = min(elastic_motion, (1.0_wp + run%settings%penalty_ratio)*whole &
-            & /minval(springs%stiffness))
+         falls = 4.0_wp*kinetic_energy(equations, motion)/run%march%dt**2 &
+            & > 0.5_wp*sum(equations%outer*motion)
+         if (falls .and. size(springs%stiffness) > 0) elastic_motion = min(elastic_motion, &
+            & (1.0_wp + run%settings%penalty_ratio)*whole/minval(springs%stiffness))
          elastic_motion = max(elastic_motion, longest_give(equations%bars, whole))
       end associate
    end function elastic_motion
@@ -160,40 +163,6 @@ contains
          if (run%settings%dynamic) march%longest = dynamic_step(run%settings, march)
       end associate
    end subroutine measure_scales
-
-   !> Longest static step: its inertia must not drown in the rounding of the stiffness
-   pure real(wp) function longest_static_step(mean_mass, stiffest)
-      real(wp), intent(in) :: mean_mass  !! Mean mass of the blocks [kg/m]
-      real(wp), intent(in) :: stiffest   !! Stiffness of the stiffest spring [N/m per metre depth]
-
-      longest_static_step = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
-   end function longest_static_step
-
-   !> By what the next static step is longer
-   pure real(wp) function static_growth(acceleration, last_acceleration)
-      real(wp), intent(in) :: acceleration       !! Acceleration of this step [m/s2]
-      real(wp), intent(in) :: last_acceleration  !! That of the step before [m/s2]
-
-      static_growth = merge(1.0_wp, growth, acceleration < settling*last_acceleration)
-   end function static_growth
-
-   !> Whether the blocks fall even with all joints glued, as one that stands on a corner does: most
-   !> work of the loads is then speed
-   pure logical function falls_glued(equations, motion, dt)
-      type(equations_t), intent(in) :: equations
-      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: dt            !! Length of the step [s]
-      real(wp) :: kinetic, work
-      integer :: e
-
-      kinetic = 0.0_wp
-      work = sum(equations%outer*motion)
-      do e = 1, size(motion, 2)
-         kinetic = kinetic + 2.0_wp/dt**2 &
-            & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
-      end do
-      falls_glued = kinetic > 0.5_wp*work
-   end function falls_glued
 
    !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
    !> a block, and that moves its far end by the block's aspect ratio times as much; errors of many
@@ -288,7 +257,7 @@ contains
       real(wp) :: factor, speed
 
       associate (march => run%march, step => run%step, settings => run%settings)
-         factor = static_growth(step%acceleration, march%last_acceleration)
+         factor = merge(1.0_wp, growth, step%acceleration < settling*march%last_acceleration)
          march%last_acceleration = step%acceleration
          if (settings%dynamic) then
             march%dt = march%longest
@@ -331,8 +300,7 @@ contains
       largest = 0.0_wp
       do b = 1, size(system%equation)
          e = system%equation(b)
-         if (e > 0) largest = max(largest, norm2(motion(4:, e)) &
-            & *sqrt((system%second(1, b) + system%second(2, b))/system%area(b)))
+         if (e > 0) largest = max(largest, norm2(motion(4:, e))*gyration(system, b))
       end do
    end function straining_motion
 
@@ -342,15 +310,13 @@ contains
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)
       real(wp) :: largest  !! The largest motion [m]
-      real(wp) :: gyration
       integer :: b, e
 
       largest = 0.0_wp
       do b = 1, size(system%equation)
          e = system%equation(b)
-         if (e == 0) cycle
-         gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
-         largest = max(largest, norm2(motion(1:2, e)) + gyration*abs(motion(3, e)))
+         if (e > 0) largest = max(largest, norm2(motion(1:2, e)) &
+            & + gyration(system, b)*abs(motion(3, e)))
       end do
    end function largest_motion
 end module dda_step_interval

@@ -9,6 +9,7 @@
 module dda_verdict
    use dda_balance, only : measure_balance
    use dda_bar_springs, only : bar_energies
+   use dda_block_inertia, only : kinetic_energy
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
    use dda_contact_types, only : joint_t
@@ -234,36 +235,18 @@ contains
          & motion => run%step%state%motion)
          bar = bar_energies(equations%bars, motion)
          step%work = sum(equations%outer*motion) - bar(2)
-         step%kinetic = 0.0_wp
+         step%kinetic = 4.0_wp*kinetic_energy(equations, motion)/step%dt**2
          step%stored = sum(sum(step%state%force**2 - run%contacts%force**2, dim=1) &
             & /(2.0_wp*run%contacts%springs%stiffness)) + bar(1)
+         if (size(motion, 1) < 6) return
          do b = 1, size(system%equation)
             e = system%equation(b)
-            if (e == 0) cycle
-            step%kinetic = step%kinetic &
-               & + quadratic(equations%mass(:, :, e), motion(:, e))*2.0_wp/step%dt**2
-            if (size(motion, 1) < 6) cycle
-            step%stored = step%stored &
-               & + quadratic(equations%elastic(4:6, 4:6, e), motion(4:6, e))/2.0_wp &
-               & + system%area(b)*dot_product(motion(4:6, e), system%stress(:, b))
+            if (e > 0) step%stored = step%stored + dot_product(motion(4:6, e), &
+               & matmul(equations%elastic(4:6, 4:6, e), motion(4:6, e))/2.0_wp &
+               & + system%area(b)*system%stress(:, b))
          end do
       end associate
    end subroutine measure_step
-
-   !> x' a x
-   pure real(wp) function quadratic(a, x)
-      real(wp), intent(in) :: a(:, :)  !! Symmetric matrix: (n, n)
-      real(wp), intent(in) :: x(:)     !! Column: (n)
-      integer :: c, r
-
-      quadratic = 0.0_wp
-      do c = 1, size(x)
-         do r = 1, c - 1
-            quadratic = quadratic + 2.0_wp*x(c)*a(r, c)*x(r)
-         end do
-         quadratic = quadratic + x(c)*a(c, c)*x(c)
-      end do
-   end function quadratic
 
    !> Judge a static run by its last two steps.
    !> It stands if the joint forces balance the full load of every block but for a negligible share,
