@@ -5,7 +5,7 @@ module dda_sort
    implicit none
    private
 
-   public :: sorted_order, rising_order, sort_numbers, place_in
+   public :: list_by_owner, place_in, rising_order, sort_numbers, sorted_order
 
    !> Fewer numbers are sorted without counting their digits
    integer, parameter :: few = 128
@@ -50,6 +50,30 @@ contains
          order(j) = i
       end do
    end function rising_order
+
+   !> Items owner by owner: those of owner i are item(first(i)) to item(first(i + 1) - 1), rising
+   pure subroutine list_by_owner(owner, first, item)
+      integer, intent(in) :: owner(:)   !! Owner of each item, 0 for none: (n)
+      integer, intent(out) :: first(:)  !! Where each owner begins, and the end: (n_owner + 1)
+      integer, allocatable, intent(out) :: item(:)  !! The items that have an owner
+      integer :: i
+
+      first = 0
+      do i = 1, size(owner)
+         if (owner(i) > 0) first(owner(i)) = first(owner(i)) + 1
+      end do
+      do i = 2, size(first)
+         first(i) = first(i - 1) + first(i)
+      end do
+      allocate (item(first(size(first))))
+      ! the place behind each owner's last item, from which it is filled backwards
+      first = first + 1
+      do i = size(owner), 1, -1
+         if (owner(i) == 0) cycle
+         first(owner(i)) = first(owner(i)) - 1
+         item(first(owner(i))) = i
+      end do
+   end subroutine list_by_owner
 
    !> Put numbers in rising order
    pure subroutine sort_numbers(number)

@@ -5,7 +5,7 @@ submodule (dda_cutting) dda_network_trim
    use dda_cut_model, only : add_remark, cut_reason, edge_pair_t
    use dda_line_network, only : drop_edge, edge_place
    use dda_segment, only : crossing_parameters, segment_distance
-   use dda_sort, only : sort_numbers
+   use dda_sort, only : list_by_owner, sort_numbers
    implicit none
 
 contains
@@ -15,7 +15,9 @@ contains
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
 
-      call edges_of_nodes(network, first, item)
+      allocate (first(size(network%node, 2) + 1))
+      call list_by_owner(reshape(merge(network%edge, 0, spread(network%alive, 1, 2)), &
+         & [size(network%edge)]), first, item)
       allocate (degree, source=first(2:) - first(:size(first) - 1))
       loose = pack([(node, node=1, size(degree))], degree == 1)
       n = size(loose)
@@ -23,7 +25,7 @@ contains
          node = loose(n)
          n = n - 1
          do k = first(node), first(node + 1) - 1
-            e = item(k)
+            e = (item(k) + 1)/2
             if (.not. network%alive(e)) cycle
             call drop_edge(network, e, cut_reason%loose_edge, 0, remarks)
             degree(network%edge(:, e)) = degree(network%edge(:, e)) - 1
@@ -37,35 +39,6 @@ contains
          end do
       end do
    end procedure cut_trees
-
-   !> The living edges of each node
-   pure subroutine edges_of_nodes(network, first, item)
-      type(network_t), intent(in) :: network
-      !> First item of each node, and one beyond the last: (n_node + 1)
-      integer, allocatable, intent(out) :: first(:)
-      integer, allocatable, intent(out) :: item(:)  !! Numbers of edges
-      integer, allocatable :: next(:)
-      integer :: e, k, node
-
-      allocate (first(size(network%node, 2) + 1), source=0)
-      do e = 1, size(network%line)
-         if (network%alive(e)) first(network%edge(:, e) + 1) = first(network%edge(:, e) + 1) + 1
-      end do
-      first(1) = 1
-      do node = 2, size(first)
-         first(node) = first(node) + first(node - 1)
-      end do
-      allocate (item(first(size(first)) - 1))
-      allocate (next, source=first)
-      do e = 1, size(network%line)
-         if (.not. network%alive(e)) cycle
-         do k = 1, 2
-            node = network%edge(k, e)
-            item(next(node)) = e
-            next(node) = next(node) + 1
-         end do
-      end do
-   end subroutine edges_of_nodes
 
    !> Drop one of two edges that cross between their nodes, as happens when nodes were merged
    module procedure drop_crossing_edges

@@ -12,6 +12,7 @@ module dda_assembly
    use dda_friction_cone, only : cone_t, is_stuck, joint_face_t
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
+   use dda_sort, only : list_by_owner
    use dda_spring_products, only : add_load, add_product, projected
    use dda_step_state, only : equations_t
    use dda_submatrices, only : body_load, dashpot_matrices, elastic_matrix, mass_matrix
@@ -107,6 +108,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: n_dof, n_equation
       type(equations_t), intent(inout) :: equations
+      integer, allocatable :: side(:)
       integer :: e, j
       integer :: pair(2, size(springs%equation, 2) + size(equations%bars%entry))
 
@@ -128,40 +130,11 @@ contains
          end associate
       end do
       call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
-      call list_by_block(springs, n_equation, equations)
+      if (.not. allocated(equations%first_joint)) allocate (equations%first_joint(n_equation + 1))
+      call list_by_owner(reshape(springs%equation, [size(springs%equation)]), &
+         & equations%first_joint, side)
+      equations%joint = merge((side + 1)/2, -side/2, mod(side, 2) == 1)
    end subroutine list_joints
-
-   !> The joints of each block
-   pure subroutine list_by_block(springs, n_equation, equations)
-      type(joint_springs_t), intent(in) :: springs
-      integer, intent(in) :: n_equation
-      type(equations_t), intent(inout) :: equations
-      integer :: e, j, side, next(n_equation)
-
-      if (allocated(equations%joint)) deallocate (equations%first_joint, equations%joint)
-      allocate (equations%first_joint(n_equation + 1), source=0)
-      do j = 1, size(springs%equation, 2)
-         do side = 1, 2
-            associate (count => equations%first_joint(springs%equation(side, j) + 1))
-               if (springs%equation(side, j) > 0) count = count + 1
-            end associate
-         end do
-      end do
-      equations%first_joint(1) = 1
-      do e = 1, n_equation
-         equations%first_joint(e + 1) = equations%first_joint(e) + equations%first_joint(e + 1)
-      end do
-      allocate (equations%joint(equations%first_joint(n_equation + 1) - 1))
-      next = equations%first_joint(:n_equation)
-      do j = 1, size(springs%equation, 2)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            if (e == 0) cycle
-            equations%joint(next(e)) = merge(j, -j, side == 1)
-            next(e) = next(e) + 1
-         end do
-      end do
-   end subroutine list_by_block
 
    !> Stiffness of the springs if all joints are stuck
    pure subroutine add_stuck_springs(springs, equations)

@@ -1,6 +1,7 @@
 !> Groups of joints whose blocks hang together: each is a problem of its own
 module dda_contact_groups
    use dda_contact_types, only : joint_springs_t
+   use dda_sort, only : list_by_owner
    implicit none
    private
 
@@ -18,24 +19,12 @@ contains
       !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
       integer, intent(out) :: first(:)
       !> The joints, group by group, rising in each: (n_joint)
-      integer, intent(out) :: joint(:)
-      integer :: group(size(joint)), i, j
+      integer, allocatable, intent(out) :: joint(:)
+      integer :: group(size(springs%equation, 2))
 
       call number_groups(springs, n_equation, n, group)
-      first = 0
-      do j = 1, size(joint)
-         first(group(j)) = first(group(j)) + 1
-      end do
-      ! the place behind each group's last joint, from which it is filled backwards
-      do i = 2, n
-         first(i) = first(i) + first(i - 1)
-      end do
-      first(n + 1:) = size(joint) + 1
-      first(:n) = first(:n) + 1
-      do j = size(joint), 1, -1
-         first(group(j)) = first(group(j)) - 1
-         joint(first(group(j))) = j
-      end do
+      first = size(group) + 1
+      call list_by_owner(group, first(:n + 1), joint)
    end subroutine group_joints
 
    !> Which group each joint is of

@@ -51,9 +51,10 @@ contains
       !> came
       type(step_state_t), intent(inout) :: state
       type(sweeps_t) :: sweeps
-      integer :: begun, g, most, n, joint(size(springs%stiffness)), first(size(joint) + 1)
+      integer, allocatable :: joint(:)
+      integer :: begun, first(size(springs%stiffness) + 1), g, most, n
       real(wp) :: size_of
-      logical :: settled(size(joint))
+      logical :: settled(size(springs%stiffness))
 
       call see_joints(equations, springs, state, sweeps%view)
       call group_joints(springs, size(state%motion, 2), n, first, joint)
