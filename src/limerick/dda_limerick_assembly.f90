@@ -4,6 +4,7 @@
 !> strength, along the line between their ends at the beginning of each step.
 module dda_limerick_assembly
    use dda_bar_place, only : bar_rows
+   use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, new_bar_springs
    use dda_block_factor, only : block_factor_t, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : n_unknown
@@ -15,8 +16,8 @@ module dda_limerick_assembly
    implicit none
    private
 
-   public :: bolt_elongation, n_bolts, limerick_equations_t, couple_blocks
-   public :: assemble_limerick, add_contacts
+   public :: add_contacts, assemble_limerick, couple_blocks, limerick_equations_t
+   public :: limerick_run_t, placed_bolts
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
@@ -26,54 +27,54 @@ module dda_limerick_assembly
       type(block_factor_t) :: factor          !! Its factor
       real(wp), allocatable :: base(:, :, :)  !! What the blocks give to the matrix: (6, 6, n_block)
       real(wp), allocatable :: load(:, :)     !! What they give to the right-hand side: (6, n_block)
-      !> Entries of the matrix that couple the blocks of the bolts, 0 for the ground: (n_bolt)
-      integer, allocatable :: bolt_entry(:)
-      !> Stiffness of each bolt between the block of the row and that of the column:
-      !> (6, 6, n_bolt)
-      real(wp), allocatable :: bolt_coupling(:, :, :)
+      type(bar_springs_t) :: bolts            !! Bolts, elastic whatever their force
       !> Right-hand side, then the motion of the step: (6, n_block)
       real(wp), allocatable :: motion(:, :)
    end type limerick_equations_t
 
+   !> Everything that a run carries from step to step
+   type :: limerick_run_t
+      type(limerick_blocks_t) :: blocks                 !! The blocks
+      type(contact_list_t) :: contacts                  !! Contacts of the last step
+      type(limerick_march_t) :: march                   !! Numbers of the march
+      type(contact_list_t) :: before                    !! Work space: contacts of the step before
+      type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
+      type(limerick_equations_t) :: equations           !! Work space: the equations
+      !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
+      real(wp), allocatable :: moved(:, :)
+      integer, allocatable :: order(:)  !! Work space: blocks from left to right: (n_block)
+   end type limerick_run_t
+
 contains
 
-   !> Number of bolts
-   pure integer function n_bolts(model)
-      type(limerick_model_t), intent(in) :: model
-
-      n_bolts = 0
-      if (allocated(model%boundary%bar)) n_bolts = size(model%boundary%bar)
-   end function n_bolts
-
-   !> Elongation of a bolt in a step
-   pure real(wp) function bolt_elongation(model, blocks, i, motion)
+   !> Bolts where their blocks are
+   pure type(bar_springs_t) function placed_bolts(model, blocks) result(bolts)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks  !! The blocks at the beginning of the step
-      integer, intent(in) :: i                       !! Number of the bolt
-      real(wp), intent(in) :: motion(:, :)           !! Motion of the blocks: (6, n_block)
-      real(wp) :: row(6, 2)
-      integer :: side
+      integer :: i
 
-      row = bar_rows(blocks%bolt_point(:, :, i), model%boundary%bar(i)%block, blocks%centroid)
-      bolt_elongation = 0.0_wp
-      do side = 1, 2
-         associate (b => model%boundary%bar(i)%block(side))
-            if (b > 0) bolt_elongation = bolt_elongation + dot_product(row(:, side), motion(:, b))
+      bolts = new_bar_springs(model%boundary, [(i, i=1, size(blocks%area))], n_unknown)
+      do i = 1, size(bolts%trial)
+         associate (bolt => model%boundary%bar(i))
+            bolts%row(:, 1, :, i) = bar_rows(blocks%bolt_point(:, :, i), bolt%block, &
+               & blocks%centroid)
+            bolts%stiffness(1, i) = bolt%stiffness
+            bolts%trial(i) = blocks%bolt_force(i)
          end associate
       end do
-   end function bolt_elongation
+   end function placed_bolts
 
-   !> Make the pattern, if other blocks are coupled than before, and tell each contact its entry
-   pure subroutine couple_blocks(model, contacts, n_block, equations, spring)
+   !> Place the bolts, make the pattern, if other blocks are coupled than before, and tell each
+   !> contact its entry
+   pure subroutine couple_blocks(model, blocks, contacts, equations, spring)
       type(limerick_model_t), intent(in) :: model
+      type(limerick_blocks_t), intent(in) :: blocks
       !> Contacts, those of the same two blocks one after the other
       type(contact_list_t), intent(in) :: contacts
-      !> Number of blocks
-      integer, intent(in) :: n_block
       type(limerick_equations_t), intent(inout) :: equations
       !> Springs of the contacts; their entries are set: (at least contacts%n)
       type(contact_spring_t), intent(inout) :: spring(:)
-      integer :: pair(2, contacts%n + n_bolts(model)), c, n
+      integer :: pair(2, contacts%n + size(blocks%bolt_force)), c, n
       logical :: same
 
       n = 0
@@ -91,20 +92,21 @@ contains
          end associate
          spring(c)%entry = n
       end do
-      if (.not. allocated(equations%bolt_entry)) allocate (equations%bolt_entry(n_bolts(model)))
-      equations%bolt_entry = 0
-      do c = 1, n_bolts(model)
-         if (any(model%boundary%bar(c)%block == 0)) cycle
-         n = n + 1
-         equations%bolt_entry(c) = n
-         pair(:, n) = [minval(model%boundary%bar(c)%block), maxval(model%boundary%bar(c)%block)]
+      equations%bolts = placed_bolts(model, blocks)
+      do c = 1, size(equations%bolts%entry)
+         associate (block => equations%bolts%equation(:, c))
+            if (any(block == 0)) cycle
+            n = n + 1
+            equations%bolts%entry(c) = n
+            pair(:, n) = [minval(block), maxval(block)]
+         end associate
       end do
       same = allocated(equations%pair)
       if (same) same = size(equations%pair, 2) == n
       if (same) same = all(equations%pair == pair(:, :n))
       if (.not. same) then
          equations%pair = pair(:, :n)
-         call set_pattern(equations%matrix, n_unknown, n_block, equations%pair)
+         call set_pattern(equations%matrix, n_unknown, size(blocks%area), equations%pair)
          call plan_factor(equations%matrix, equations%factor)
       end if
       do c = 1, contacts%n
@@ -137,7 +139,7 @@ contains
          end associate
       end do
       call add_points(model, blocks, march, equations)
-      call add_bolts(model, blocks, equations)
+      call add_bars(equations%bolts, 1.0_wp, equations%base, equations%load)
    end subroutine assemble_limerick
 
    !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
@@ -168,34 +170,6 @@ contains
       end do
    end subroutine add_points
 
-   !> Bolts: their stiffness, and what they pull with
-   pure subroutine add_bolts(model, blocks, equations)
-      type(limerick_model_t), intent(in) :: model
-      type(limerick_blocks_t), intent(in) :: blocks
-      type(limerick_equations_t), intent(inout) :: equations
-      real(wp) :: row(n_unknown, 2)
-      integer :: b, first, i, side
-
-      if (.not. allocated(equations%bolt_coupling)) &
-         & allocate (equations%bolt_coupling(n_unknown, n_unknown, n_bolts(model)))
-      equations%bolt_coupling = 0.0_wp
-      do i = 1, n_bolts(model)
-         row = bar_rows(blocks%bolt_point(:, :, i), model%boundary%bar(i)%block, blocks%centroid)
-         do side = 1, 2
-            b = model%boundary%bar(i)%block(side)
-            if (b == 0) cycle
-            call add_outer(model%boundary%bar(i)%stiffness, row(:, side), row(:, side), &
-               & equations%base(:, :, b))
-            equations%load(:, b) = equations%load(:, b) - blocks%bolt_force(i)*row(:, side)
-         end do
-         if (equations%bolt_entry(i) == 0) cycle
-         first = merge(1, 2, equations%matrix%pair(1, equations%bolt_entry(i)) &
-            & == model%boundary%bar(i)%block(1))
-         call add_outer(model%boundary%bar(i)%stiffness, row(:, first), row(:, 3 - first), &
-            & equations%bolt_coupling(:, :, i))
-      end do
-   end subroutine add_bolts
-
    !> Matrix and right-hand side with the springs and the friction of the contacts' states
    pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
       type(limerick_model_t), intent(in) :: model
@@ -213,10 +187,7 @@ contains
       if (model%constants%dynamic) damper = model%constants%contact_damping/march%time_step
       equations%matrix%diagonal = equations%base
       equations%matrix%coupling = 0.0_wp
-      do c = 1, size(equations%bolt_entry)
-         if (equations%bolt_entry(c) > 0) equations%matrix%coupling(:, :, &
-            & equations%bolt_entry(c)) = equations%bolt_coupling(:, :, c)
-      end do
+      call couple_bars(equations%bolts, equations%matrix%pair, .true., equations%matrix%coupling)
       equations%motion = equations%load
       do c = 1, contacts%n
          associate (contact => contacts%item(c))

@@ -1,9 +1,21 @@
 !> Contacts by distance and by angle (Shi: df04, df05), from the directions and angles of all
 !> corners (Shi: angl)
-submodule (dda_limerick_step) dda_limerick_detection
-   use dda_kinds, only : degree
-   use dda_limerick_contact, only : append_contact, limerick_contact_t
+module dda_limerick_detection
+   use dda_kinds, only : degree, wp
+   use dda_limerick_contact, only : append_contact, contact_list_t, limerick_contact_t
+   use dda_limerick_model, only : limerick_blocks_t
    implicit none
+   private
+
+   public :: corners_t, entrance_lines, find_limerick_contacts, measure_corners, overlap, turn
+
+   !> Shape of all corners of a step
+   type :: corners_t
+      !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
+      real(wp), allocatable :: direction(:)
+      real(wp), allocatable :: angle(:)   !! Inner angle: (n_vertex) [deg]
+      real(wp), allocatable :: length(:)  !! Length of the edge that starts there: (n_vertex) [m]
+   end type corners_t
 
    !> Corners wider than this are concave [deg]
    real(wp), parameter :: straight = 180.0001_wp
@@ -11,7 +23,9 @@ submodule (dda_limerick_step) dda_limerick_detection
 contains
 
    !> Directions, inner angles and lengths of all corners
-   module procedure measure_corners
+   pure subroutine measure_corners(blocks, corners)
+      type(limerick_blocks_t), intent(in) :: blocks
+      type(corners_t), intent(out) :: corners
       real(wp) :: edge(2)
       integer :: v, n
 
@@ -26,15 +40,23 @@ contains
          corners%angle(v) = turn(corners%direction(v), &
             & corners%direction(blocks%previous(v)) - 180.0_wp)
       end do
-   end procedure measure_corners
+   end subroutine measure_corners
 
    !> Anticlockwise angle from one direction to another
-   module procedure turn
+   pure real(wp) function turn(from, to)
+      real(wp), intent(in) :: from  !! First direction [deg]
+      real(wp), intent(in) :: to    !! Second direction [deg]
+
       turn = modulo(to - from, 360.0_wp)
-   end procedure turn
+   end function turn
 
    !> Whether two sectors overlap by more than is overlooked
-   module procedure overlap
+   pure logical function overlap(start_a, angle_a, start_b, angle_b, least)
+      real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
+      real(wp), intent(in) :: angle_a  !! Its angle [deg]
+      real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
+      real(wp), intent(in) :: angle_b  !! Its angle [deg]
+      real(wp), intent(in) :: least    !! What is overlooked [deg]
       real(wp) :: ray(3), wide
 
       if (angle_a > angle_b) then
@@ -46,10 +68,16 @@ contains
       end if
       ray = modulo(ray, 360.0_wp)
       overlap = any(ray > least .and. ray < wide - least)
-   end procedure overlap
+   end function overlap
 
-   !> The two lines that a pair of corners may cross, the steeper first
-   module procedure entrance_lines
+   !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
+   pure function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
+      type(limerick_blocks_t), intent(in) :: blocks
+      type(corners_t), intent(in) :: corners
+      integer, intent(in) :: i             !! Vertex of the first block
+      integer, intent(in) :: j             !! Vertex of the second block
+      real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
+      integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
       real(wp) :: start, finish, slack, steep_i, steep_j, steep(2)
 
       slack = 0.3_wp*overlap_deg
@@ -73,7 +101,7 @@ contains
          steep(2) = steepness(corners%direction(blocks%previous(j)))
       end if
       if (steep(1) < steep(2)) line = line(:, [2, 1])
-   end procedure entrance_lines
+   end function entrance_lines
 
    !> How steep a direction is, from 0 to 1
    pure real(wp) function steepness(direction)
@@ -83,7 +111,13 @@ contains
    end function steepness
 
    !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
-   module procedure find_limerick_contacts
+   pure subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
+      type(limerick_blocks_t), intent(in) :: blocks
+      real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
+      real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
+      !> Blocks from left to right, as near as the step before left them: (n_block)
+      integer, intent(inout) :: order(:)
+      type(contact_list_t), intent(inout) :: list
       type(corners_t) :: corners
       real(wp) :: low(2, size(order)), high(2, size(order))
       integer :: i, j, a, b
@@ -107,7 +141,7 @@ contains
             call meet_blocks(blocks, corners, min(a, b), max(a, b), reach, overlap_deg, list)
          end do
       end do
-   end procedure find_limerick_contacts
+   end subroutine find_limerick_contacts
 
    !> Put indices in the order of their keys; quick if they nearly are
    pure subroutine sort_by(key, order)
@@ -285,4 +319,4 @@ contains
       call append_contact(list, settled)
    end subroutine settle
 
-end submodule dda_limerick_detection
+end module dda_limerick_detection

@@ -1,102 +1,25 @@
 !> One step of Shi's scheme: its length and the stiffness of its contacts, both chosen by
 !> the last motion, and where it takes the blocks (Shi: df24, df25)
 module dda_limerick_step
+   use dda_bar_springs, only : elongation_by
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_assembly, only : assemble_limerick, bolt_elongation, couple_blocks, &
-      & limerick_equations_t, n_bolts
-   use dda_limerick_contact, only : begin_contacts, contact_list_t, contact_spring_t, &
-      & place_springs, transfer_contacts
-   use dda_limerick_model, only : force_at, limerick_blocks_t, limerick_march_t, limerick_model_t, &
-      & limerick_state, measure_blocks, next_record
+   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t, &
+      & limerick_run_t
+   use dda_limerick_contact, only : begin_contacts, contact_list_t, place_springs, &
+      & transfer_contacts
+   use dda_limerick_detection, only : find_limerick_contacts
+   use dda_limerick_model, only : force_at, limerick_march_t, limerick_model_t, limerick_state, &
+      & measure_blocks, next_record
+   use dda_limerick_open_close, only : open_and_close
    use dda_material, only : elasticity_matrix
    implicit none
    private
 
-   public :: choose_interval, judge_limerick_step, move_vertices, update, limerick_run_t
-   public :: advance_limerick, corners_t, measure_corners, turn, overlap, entrance_lines
-   public :: find_limerick_contacts, open_and_close
-
-   !> Everything that a run carries from step to step
-   type :: limerick_run_t
-      type(limerick_blocks_t) :: blocks                 !! The blocks
-      type(contact_list_t) :: contacts                  !! Contacts of the last step
-      type(limerick_march_t) :: march                   !! Numbers of the march
-      type(contact_list_t) :: before                    !! Work space: contacts of the step before
-      type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
-      type(limerick_equations_t) :: equations           !! Work space: the equations
-      !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
-      real(wp), allocatable :: moved(:, :)
-      integer, allocatable :: order(:)  !! Work space: blocks from left to right: (n_block)
-   end type limerick_run_t
+   public :: advance_limerick, choose_interval, judge_limerick_step, move_vertices, update
 
    !> Most attempts at one step: the original has no such bound and may loop forever
    integer, parameter :: max_attempts = 200
-
-   !> Shape of all corners of a step
-   type :: corners_t
-      !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
-      real(wp), allocatable :: direction(:)
-      real(wp), allocatable :: angle(:)   !! Inner angle: (n_vertex) [deg]
-      real(wp), allocatable :: length(:)  !! Length of the edge that starts there: (n_vertex) [m]
-   end type corners_t
-
-   interface
-
-      !> Solve and judge until no contact opens or closes
-      pure module subroutine open_and_close(model, run, first_pass, settled)
-         type(limerick_model_t), intent(in) :: model
-         !> The run; states of its contacts are changed, and the motion is set; a shear spring is
-         !> set anew where a contact closes
-         type(limerick_run_t), intent(inout) :: run
-         !> Whether nothing was solved in this step yet; then it was
-         logical, intent(inout) :: first_pass
-         !> Whether no contact opened or closed in the last pass
-         logical, intent(out) :: settled
-      end subroutine open_and_close
-
-      !> Directions, inner angles and lengths of all corners
-      pure module subroutine measure_corners(blocks, corners)
-         type(limerick_blocks_t), intent(in) :: blocks
-         type(corners_t), intent(out) :: corners
-      end subroutine measure_corners
-
-      !> Anticlockwise angle from one direction to another
-      pure real(wp) module function turn(from, to)
-         real(wp), intent(in) :: from  !! First direction [deg]
-         real(wp), intent(in) :: to    !! Second direction [deg]
-      end function turn
-
-      !> Whether two sectors overlap by more than is overlooked
-      pure logical module function overlap(start_a, angle_a, start_b, angle_b, least)
-         real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
-         real(wp), intent(in) :: angle_a  !! Its angle [deg]
-         real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
-         real(wp), intent(in) :: angle_b  !! Its angle [deg]
-         real(wp), intent(in) :: least    !! What is overlooked [deg]
-      end function overlap
-
-      !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
-      pure module function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
-         type(limerick_blocks_t), intent(in) :: blocks
-         type(corners_t), intent(in) :: corners
-         integer, intent(in) :: i             !! Vertex of the first block
-         integer, intent(in) :: j             !! Vertex of the second block
-         real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
-         integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
-      end function entrance_lines
-
-      !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
-      pure module subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
-         type(limerick_blocks_t), intent(in) :: blocks
-         real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
-         real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
-         !> Blocks from left to right, as near as the step before left them: (n_block)
-         integer, intent(inout) :: order(:)
-         type(contact_list_t), intent(inout) :: list
-      end subroutine find_limerick_contacts
-
-   end interface
 
    !> What is left of the time step when contacts did not settle
    real(wp), parameter :: cut = 0.3_wp
@@ -176,7 +99,7 @@ contains
       do c = 1, run%contacts%n
          call place_springs(run%blocks, run%contacts%item(c), run%spring(c))
       end do
-      call couple_blocks(model, run%contacts, size(run%order), run%equations, run%spring)
+      call couple_blocks(model, run%blocks, run%contacts, run%equations, run%spring)
    end subroutine meet
 
    !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
@@ -345,10 +268,10 @@ contains
             blocks%measured_point(:, i) = blocks%measured_point(:, i) &
                & + point_step(blocks%measured_point(:, i), model%boundary%measured(i)%block)
          end do
-         do i = 1, n_bolts(model)
+         do i = 1, size(blocks%bolt_force)
             associate (bolt => model%boundary%bar(i))
                blocks%bolt_force(i) = blocks%bolt_force(i) &
-                  & + bolt%stiffness*bolt_elongation(model, blocks, i, motion)
+                  & + bolt%stiffness*elongation_by(run%equations%bolts, motion, i)
                do b = 1, 2
                   if (bolt%block(b) > 0) blocks%bolt_point(:, b, i) = blocks%bolt_point(:, b, i) &
                      & + point_step(blocks%bolt_point(:, b, i), bolt%block(b))

@@ -39,7 +39,7 @@ contains
       allocate (equations%base(nd, nd, n), source=0.0_wp)
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
       allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
-      equations%bars = new_bar_springs(system, settings, nd)
+      equations%bars = new_bar_springs(settings%boundary, system%equation, nd)
       equations%dashpot = dashpot_matrices(system, settings%boundary, nd)
       call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)

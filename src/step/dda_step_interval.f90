@@ -85,8 +85,8 @@ contains
          & equations => run%equations, state => run%step%state)
          stiffest = maxval(run%system%materials%young)
          if (size(glued) > 0) stiffest = maxval(springs%stiffness)
-         march%longest = sqrt(2.0_wp*sum(equations%mass(1, 1, :)/real(size(equations%mass, 3), wp)) &
-            & /(least_inertia*stiffest))
+         march%longest = sqrt(2.0_wp*sum(equations%mass(1, 1, :) &
+            & /real(size(equations%mass, 3), wp))/(least_inertia*stiffest))
          march%dt = march%longest
          call assemble_first_loads(run)
          call solve_faces(equations, springs, glued, closed, state%trial, state%motion)

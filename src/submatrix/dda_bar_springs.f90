@@ -7,13 +7,14 @@ module dda_bar_springs
    use dda_bar, only : bar_condition
    use dda_bar_place, only : place_bar
    use dda_block_system, only : block_system_t
+   use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: bar_springs_t, bar_motion, add_bars, bar_energies, couple_bars, follow_bars
-   public :: judge_bars, keep_bars, longest_give, new_bar_springs
+   public :: bar_springs_t, bar_motion, add_bars, bar_energies, couple_bars, elongation_by
+   public :: follow_bars, judge_bars, keep_bars, longest_give, new_bar_springs
 
    !> Springs of all bars in a step; the first of two rows is along a bar, the second across it
    type :: bar_springs_t
@@ -40,22 +41,22 @@ module dda_bar_springs
 contains
 
    !> Springs of all bars, not yet placed
-   pure type(bar_springs_t) function new_bar_springs(system, settings, n_dof) result(bars)
-      type(block_system_t), intent(in) :: system
-      type(settings_t), intent(in) :: settings
-      integer, intent(in) :: n_dof  !! Unknowns of a block
+   pure type(bar_springs_t) function new_bar_springs(boundary, equation, n_dof) result(bars)
+      type(boundary_t), intent(in) :: boundary
+      integer, intent(in) :: equation(:)  !! Equation of each block, 0 for a fixed one: (n_block)
+      integer, intent(in) :: n_dof        !! Unknowns of a block
       integer :: i, n, side
 
       n = 0
-      if (allocated(settings%boundary%bar)) n = size(settings%boundary%bar)
+      if (allocated(boundary%bar)) n = size(boundary%bar)
       allocate (bars%equation(2, n), source=0)
       allocate (bars%entry(n), bars%condition(n), source=0)
       allocate (bars%row(n_dof, 2, 2, n), bars%stiffness(2, n), bars%bound(2, n), source=0.0_wp)
       allocate (bars%trial(n), bars%force(n), source=0.0_wp)
       do i = 1, n
          do side = 1, 2
-            associate (b => settings%boundary%bar(i)%block(side))
-               if (b > 0) bars%equation(side, i) = system%equation(b)
+            associate (b => boundary%bar(i)%block(side))
+               if (b > 0) bars%equation(side, i) = equation(b)
             end associate
          end do
       end do
@@ -205,7 +206,7 @@ contains
    pure real(wp) function elongation_by(bars, motion, i)
       type(bar_springs_t), intent(in) :: bars
       real(wp), intent(in) :: motion(:, :)
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !! Number of the bar
       integer :: side
 
       elongation_by = 0.0_wp
