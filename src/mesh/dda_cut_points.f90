@@ -1,11 +1,24 @@
 !> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
-submodule (dda_cutting) dda_cut_points
-   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, point_kind
-   use dda_line_model, only : entities_t
-   use dda_polygon, only : polygon_distance
+module dda_cut_points
+   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, cut_model_t, point_kind
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_line_model, only : entities_t, line_model_t
+   use dda_polygon, only : contains_point, polygon_distance
    use dda_segment, only : crossing_parameters
+   use dda_text, only : to_text
    use dda_vector, only : along, area_moments, area_moments_t, right_normal
    implicit none
+   private
+
+   public :: block_around, block_boxes, boxes_t, give_materials, place_bolts, place_points
+   public :: remove_holes
+
+   !> Boxes around blocks
+   type :: boxes_t
+      real(wp), allocatable :: low(:, :)   !! Lower left corners: (2, n) [m]
+      real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, n) [m]
+   end type boxes_t
 
    !> How far inside its block the point of a fixed line lies, over the size of the model
    real(wp), parameter :: fixed_depth = 0.005_wp
@@ -13,7 +26,8 @@ submodule (dda_cutting) dda_cut_points
 contains
 
    !> Boxes around all blocks
-   module procedure block_boxes
+   pure type(boxes_t) function block_boxes(cut)
+      type(cut_model_t), intent(in) :: cut
       integer :: b, n, i
 
       n = size(cut%area)
@@ -26,10 +40,14 @@ contains
             end do
          end associate
       end do
-   end procedure block_boxes
+   end function block_boxes
 
-   !> The block that holds a point
-   module procedure block_around
+   !> The block that holds a point; if none does, the nearest one within the distance in which
+   !> nodes may have been moved. 0 if there is none
+   pure integer function block_around(cut, boxes, point)
+      type(cut_model_t), intent(in) :: cut
+      type(boxes_t), intent(in) :: boxes
+      real(wp), intent(in) :: point(2)  !! The point, from the origin of the cut: (2) [m]
       real(wp) :: nearest, here
       integer :: b, next_best
 
@@ -48,10 +66,13 @@ contains
          next_best = b
       end do
       block_around = next_best
-   end procedure block_around
+   end function block_around
 
    !> Take out the blocks that hold hole points (Shi: dc11)
-   module procedure remove_holes
+   pure subroutine remove_holes(model, cut, error)
+      type(line_model_t), intent(in) :: model
+      type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point go
+      type(error_t), allocatable, intent(out) :: error  !! A hole point that lies in no block
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
       type(boxes_t) :: boxes
@@ -92,10 +113,14 @@ contains
          cut%pair(n)%side([1, 3]) = number(cut%pair(k)%side([1, 3]))
       end do
       cut%pair = cut%pair(:n)
-   end procedure remove_holes
+   end subroutine remove_holes
 
-   !> Points and fixed lines to blocks
-   module procedure place_points
+   !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
+   !> crosses, or else the block of its first end (Shi: dc10, dc11)
+   pure subroutine place_points(model, cut, error)
+      type(line_model_t), intent(in) :: model
+      type(cut_model_t), intent(inout) :: cut
+      type(error_t), allocatable, intent(out) :: error
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
       integer :: n
@@ -110,7 +135,7 @@ contains
       if (.not. allocated(error)) call add_points(model, model%measured, "measured point", &
          & point_kind%measured, boxes, cut, point, n, error)
       if (.not. allocated(error)) cut%point = point(:n)
-   end procedure place_points
+   end subroutine place_points
 
    !> Points of one kind in their blocks
    pure subroutine add_points(model, entities, what, kind, boxes, cut, point, n, error)
@@ -189,8 +214,10 @@ contains
       point = moments%centroid
    end function inside_point
 
-   !> Find the blocks of the bolts (Shi: dc14)
-   module procedure place_bolts
+   !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+   pure subroutine place_bolts(model, cut)
+      type(line_model_t), intent(in) :: model
+      type(cut_model_t), intent(inout) :: cut
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
       integer :: i, n, side
@@ -210,10 +237,14 @@ contains
          cut%n_idle_bolts = cut%n_idle_bolts + 1
       end do
       cut%bolt = bolt(:n)
-   end procedure place_bolts
+   end subroutine place_bolts
 
-   !> Blocks get the material of the last material line that crosses one of their edges
-   module procedure give_materials
+   !> Blocks get the material of the last material line that crosses one of their edges, or that
+   !> starts in them and crosses none; the first material otherwise (Shi: dc13)
+   pure subroutine give_materials(model, cut, error)
+      type(line_model_t), intent(in) :: model
+      type(cut_model_t), intent(inout) :: cut
+      type(error_t), allocatable, intent(out) :: error  !! A material line that meets no block
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
       integer :: i, n, b
@@ -232,7 +263,7 @@ contains
          if (b == 0) return
          cut%material(b) = model%material_line%material(i)
       end do
-   end procedure give_materials
+   end subroutine give_materials
 
    !> Whether the box of a block lies away from a segment's
    pure logical function misses(segment, boxes, block)
@@ -269,4 +300,4 @@ contains
          & //") outside all; move it into one or remove it", model%file, entities%row(i))
    end subroutine no_block
 
-end submodule dda_cut_points
+end module dda_cut_points

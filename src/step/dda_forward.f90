@@ -8,51 +8,19 @@ module dda_forward
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
    use dda_outline, only : outline_of
+   use dda_path_run, only : follow_clock
    use dda_reactions, only : keep_reactions
+   use dda_run_end, only : conclude, start_run
    use dda_settings, only : settings_t
    use dda_step, only : advance
    use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : next_interval
-   use dda_step_motion, only : begin_step
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
       & outcome_t, verdict
    implicit none
    private
 
    public :: run_to_verdict
-
-   interface
-
-      !> Equations, scales and first step of a run, which begins or goes on from another
-      pure module subroutine begin_run(run, error, onward)
-         !> Settings, blocks and contacts in; faces to begin with are set
-         type(run_t), intent(inout) :: run
-         !> Allocated if the system cannot be solved
-         type(error_t), allocatable, intent(out) :: error
-         !> The march of the run that this one goes on from; without steps only its held points
-         !> bear forces
-         type(march_t), intent(in), optional :: onward
-      end subroutine begin_run
-
-      !> Let the clock of a static run go on where the blocks are at rest before the end of its
-      !> path, and back where they do not come to rest, or leap
-      pure module subroutine follow_path(run, answer, error, album)
-         type(run_t), intent(inout) :: run
-         !> One of verdict; becomes undecided where the run goes on
-         integer, intent(inout) :: answer
-         type(error_t), allocatable, intent(inout) :: error
-         type(album_t), intent(inout), optional :: album  !! Pictures of the run
-      end subroutine follow_path
-
-      !> What the end of a run says
-      pure module subroutine conclude(run, error, outcome)
-         type(run_t), intent(in) :: run
-         type(error_t), allocatable, intent(in) :: error
-         !> How it ended; receives what the march counts, the verdict, and why it is undecided
-         type(outcome_t), intent(inout) :: outcome
-      end subroutine conclude
-
-   end interface
 
 contains
 
@@ -84,11 +52,11 @@ contains
       run%settings = settings
       call move_system(system, run%system)
       call move_contacts(contacts, run%contacts)
-      call begin_run(run, error, onward)
+      call start_run(run, error, onward)
       if (present(album)) call keep_pictures(run, .false., album)
       do while (.not. (allocated(error) .or. is_over(run)))
          call take_step(run, outcome%verdict, error, album)
-         call follow_path(run, outcome%verdict, error, album)
+         call follow_clock(run, outcome%verdict, error, album)
          if (outcome%verdict /= verdict%undecided) exit
       end do
       run%march%held_force = run%equations%fixed%force
