@@ -179,6 +179,7 @@ contains
       integer, intent(in) :: step
       real(wp), intent(in) :: time
       type(album_t), intent(inout) :: album
+      real(wp) :: t(2, 6)
       integer :: i, n
 
       if (.not. allocated(album%point)) return
@@ -196,34 +197,15 @@ contains
       album%when(:, n + 1) = [real(step, wp), time]
       do i = 1, size(album%point)
          associate (point => album%point(i)%point, b => album%point(i)%block, &
-            & place => album%track(:, i, n + 1), speed => album%speed(:, i, n + 1))
+            & place => album%track(:, i, n + 1))
+            t = displacement_matrix(point, system%centroid(:, b))
+            place = point + matmul(t, system%motion(:, b))
             if (current) then
                place = moved_point(point, system%centroid(:, b), system%motion(:, b))
-            else
-               place = point + matmul(displacement_matrix(point, system%centroid(:, b)), &
-                  & system%motion(:, b))
+               t = displacement_matrix(place, system%centroid(:, b) + system%motion(1:2, b))
             end if
-            speed = speed_of(system, current, b, place, point)
+            album%speed(:, i, n + 1) = matmul(t, system%velocity(:, b))
          end associate
       end do
    end subroutine keep_track
-
-   !> Velocity of a point of a block
-   pure function speed_of(system, current, block, place, point) result(speed)
-      type(block_system_t), intent(in) :: system
-      logical, intent(in) :: current
-      integer, intent(in) :: block      !! The block
-      real(wp), intent(in) :: place(2)  !! Where the point is: (2) [m]
-      real(wp), intent(in) :: point(2)  !! Where it is in the reference shape: (2) [m]
-      real(wp) :: speed(2)              !! The velocity: (2) [m/s]
-
-      associate (centre => system%centroid(:, block))
-         if (current) then
-            speed = matmul(displacement_matrix(place, centre + system%motion(1:2, block)), &
-               & system%velocity(:, block))
-         else
-            speed = matmul(displacement_matrix(point, centre), system%velocity(:, block))
-         end if
-      end associate
-   end function speed_of
 end module dda_frames
