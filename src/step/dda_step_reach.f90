@@ -114,19 +114,13 @@ contains
       real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_equation)
       !> The way of the corner that moves farthest: (n_block) [m]
       real(wp) :: way(size(system%area))
-      real(wp) :: t(2, 6), centroid(2)
-      integer :: b, e, n_dof, v
+      real(wp) :: travel(2, size(system%vertex, 2))
+      integer :: b
 
-      n_dof = size(motion, 1)
-      way = 0.0_wp
+      travel = travel_by(system, motion)
       do b = 1, size(way)
-         e = system%equation(b)
-         if (e == 0) cycle
-         centroid = system%centroid(:, b) + system%motion(1:2, b)
-         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
-            t = displacement_matrix(system%moved(:, v), centroid)
-            way(b) = max(way(b), norm2(matmul(t(:, :n_dof), motion(:, e))))
-         end do
+         way(b) = maxval(norm2(travel(:, system%first_vertex(b):system%first_vertex(b + 1) - 1), &
+            & dim=1))
       end do
    end function corner_motion
 
