@@ -12,7 +12,7 @@ module dda_limerick_run
    private
 
    public :: limerick_outcome_t, limerick_verdict, limerick_verdict_enum
-   public :: begin_outcome, begin_run, next_step, run_limerick, farthest_vertex
+   public :: begin_outcome, begin_run, next_step, run_limerick
 
    !> How a run can end
    type :: limerick_verdict_enum
@@ -136,7 +136,7 @@ contains
       outcome%passes = run%march%passes
       if (ended) return
       call keep_track(run, outcome)
-      outcome%displacement = farthest_vertex(model, run)
+      outcome%displacement = sqrt(maxval(sum((run%blocks%vertex - model%vertex)**2, dim=1)))
       if (model%constants%dynamic) return
       if (outcome%displacement > model%constants%collapse_displacement) &
          & outcome%verdict = limerick_verdict%collapsed
@@ -245,19 +245,4 @@ contains
       outcome%when(:, n + 1) = [real(n, wp), run%march%time]
       outcome%track(:, :, n + 1) = run%blocks%measured_point(:, :size(outcome%track, 2))
    end subroutine keep_track
-
-   !> Largest distance of a vertex from where it began [m]
-   pure real(wp) function farthest_vertex(model, run)
-      type(limerick_model_t), intent(in) :: model
-      type(limerick_run_t), intent(in) :: run
-      integer :: v
-
-      farthest_vertex = 0.0_wp
-      do v = 1, size(model%vertex, 2)
-         farthest_vertex = max(farthest_vertex, &
-            & (run%blocks%vertex(1, v) - model%vertex(1, v))**2 &
-            & + (run%blocks%vertex(2, v) - model%vertex(2, v))**2)
-      end do
-      farthest_vertex = sqrt(farthest_vertex)
-   end function farthest_vertex
 end module dda_limerick_run
