@@ -30,12 +30,8 @@ contains
       n = size(contacts%stiffness)
       more = n + size(bars%trial)
       call append_springs(contacts, more, springs)
-      state%fineness = step%fineness
-      state%unseen = step%unseen
-      state%rates = step%rates
-      state%effort = step%effort
-      state%passes = step%passes
-      state%motion = step%motion
+      state = step
+      deallocate (state%force, state%trial, state%face)
       allocate (state%force(3, more), state%trial(3, more), source=0.0_wp)
       allocate (state%face(more))
       state%force(:, :n) = step%force

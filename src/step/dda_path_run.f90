@@ -80,8 +80,8 @@ contains
       associate (march => run%march, rest => run%rest)
          if (march%clock%now > march%clock%rested) &
             & march%rate = march%moved/(march%clock%now - march%clock%rested)
+         march%held_force = run%equations%fixed%force
          rest%state = run%run_state_t
-         rest%held_force = run%equations%fixed%force
          if (present(album)) then
             rest%n_frame = album%n
             rest%n_track = album%n_track
@@ -116,7 +116,7 @@ contains
             & run%equations)
          run%run_state_t = rest%state
          run%march = march
-         run%equations%fixed%force = rest%held_force
+         run%equations%fixed%force = march%held_force
          if (present(album)) then
             album%n = rest%n_frame
             album%n_track = rest%n_track

@@ -67,10 +67,9 @@ contains
       type(run_t), intent(inout) :: run
       logical, intent(out) :: still  !! Whether they stand still
       type(run_state_t) :: before
-      real(wp) :: held(size(run%equations%fixed%force))
 
+      run%march%held_force = run%equations%fixed%force
       before = run%run_state_t
-      held = run%equations%fixed%force
       call take_speed(run, still)
       if (still) call balance_forces(run, still)
       run%step%state%fineness = 1.0_wp
@@ -80,7 +79,7 @@ contains
       if (still) return
       call renew_springs(run%contacts%springs%equation, before%contacts%springs, run%equations)
       run%run_state_t = before
-      run%equations%fixed%force = held
+      run%equations%fixed%force = before%march%held_force
    end subroutine come_to_rest
 
    !> Count the work of loads on the way to where blocks stand still

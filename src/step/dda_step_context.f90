@@ -163,8 +163,6 @@ module dda_step_context
    !> A rest on the path of a static run, to return to
    type :: rest_t
       type(run_state_t) :: state  !! The run there
-      !> Forces of the springs at held points: (n_spring) [N/m]
-      real(wp), allocatable :: held_force(:)
       integer :: n_frame = 0    !! Pictures kept so far
       integer :: n_track = 0    !! Steps so far of which the measured points are kept
       real(wp) :: due = 0.0_wp  !! Displacement or time at which the next picture is due [m or s]
