@@ -107,10 +107,17 @@ contains
    pure subroutine choose_interval(model, march)
       type(limerick_model_t), intent(in) :: model
       type(limerick_march_t), intent(inout) :: march  !! The march; its time step is set
-      real(wp) :: acceleration, velocity, allowed, mass, longest, record, stress
-      integer :: m
+      real(wp) :: acceleration, velocity, allowed, load, mass, longest, record, stress
+      integer :: i, m
 
       if (.not. model%constants%auto_time_step) return
+      associate (loaded => model%boundary%loaded)
+         if (march%steps == 0) then
+            load = maxval([0.0_wp, (maxval(abs(loaded(i)%force%value)), i=1, size(loaded))])
+         else
+            load = maxval([0.0_wp, (abs(force_at(model, i, march%time)), i=1, size(loaded))])
+         end if
+      end associate
       allowed = model%constants%max_displacement_ratio*march%half_size
       mass = march%mean_area*model%material(1)%density
       velocity = 0.0_wp
@@ -119,13 +126,11 @@ contains
          stress = maxval([(abs(model%material(m)%stress), m=1, size(model%material))])
          velocity = maxval([(abs(model%material(m)%velocity), m=1, size(model%material))])
          acceleration = max(model%material(1)%unit_weight/model%material(1)%density, &
-            & 4.0_wp*stress*sqrt(march%mean_area)/mass, &
-            & largest_load(model, 0.0_wp, .true.)/mass)
+            & 4.0_wp*stress*sqrt(march%mean_area)/mass, load/mass)
          if (acceleration > 0.0_wp .or. velocity > 0.0_wp) longest = huge(longest)
       else
          longest = growth*march%time_step
-         acceleration = max(march%penetration*march%half_size*march%used_penalty, &
-            & largest_load(model, march%time, .false.))/mass
+         acceleration = max(march%penetration*march%half_size*march%used_penalty, load)/mass
          if (model%constants%dynamic) velocity = march%displacement_ratio*allowed/march%time_step
       end if
       ! the root of velocity*t + acceleration*t**2/2 = allowed in the form that loses no digits
@@ -135,23 +140,6 @@ contains
       record = next_record(model, march%time + short*march%time_step)
       march%time_step = min(march%time_step, record - march%time)
    end subroutine choose_interval
-
-   !> Largest component of the loads at a time or of all that are tabulated [N/m]
-   pure real(wp) function largest_load(model, time, ever)
-      type(limerick_model_t), intent(in) :: model
-      real(wp), intent(in) :: time  !! The time [s]
-      logical, intent(in) :: ever   !! Whether all tabulated forces count instead
-      integer :: i
-
-      largest_load = 0.0_wp
-      do i = 1, size(model%boundary%loaded)
-         if (ever) then
-            largest_load = max(largest_load, maxval(abs(model%boundary%loaded(i)%force%value)))
-         else
-            largest_load = max(largest_load, maxval(abs(force_at(model, i, time))))
-         end if
-      end do
-   end function largest_load
 
    !> Whether a step is accepted; if not, its length or the penalty is changed
    pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
@@ -204,15 +192,14 @@ contains
    pure subroutine move_vertices(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run  !! The run; the displacement ratio is set
-      real(wp) :: farthest, step(2), turn(2)
+      real(wp) :: farthest, step(2)
       integer :: b, v
 
       farthest = 0.0_wp
       associate (blocks => run%blocks, motion => run%equations%motion)
          do b = 1, size(blocks%area)
-            turn = turning(model, motion(3, b))
             do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
-               step = displacement(motion(:, b), turn, &
+               step = displacement(model, motion(:, b), &
                   & blocks%vertex(:, v) - blocks%centroid(:, b))
                run%moved(:, v) = blocks%vertex(:, v) + step
                farthest = max(farthest, step(1)**2 + step(2)**2)
@@ -223,23 +210,17 @@ contains
          & /(run%march%half_size*model%constants%max_displacement_ratio)
    end subroutine move_vertices
 
-   !> What a rotation does to an arm: along it and across it
-   pure function turning(model, angle) result(turn)
-      type(limerick_model_t), intent(in) :: model
-      real(wp), intent(in) :: angle  !! The rotation [rad]
-      real(wp) :: turn(2)            !! Parts of the arm's change along it and across it: (2)
-
-      turn = [0.0_wp, angle]
-      if (model%constants%exact_rotation) turn = [cos(angle) - 1.0_wp, sin(angle)]
-   end function turning
-
    !> Displacement of a point of a block
-   pure function displacement(motion, turn, arm) result(step)
+   pure function displacement(model, motion, arm) result(step)
+      type(limerick_model_t), intent(in) :: model
       real(wp), intent(in) :: motion(6)  !! Unknowns of the block: (6)
-      real(wp), intent(in) :: turn(2)    !! What its rotation does to an arm along it and across it
       real(wp), intent(in) :: arm(2)     !! Arm of the point: (2) [m]
       real(wp) :: step(2)                !! The displacement: (2) [m]
+      real(wp) :: turn(2)
 
+      ! what the rotation makes of the arm along it and across it
+      turn = [0.0_wp, motion(3)]
+      if (model%constants%exact_rotation) turn = [cos(motion(3)) - 1.0_wp, sin(motion(3))]
       associate (x => arm(1), y => arm(2))
          step(1) = motion(1) + turn(1)*x - turn(2)*y + motion(4)*x + motion(6)*y/2.0_wp
          step(2) = motion(2) + turn(2)*x + turn(1)*y + motion(5)*y + motion(6)*x/2.0_wp
@@ -300,8 +281,8 @@ contains
          integer, intent(in) :: block      !! Its block
          real(wp) :: step(2)
 
-         step = displacement(run%equations%motion(:, block), turning(model, &
-            & run%equations%motion(3, block)), point - run%blocks%centroid(:, block))
+         step = displacement(model, run%equations%motion(:, block), &
+            & point - run%blocks%centroid(:, block))
       end function point_step
    end subroutine update
 
