@@ -178,7 +178,8 @@ contains
 
       segment = line - [cut%scale%origin, cut%scale%origin]
       do b = 1, size(cut%area)
-         if (misses(segment, boxes, b)) cycle
+         if (any(max(segment(1:2), segment(3:4)) < boxes%low(:, b))) cycle
+         if (any(min(segment(1:2), segment(3:4)) > boxes%high(:, b))) cycle
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
             do k = 1, size(vertex, 2)
                edge = [vertex(:, k), vertex(:, 1 + mod(k, size(vertex, 2)))]
@@ -264,16 +265,6 @@ contains
          cut%material(b) = model%material_line%material(i)
       end do
    end subroutine give_materials
-
-   !> Whether the box of a block lies away from a segment's
-   pure logical function misses(segment, boxes, block)
-      real(wp), intent(in) :: segment(4)  !! Ends of the segment: (4) [m]
-      type(boxes_t), intent(in) :: boxes
-      integer, intent(in) :: block        !! Number of the block
-
-      misses = any(max(segment(1:2), segment(3:4)) < boxes%low(:, block)) &
-         & .or. any(min(segment(1:2), segment(3:4)) > boxes%high(:, block))
-   end function misses
 
    !> Add a point to a list
    pure subroutine append_point(point, n, new)

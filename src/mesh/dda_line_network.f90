@@ -220,11 +220,8 @@ contains
       has_edge(network%line) = .true.
       do i = 1, size(line, 2)
          if (has_edge(i)) cycle
-         if (all(abs(line(3:4, i) - line(1:2, i)) <= 0.0_wp)) then
-            call add_remark(remarks, i, cut_reason%point, 0, line(:, i))
-         else
-            call add_remark(remarks, i, cut_reason%loose_line, 0, line(:, i))
-         end if
+         call add_remark(remarks, i, merge(cut_reason%point, cut_reason%loose_line, &
+            & all(abs(line(3:4, i) - line(1:2, i)) <= 0.0_wp)), 0, line(:, i))
       end do
    end subroutine tell_loose_lines
 
