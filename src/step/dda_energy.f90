@@ -3,9 +3,7 @@ module dda_energy
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
-   use dda_settings, only : settings_t
-   use dda_step_context, only : energy_t, run_t, step_context_t
-   use dda_step_state, only : equations_t
+   use dda_step_context, only : energy_t, run_t
    implicit none
    private
 
@@ -30,7 +28,7 @@ contains
       call store_energy(run)
       run%march%energy%time = run%march%time
       if (.not. run%step%dt > 0.0_wp) return
-      call spend_energy(run%settings, run%equations, run%step, run%march%energy)
+      call spend_energy(run)
       associate (energy => run%march%energy)
          energy%numerical = energy%numerical + before - total(energy)
       end associate
@@ -66,28 +64,26 @@ contains
    end subroutine store_energy
 
    !> Add what a step brought in and took
-   pure subroutine spend_energy(settings, equations, step, energy)
-      type(settings_t), intent(in) :: settings
-      type(equations_t), intent(in) :: equations
-      type(step_context_t), intent(in) :: step
-      type(energy_t), intent(inout) :: energy
+   pure subroutine spend_energy(run)
+      type(run_t), intent(inout) :: run
       integer :: e
 
-      associate (motion => step%state%motion, fixed => equations%fixed)
+      associate (equations => run%equations, step => run%step, energy => run%march%energy, &
+         & motion => run%step%state%motion, fixed => run%equations%fixed)
          energy%work = energy%work + sum((equations%outer - equations%weight)*motion) &
             & + dot_product(fixed%force, fixed%target)
          do e = 1, size(motion, 2)
-            energy%damping = energy%damping + damping_rate(settings, step%dt)/step%dt &
+            energy%damping = energy%damping + damping_rate(run%settings, step%dt)/step%dt &
                & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
          end do
          do e = 1, size(equations%dashpot, 3)
             energy%damping = energy%damping + dot_product(motion(:, e), &
                & matmul(equations%dashpot(:, :, e), motion(:, e)))/step%dt
          end do
+         energy%friction = energy%friction - sum(step%state%force(3, :) &
+            & *step%state%increment(3, :), mask=step%state%face%slip /= 0)
+         energy%impact = energy%impact + step%impact
       end associate
-      energy%friction = energy%friction - sum(step%state%force(3, :)*step%state%increment(3, :), &
-         & mask=step%state%face%slip /= 0)
-      energy%impact = energy%impact + step%impact
    end subroutine spend_energy
 
    !> What would stay the same without numerical dissipation

@@ -97,9 +97,8 @@ contains
       associate (march => run%march)
          call keep_frame(run%system, run%contacts, march%steps, march%time, march%displacement, &
             & run%step%farthest, last, album)
-         if (.not. last) call keep_track(run%system, run%settings%current, march%steps, &
-            & march%time, album)
       end associate
+      if (.not. last) call keep_track(run, album)
    end subroutine keep_pictures
 
    !> Whether a picture is due
@@ -173,11 +172,8 @@ contains
    end subroutine keep_frame
 
    !> Keep where the measured points are
-   pure subroutine keep_track(system, current, step, time, album)
-      type(block_system_t), intent(in) :: system
-      logical, intent(in) :: current  !! Whether they move; otherwise displacements are small
-      integer, intent(in) :: step
-      real(wp), intent(in) :: time
+   pure subroutine keep_track(run, album)
+      type(run_t), intent(in) :: run
       type(album_t), intent(inout) :: album
       real(wp) :: t(2, 6)
       integer :: i, n
@@ -194,13 +190,13 @@ contains
       if (allocated(album%reaction)) call make_room(album%reaction, n + 1)
       album%n_track = n + 1
       if (allocated(album%reaction_now)) album%reaction(:, :, n + 1) = album%reaction_now
-      album%when(:, n + 1) = [real(step, wp), time]
+      album%when(:, n + 1) = [real(run%march%steps, wp), run%march%time]
       do i = 1, size(album%point)
          associate (point => album%point(i)%point, b => album%point(i)%block, &
-            & place => album%track(:, i, n + 1))
+            & place => album%track(:, i, n + 1), system => run%system)
             t = displacement_matrix(point, system%centroid(:, b))
             place = point + matmul(t, system%motion(:, b))
-            if (current) then
+            if (run%settings%current) then
                place = moved_point(point, system%centroid(:, b), system%motion(:, b))
                t = displacement_matrix(place, system%centroid(:, b) + system%motion(1:2, b))
             end if
