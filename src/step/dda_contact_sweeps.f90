@@ -66,7 +66,8 @@ contains
       sweeps%motion(:, 1:) = sweeps%moved
       sweeps%noise = min(1.0_wp, state%fineness)*equations%gap_noise
       sweeps%enough(1) = tolerance*equations%force_scale
-      size_of = state%fineness*smallest(equations)
+      ! by the radius of gyration of the smallest block
+      size_of = state%fineness*sqrt(12.0_wp*minval(equations%mass(3, 3, :)/equations%mass(1, 1, :)))
       settled = .false.
       begun = state%passes
       most = 0
@@ -233,13 +234,6 @@ contains
          end do
       end do
    end subroutine keep_forces
-
-   !> Radius of gyration of the smallest block [m]
-   pure real(wp) function smallest(equations)
-      type(equations_t), intent(in) :: equations
-
-      smallest = sqrt(12.0_wp*minval(equations%mass(3, 3, :)/equations%mass(1, 1, :)))
-   end function smallest
 
    !> The face that a joint's force lies on
    pure type(joint_face_t) function face_of(cone, force, shift) result(face)

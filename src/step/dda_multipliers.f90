@@ -38,7 +38,13 @@ contains
       logical :: agreed
 
       do pass = 1, max_bar_passes
-         call settle_with_bars(settings, equations, springs, state)
+         if (settings%current .and. settings%dynamic) then
+            call settle_in_time(settings, (equations%fixed%target), equations, springs, state)
+         else if (multiplies(settings, springs) .or. size(equations%fixed%point) > 0) then
+            call settle_exactly(settings, equations, springs, state)
+         else
+            call settle_once(settings, equations, springs, state)
+         end if
          if (.not. state%settled .or. size(equations%bars%entry) == 0) return
          call add_bars(equations%bars, -1.0_wp, equations%base, equations%load)
          call judge_bars(equations%bars, state%motion, pass > few_bar_passes, agreed)
@@ -49,22 +55,6 @@ contains
       end do
       state%settled = .false.
    end subroutine settle_joints
-
-   !> Settle the joints for given conditions of the bars
-   pure subroutine settle_with_bars(settings, equations, springs, state)
-      type(settings_t), intent(in) :: settings
-      type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(inout) :: state
-
-      if (settings%current .and. settings%dynamic) then
-         call settle_in_time(settings, (equations%fixed%target), equations, springs, state)
-      else if (multiplies(settings, springs) .or. size(equations%fixed%point) > 0) then
-         call settle_exactly(settings, equations, springs, state)
-      else
-         call settle_once(settings, equations, springs, state)
-      end if
-   end subroutine settle_with_bars
 
    !> Settle the joints until neither their forces nor those at the held points change
    pure subroutine settle_exactly(settings, equations, springs, state)

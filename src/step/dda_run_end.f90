@@ -10,7 +10,7 @@ module dda_run_end
    use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : first_interval, measure_scales
    use dda_step_motion, only : begin_step
-   use dda_verdict, only : neighbours_of, outcome_t, still_moves_away, verdict
+   use dda_verdict, only : outcome_t, still_moves_away, verdict
    implicit none
    private
 
@@ -30,7 +30,9 @@ contains
 
       call raise_springs(run%settings, run%system, run%contacts)
       call new_equations(run%system, run%contacts%springs, run%settings, run%equations)
-      run%neighbours = neighbours_of(run%contacts%joint)
+      allocate (run%neighbours(2, size(run%contacts%joint)))
+      run%neighbours(1, :) = run%contacts%joint%block(1)
+      run%neighbours(2, :) = run%contacts%joint%block(2)
       call begin_step(run)
       if (present(onward)) call go_on(onward, run)
       if (run%march%steps > 0) return

@@ -52,9 +52,22 @@ contains
       end associate
       if (.not. still) return
       call begin_step(run)
-      call stand_still(run)
-      run%step%accepted = .true.
-      run%step%was_cut = .false.
+      associate (step => run%step)
+         run%contacts%increment = 0.0_wp
+         step%dt = run%march%dt
+         step%state%increment = run%contacts%increment
+         step%state%settled = .true.
+         step%velocity = step%state%motion
+         step%has_velocity = .true.
+         step%mean_force = run%contacts%force
+         step%held_mean_force = run%equations%fixed%force
+         step%impact = 0.0_wp
+         step%farthest = 0.0_wp
+         step%acceleration = 0.0_wp
+         step%whole = .true.
+         step%accepted = .true.
+         step%was_cut = .false.
+      end associate
       run%march%steps = run%march%steps + 1
       run%march%time = run%march%time + run%step%dt
       call audit_step(run)
@@ -134,7 +147,10 @@ contains
 
       call place_contacts(run)
       associate (step => run%step, contacts => run%contacts)
-         step%dt = max(run%march%dt, balancing_time(run))
+         ! rounding of gaps then moves blocks less than forces that are not balanced
+         step%dt = run%march%dt
+         if (run%march%free_acceleration > 0.0_wp) step%dt = max(step%dt, sqrt(8.0_wp &
+            & *run%equations%gap_noise/(balanced*run%march%free_acceleration)))
          do i = 1, most_solutions
             where (abs(contacts%force(1:2, :)) > 0.0_wp) contacts%gap(1:2, :) = 0.0_wp
             call stiffen_contacts(run)
@@ -174,16 +190,6 @@ contains
       is_slow = .true.
    end function is_slow
 
-   !> Length of a step in which rounding of gaps moves blocks less than forces that are not
-   !> balanced
-   pure real(wp) function balancing_time(run) result(time)
-      type(run_t), intent(in) :: run
-
-      time = 0.0_wp
-      if (run%march%free_acceleration > 0.0_wp) time = sqrt(8.0_wp*run%equations%gap_noise &
-         & /(balanced*run%march%free_acceleration))
-   end function balancing_time
-
    !> Whether no block moves and the contact forces at hand balance the loads of the coming step,
    !> which are assembled
    pure subroutine stands_still(run, still)
@@ -209,26 +215,4 @@ contains
       end associate
       still = .true.
    end subroutine stands_still
-
-   !> A step, begun, in which nothing moves: its forces are those before
-   pure subroutine stand_still(run)
-      type(run_t), intent(inout) :: run
-
-      associate (step => run%step)
-         run%contacts%increment = 0.0_wp
-         step%dt = run%march%dt
-         step%state%increment = run%contacts%increment
-         step%state%force = run%contacts%force
-         step%state%settled = .true.
-         step%velocity = step%state%motion
-         step%has_velocity = .true.
-         step%mean_force = run%contacts%force
-         step%held_mean_force = run%equations%fixed%force
-         step%impact = 0.0_wp
-         step%farthest = 0.0_wp
-         step%acceleration = 0.0_wp
-         step%whole = .true.
-      end associate
-   end subroutine stand_still
-
 end module dda_step_at_rest

@@ -198,13 +198,11 @@ contains
       type(equations_t), intent(in) :: equations
       !> The accelerations; those of strains are none: (n_dof, n_equation)
       real(wp) :: free(size(equations%outer, 1), size(equations%outer, 2))
-      integer :: e, i
+      integer :: i
 
       free = 0.0_wp
-      do e = 1, size(free, 2)
-         do i = 1, 3
-            free(i, e) = equations%outer(i, e)/equations%mass(i, i, e)
-         end do
+      do i = 1, 3
+         free(i, :) = equations%outer(i, :)/equations%mass(i, i, :)
       end do
    end function free_accelerations
 

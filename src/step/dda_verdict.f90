@@ -12,7 +12,6 @@ module dda_verdict
    use dda_block_inertia, only : kinetic_energy
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_contact_types, only : joint_t
    use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_kinds, only : pi, wp
@@ -21,7 +20,7 @@ module dda_verdict
    implicit none
    private
 
-   public :: has_fallen, neighbours_of, has_collapsed, still_moves_away, tests_collapse, verdict
+   public :: has_fallen, has_collapsed, still_moves_away, tests_collapse, verdict
    public :: measure_step, judge_verdict, largest_displacement, outcome_t
 
    !> A block that has turned by this angle has fallen [rad]
@@ -105,15 +104,6 @@ module dda_verdict
    end type outcome_t
 
 contains
-
-   !> The pairs of blocks that touch
-   pure function neighbours_of(joint) result(pair)
-      type(joint_t), intent(in) :: joint(:)  !! Their joints: (n_joint)
-      integer :: pair(2, size(joint))        !! The two blocks of each joint: (2, n_joint)
-
-      pair(1, :) = joint%block(1)
-      pair(2, :) = joint%block(2)
-   end function neighbours_of
 
    !> Whether a block has turned by 45 degrees against all blocks whose motion is given, fixed ones
    !> among them, or has moved by its own size and no chain of blocks that touched at the beginning,
