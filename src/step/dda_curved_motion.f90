@@ -9,7 +9,7 @@ module dda_curved_motion
    use dda_block_update, only : displaced_blocks
    use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
    use dda_kinds, only : wp
-   use dda_settle_in_time, only : settle_in_time
+   use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : relative_displacement
    use dda_step_context, only : run_t
    use dda_step_state, only : step_state_t

@@ -19,7 +19,7 @@ module dda_velocity
    use dda_contact_types, only : joint_springs_t, place_rows
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_kinds, only : wp
-   use dda_settle_in_time, only : settle_in_time
+   use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
    use dda_step_context, only : near_gap, run_t
    use dda_step_state, only : equations_t, step_state_t
