@@ -135,10 +135,8 @@ contains
       integer :: i
 
       associate (place => model%line%place(:, :model%line%n))
-         do i = 1, 2
-            low(i) = min(minval(place(i, :)), minval(place(i + 2, :)))
-            high(i) = max(maxval(place(i, :)), maxval(place(i + 2, :)))
-         end do
+         low = minval(min(place(1:2, :), place(3:4, :)), dim=2)
+         high = maxval(max(place(1:2, :), place(3:4, :)), dim=2)
       end associate
       scale%size = 1.02_wp*max((high(2) - low(2))/2.0_wp, (high(1) - low(1))/2.6_wp)
       do i = 1, 2

@@ -28,16 +28,14 @@ contains
    !> Boxes around all blocks
    pure type(boxes_t) function block_boxes(cut)
       type(cut_model_t), intent(in) :: cut
-      integer :: b, n, i
+      integer :: b, n
 
       n = size(cut%area)
       allocate (block_boxes%low(2, n), block_boxes%high(2, n))
       do b = 1, n
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
-            do i = 1, 2
-               block_boxes%low(i, b) = minval(vertex(i, :))
-               block_boxes%high(i, b) = maxval(vertex(i, :))
-            end do
+            block_boxes%low(:, b) = minval(vertex, dim=2)
+            block_boxes%high(:, b) = maxval(vertex, dim=2)
          end associate
       end do
    end function block_boxes
