@@ -2,7 +2,7 @@
 !> edges and states as whole numbers, the rest as numbers
 submodule (dda_restart) dda_restart_blocks
    use dda_block_system, only : begin_motion
-   use dda_block_update, only : displaced_blocks
+   use dda_block_update, only : displace_blocks
    use dda_contact_search, only : law_between
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
    use dda_contacts, only : begin_memory, set_joints
@@ -58,7 +58,7 @@ contains
       system%velocity = state%velocity
       system%stress = state%stress
       if (.not. settings%current) return
-      system = displaced_blocks(system, settings, no_motion)
+      call displace_blocks(settings, no_motion, system)
       if (.not. are_blocks(system)) fault = "strains that leave no block"
    end procedure take_blocks
 

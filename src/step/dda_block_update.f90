@@ -12,7 +12,7 @@ module dda_block_update
    implicit none
    private
 
-   public :: carry_over, update_blocks, update_contacts, displaced_blocks
+   public :: carry_over, displace_blocks, update_blocks, update_contacts
 
 contains
 
@@ -34,60 +34,55 @@ contains
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(inout) :: system
-      real(wp) :: d(3, 3), motion(6)
-      integer :: b, e, nd
+      real(wp) :: motion(6)
+      integer :: b, e
 
-      nd = settings%n_dof
+      if (settings%current .and. settings%dynamic) then
+         system%motion = step%after%motion
+         system%moved = step%after%moved
+         system%stress = step%after%stress
+      else if (settings%current) then
+         call displace_blocks(settings, step%state%motion, system)
+         return
+      end if
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          motion = 0.0_wp
-         motion(:nd) = step%state%motion(:, e)
-         if (settings%dynamic .and. settings%current) then
-            system%velocity(:nd, b) = step%velocity(:, e)
-            system%velocity(4:6, b) = turned_tensor(system%velocity(4:6, b), -motion(3), 2.0_wp)
-         else if (settings%dynamic) then
-            system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
-         end if
-         d = elasticity_matrix(system%materials(system%material(b)))
-         if (settings%dynamic .and. settings%current) cycle
+         motion(:settings%n_dof) = step%state%motion(:, e)
          if (settings%current) then
-            call move_block(b, motion, d, system)
-         else
-            system%motion(:, b) = system%motion(:, b) + motion
-            system%stress(:, b) = system%stress(:, b) + matmul(d, motion(4:6))
+            system%velocity(:settings%n_dof, b) = step%velocity(:, e)
+            system%velocity(4:6, b) = turned_tensor(system%velocity(4:6, b), -motion(3), 2.0_wp)
+            cycle
          end if
+         if (settings%dynamic) system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
+         system%motion(:, b) = system%motion(:, b) + motion
+         system%stress(:, b) = system%stress(:, b) &
+            & + matmul(elasticity_matrix(system%materials(system%material(b))), motion(4:6))
       end do
-      if (.not. (settings%dynamic .and. settings%current)) return
-      system%motion = step%after%motion
-      system%moved = step%after%moved
-      system%stress = step%after%stress
    end subroutine update_blocks
 
-   !> Blocks where a motion carries them, where blocks move; velocities stay
-   pure type(block_system_t) function displaced_blocks(system, settings, motion)
-      type(block_system_t), intent(in) :: system
+   !> Let a motion carry the blocks, where blocks move; velocities stay
+   pure subroutine displace_blocks(settings, motion, system)
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      type(block_system_t), intent(inout) :: system
       real(wp) :: of_block(6)
       integer :: b, e
 
-      displaced_blocks = system
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          of_block = 0.0_wp
          of_block(:settings%n_dof) = motion(:, e)
-         call move_block(b, of_block, elasticity_matrix(system%materials(system%material(b))), &
-            & displaced_blocks)
+         call move_block(b, of_block, system)
       end do
-   end function displaced_blocks
+   end subroutine displace_blocks
 
    !> Move one block by a finite motion
-   pure subroutine move_block(block, motion, d, system)
+   pure subroutine move_block(block, motion, system)
       integer, intent(in) :: block       !! Number of the block
       real(wp), intent(in) :: motion(6)  !! Its motion in the step; strain in fixed directions: (6)
-      real(wp), intent(in) :: d(3, 3)    !! Hooke's law: (3, 3) [Pa]
       type(block_system_t), intent(inout) :: system
       integer :: v
 
@@ -95,7 +90,8 @@ contains
          total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
          total(1:3) = total(1:3) + motion(1:3)
          system%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
-            & + matmul(d, total(4:6)), -total(3), 1.0_wp)
+            & + matmul(elasticity_matrix(system%materials(system%material(block))), total(4:6)), &
+            & -total(3), 1.0_wp)
          do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
             system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
          end do

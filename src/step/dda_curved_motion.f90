@@ -6,7 +6,7 @@
 !> Tarnow 1992, ZAMP 43, 757-792).
 module dda_curved_motion
    use dda_block_inertia, only : packed_velocity
-   use dda_block_update, only : displaced_blocks
+   use dda_block_update, only : displace_blocks
    use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
@@ -91,7 +91,8 @@ contains
       integer :: j, k
 
       associate (step => run%step)
-         step%after = displaced_blocks(run%system, run%settings, motion)
+         step%after = run%system
+         call displace_blocks(run%settings, motion, step%after)
          step%place = run%contacts%place
          step%end_gap = 0.0_wp*run%contacts%gap
          error = 0.0_wp
