@@ -1,19 +1,10 @@
 !> A static run along the path of its histories: its clock strides from rest to rest
-module dda_path_run
+submodule (dda_forward) dda_path_run
    use dda_assembly, only : renew_springs
    use dda_boundary, only : led_displacement
-   use dda_error, only : error_t
-   use dda_frames, only : album_t
-   use dda_kinds, only : wp
    use dda_load_clock, only : goes_on_at, has_path, set_back, set_forward
-   use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : longest_motion
-   use dda_verdict, only : has_fallen, verdict
    implicit none
-   private
-
-   public :: follow_clock
 
    !> Free fall in a step with prescribed displacements, over these displacements: their inertia
    !> must not throw the blocks about
@@ -25,14 +16,9 @@ module dda_path_run
 
 contains
 
-   !> Let the clock of a static run go on where the blocks are at rest before the end of its
-   !> path, and back where they do not come to rest, or leap
-   pure subroutine follow_clock(run, answer, error, album)
-      type(run_t), intent(inout) :: run
-      !> One of verdict; becomes undecided where the run goes on
-      integer, intent(inout) :: answer
-      type(error_t), allocatable, intent(inout) :: error
-      type(album_t), intent(inout), optional :: album  !! Pictures of the run
+   !> Let the clock of a static run go on where the blocks are at rest before the end of its path,
+   !> and back where they do not come to rest, or leap
+   module procedure follow_clock
       logical :: falls, has_leapt, returned
 
       if (.not. has_path(run%march%clock)) return
@@ -57,7 +43,7 @@ contains
       if (.not. goes_on_at(run%march%clock)) return
       answer = verdict%undecided
       call leave_rest(run, album)
-   end subroutine follow_clock
+   end procedure follow_clock
 
    !> Whether the blocks have moved in a stride by more than the stride before lets expect
    pure logical function leaps(run)
@@ -165,4 +151,4 @@ contains
       march%dt = min(march%longest, march%dt)
    end subroutine set_interval
 
-end module dda_path_run
+end submodule dda_path_run

@@ -1,33 +1,19 @@
 !> How a run begins and ends, and what its outcome says
-module dda_run_end
+submodule (dda_forward) dda_run_end
    use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned
    use dda_contacts, only : raise_springs
    use dda_energy, only : audit_step
-   use dda_error, only : error_t
-   use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : first_interval, measure_scales
    use dda_step_motion, only : begin_step
-   use dda_verdict, only : outcome_t, still_moves_away, verdict
+   use dda_verdict, only : still_moves_away
    implicit none
-   private
-
-   public :: conclude, start_run
 
 contains
 
    !> Equations, scales and first step of a run, which begins or goes on from another
-   pure subroutine start_run(run, error, onward)
-      !> Settings, blocks and contacts in; faces to begin with are set
-      type(run_t), intent(inout) :: run
-      !> Allocated if the system cannot be solved
-      type(error_t), allocatable, intent(out) :: error
-      !> The march of the run that this one goes on from; without steps only its held points
-      !> bear forces
-      type(march_t), intent(in), optional :: onward
-
+   module procedure start_run
       call raise_springs(run%settings, run%system, run%contacts)
       call new_equations(run%system, run%contacts%springs, run%settings, run%equations)
       allocate (run%neighbours(2, size(run%contacts%joint)))
@@ -43,7 +29,7 @@ contains
       else if (run%settings%current .and. run%contacts%springs%give) then
          run%march%drowned = is_drowned(run%system, run%contacts, run%equations)
       end if
-   end subroutine start_run
+   end procedure start_run
 
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
    !> held otherwise than before begin without force. Scales are those of the run as it is now
@@ -62,12 +48,7 @@ contains
    end subroutine go_on
 
    !> What the end of a run says
-   pure subroutine conclude(run, error, outcome)
-      type(run_t), intent(in) :: run
-      type(error_t), allocatable, intent(in) :: error
-      !> How it ended; receives what the march counts, the verdict, and why it is undecided
-      type(outcome_t), intent(inout) :: outcome
-
+   module procedure conclude
       associate (march => run%march)
          outcome%rest_tolerance = run%settings%rest_tolerance
          if (march%free_acceleration > 0.0_wp) then
@@ -95,7 +76,7 @@ contains
       else if (outcome%verdict == verdict%undecided) then
          outcome%reason = "step limit reached; neither equilibrium nor collapse established"
       end if
-   end subroutine conclude
+   end procedure conclude
 
    !> What the end of a dynamic run says
    pure subroutine conclude_in_time(run, outcome)
@@ -114,4 +95,4 @@ contains
       end if
    end subroutine conclude_in_time
 
-end module dda_run_end
+end submodule dda_run_end
