@@ -4,19 +4,13 @@
 !> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
 !> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
 !> Tarnow 1992, ZAMP 43, 757-792).
-module dda_curved_motion
-   use dda_block_inertia, only : packed_velocity
+submodule (dda_step_motion) dda_curved_motion
    use dda_block_update, only : displace_blocks
    use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
-   use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : run_t
    use dda_step_state, only : step_state_t
    implicit none
-   private
-
-   public :: foresee_curves, follow_curves
 
    !> Most passes of the correction
    integer, parameter :: max_passes = 8
@@ -32,8 +26,7 @@ module dda_curved_motion
 contains
 
    !> Begin with the rows of blocks that go on as they are
-   pure subroutine foresee_curves(run)
-      type(run_t), intent(inout) :: run
+   module procedure foresee_curves
       real(wp), dimension(size(run%step%state%motion, 1), size(run%step%state%motion, 2)) :: motion
       real(wp) :: error
 
@@ -42,12 +35,11 @@ contains
       run%step%state%increment = 0.0_wp
       call see_curves(run, motion, error)
       call take_turned_rows(run, motion)
-   end subroutine foresee_curves
+   end procedure foresee_curves
 
-   !> Settle the contacts again with rows of the motion that was found, until closed contacts
-   !> have no gap at the end of the step; blocks and joints there are set
-   pure subroutine follow_curves(run)
-      type(run_t), intent(inout) :: run
+   !> Settle the contacts again with rows of the motion that was found, until closed contacts have
+   !> no gap at the end of the step
+   module procedure follow_curves
       type(step_state_t) :: last
       real(wp) :: curve(3, size(run%contacts%joint)), size_of, error
       type(joint_springs_t) :: springs
@@ -77,7 +69,7 @@ contains
             return
          end do
       end associate
-   end subroutine follow_curves
+   end procedure follow_curves
 
    !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
    pure subroutine see_curves(run, motion, error)
@@ -165,4 +157,4 @@ contains
       if (abs(turn) > 1.0e-3_wp) turn_ratio = 2.0_wp*tan(turn/2.0_wp)/turn
    end function turn_ratio
 
-end module dda_curved_motion
+end submodule dda_curved_motion

@@ -7,8 +7,6 @@ module dda_step
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_at_rest, only : rest
-   use dda_step_check, only : check_impact, check_motion, check_speeds, retry
    use dda_step_context, only : in_time, run_t, step_outcome_t
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
@@ -17,7 +15,51 @@ module dda_step
    implicit none
    private
 
-   public :: advance
+   public :: advance, check_axes, check_impact, retry
+
+   interface
+
+      !> A step of blocks that stand still, or are found to: nothing moves in it
+      pure module subroutine rest(run, still)
+         type(run_t), intent(inout) :: run
+         logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
+      end subroutine rest
+
+      !> Check the motion of a try: settled, short enough, within its margins, without an impact
+      !> inside, by the right axes. What the first check says that it does not pass
+      pure type(step_outcome_t) module function check_motion(run) result(outcome)
+         type(run_t), intent(in) :: run
+      end function check_motion
+
+      !> Check the velocities of a try: settled, and no corner inside a neighbour
+      pure type(step_outcome_t) module function check_speeds(run) result(outcome)
+         type(run_t), intent(in) :: run
+      end function check_speeds
+
+      !> Change for the next try what the checks ask for: its length, margins, axes
+      pure module subroutine retry(run, outcome)
+         type(run_t), intent(inout) :: run
+         type(step_outcome_t), intent(in) :: outcome
+      end subroutine retry
+
+      !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
+      !> would go in by depends on the way that both take. A line that has held off a block which
+      !> turns out to be apart was the wrong one, and so was one that has let it in: they are chosen
+      !> anew by the motion; if blocks still enter one another the step is cut, and if some are
+      !> still held off in thin air, they are
+      pure type(step_outcome_t) module function check_axes(run) result(outcome)
+         type(run_t), intent(in) :: run
+      end function check_axes
+
+      !> Check that no open contact closes fast within the step, for the speed at that very moment
+      !> counts, and the time that is left after it; a step in which one would ends when the
+      !> two blocks, if nothing else touched them, are near enough to count as touching. A solved
+      !> step in which forces have closed one before its time is halved
+      pure type(step_outcome_t) module function check_impact(run) result(outcome)
+         type(run_t), intent(in) :: run
+      end function check_impact
+
+   end interface
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40

@@ -1,20 +1,14 @@
 !> Steps in which blocks come to rest, or go on standing
-module dda_step_at_rest
+submodule (dda_step) dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
-   use dda_block_update, only : carry_over, displace_blocks
-   use dda_energy, only : audit_step
-   use dda_kinds, only : wp
+   use dda_block_update, only : displace_blocks
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : add_forces
-   use dda_step_context, only : in_time, run_state_t, run_t
-   use dda_step_motion, only : assemble_step, begin_step, place_contacts, predict_step, &
-      & solve_contacts
-   use dda_velocity, only : solve_impacts, stiffen_contacts
+   use dda_step_context, only : run_state_t
+   use dda_step_motion, only : begin_step
+   use dda_velocity, only : stiffen_contacts
    implicit none
-   private
-
-   public :: rest
 
    !> Slow blocks are tried for rest after so many steps, after twice as many, and so on until every
    !> so many
@@ -36,10 +30,7 @@ module dda_step_at_rest
 contains
 
    !> A step of blocks that stand still, or are found to: nothing moves in it
-   pure subroutine rest(run, still)
-      type(run_t), intent(inout) :: run
-      logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
-
+   module procedure rest
       still = .false.
       if (.not. in_time(run)) return
       call stands_still(run, still)
@@ -71,7 +62,7 @@ contains
       run%march%steps = run%march%steps + 1
       run%march%time = run%march%time + run%step%dt
       call audit_step(run)
-   end subroutine rest
+   end procedure rest
 
    !> Bring blocks to rest whose speeds may be what contact forces leave: finer forces take all
    !> speed in few steps, but not of what slides without resistance, and then balance the loads.
@@ -216,4 +207,4 @@ contains
       end associate
       still = .true.
    end subroutine stands_still
-end module dda_step_at_rest
+end submodule dda_step_at_rest

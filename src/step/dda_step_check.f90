@@ -1,21 +1,17 @@
 !> Whether a try of a step counts, and what the next try changes if it does not
-module dda_step_check
+submodule (dda_step) dda_step_check
    use dda_block_inertia, only : kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : contacts_t
-   use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : in_time, near_gap, run_t, step_outcome_t
+   use dda_step_context, only : near_gap
    use dda_step_interval, only : check_length
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
    use dda_step_state, only : equations_t
    implicit none
-   private
-
-   public :: check_axes, check_impact, check_motion, check_speeds, retry
 
    !> Gap or depth that is no matter, over the size of the smaller block
    real(wp), parameter :: no_matter = 1.0e-6_wp
@@ -32,10 +28,8 @@ module dda_step_check
 
 contains
 
-   !> Check the motion of a try: settled, short enough, within its margins, without an impact
-   !> inside, by the right axes. What the first check says that it does not pass
-   pure type(step_outcome_t) function check_motion(run) result(outcome)
-      type(run_t), intent(in) :: run
+   !> Check the motion of a try
+   module procedure check_motion
       logical :: searched
 
       searched = run%contacts%searched .and. run%settings%current
@@ -44,16 +38,14 @@ contains
       if (.not. in_time(run)) return
       if (outcome%accepted) outcome = check_impact(run)
       if (outcome%accepted .and. searched) outcome = check_axes(run)
-   end function check_motion
+   end procedure check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
-   pure type(step_outcome_t) function check_speeds(run) result(outcome)
-      type(run_t), intent(in) :: run
-
+   module procedure check_speeds
       outcome = step_outcome_t(accepted=run%step%has_velocity, dt=run%step%dt)
       if (.not. outcome%accepted) outcome = half_step(run)
       if (outcome%accepted .and. run%contacts%searched) outcome = check_penetration(run)
-   end function check_speeds
+   end procedure check_speeds
 
    !> Try half the step
    pure type(step_outcome_t) function half_step(run)
@@ -63,10 +55,7 @@ contains
    end function half_step
 
    !> Change for the next try what the checks ask for: its length, margins, axes
-   pure subroutine retry(run, outcome)
-      type(run_t), intent(inout) :: run
-      type(step_outcome_t), intent(in) :: outcome
-
+   module procedure retry
       associate (step => run%step)
          if (outcome%dt < step%dt) step%choices = 0
          run%march%dt = outcome%dt
@@ -79,15 +68,10 @@ contains
          step%choices = step%choices + 1
          step%travel = travel_by(run%system, step%state%motion)
       end associate
-   end subroutine retry
+   end procedure retry
 
-   !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
-   !> would go in by depends on the way that both take. A line that has held off a block which
-   !> turns out to be apart was the wrong one, and so was one that has let it in: they are chosen
-   !> anew by the motion; if blocks still enter one another the step is cut, and if some are
-   !> still held off in thin air, they are
-   pure type(step_outcome_t) function check_axes(run) result(outcome)
-      type(run_t), intent(in) :: run
+   !> Check the separating axes of a settled step
+   module procedure check_axes
       real(wp) :: before, gap, matters, told
       logical :: entered, held_off
       integer :: j
@@ -115,7 +99,7 @@ contains
          if (outcome%accepted .and. entered .and. step%dt > shortest*run%march%longest) &
             & outcome = half_step(run)
       end associate
-   end function check_axes
+   end procedure check_axes
 
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, by another edge than that of their contact, where a block with a notch is one of
@@ -155,11 +139,8 @@ contains
    end function depth
 
    !> Check that no open contact closes fast within the step, for the speed at that very moment
-   !> counts, and the time that is left after it; a step in which one would ends when the
-   !> two blocks, if nothing else touched them, are near enough to count as touching. A solved
-   !> step in which forces have closed one before its time is halved
-   pure type(step_outcome_t) function check_impact(run) result(outcome)
-      type(run_t), intent(in) :: run
+   !> counts, and the time that is left after it
+   module procedure check_impact
       real(wp), dimension(3, size(run%contacts%joint)) :: speed, acceleration
       real(wp) :: near, earliest, least, meeting, time
       logical :: solved
@@ -191,7 +172,7 @@ contains
       outcome = step_outcome_t(accepted=earliest > merge(2.0_wp, 0.999_wp, solved)*run%step%dt, &
          & dt=run%step%dt)
       if (.not. outcome%accepted) outcome%dt = merge(run%step%dt/2.0_wp, earliest, solved)
-   end function check_impact
+   end procedure check_impact
 
    !> Accelerations of the blocks if nothing touched them
    pure function free_accelerations(equations) result(free)
@@ -237,4 +218,4 @@ contains
       if (root > 0.0_wp) falling_time = 2.0_wp*way/root
    end function falling_time
 
-end module dda_step_check
+end submodule dda_step_check
