@@ -10,18 +10,37 @@
 !> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
 !> 1992), of few joints with more correctors where products that stray shorten the step (Gondzio
 !> 1996). It begins with the forces of the step before.
-module dda_contact_interior
-   use dda_contact_types, only : joint_springs_t
-   use dda_contact_view, only : contact_view_t
-   use dda_face_passes, only : settle_faces, settle_many_faces
-   use dda_interior_problem, only : distances, factor_springs, interior_t, many, openings, &
-      & pose, problem_t, respond, see_lack
-   use dda_kinds, only : wp
-   use dda_step_state, only : equations_t
+submodule (dda_multipliers:dda_contact_sweeps) dda_contact_interior
+   use dda_interior_problem, only : distances, factor_springs, interior_t, openings, pose, &
+      & problem_t, respond, see_lack
    implicit none
-   private
 
-   public :: keep_to_faces, solve_interior
+   interface
+
+      !> Find forces and motion whose faces agree, from those of an iterate
+      pure module subroutine settle_faces(p, x, passes, agreed)
+         type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
+         type(interior_t), intent(inout) :: x
+         integer, intent(inout) :: passes     !! Factorisations so far
+         logical, intent(out) :: agreed       !! Whether the faces agree
+      end subroutine settle_faces
+
+      !> The same of many joints, which rather end than keep to the way that the loads have led
+      !> them: with ever firmer springs, as far as these agree
+      pure module subroutine settle_many_faces(p, hasty, x, passes, agreed, near)
+         !> The problem; the size of a force is given, its springs are as they were in the end
+         type(problem_t), intent(inout) :: p
+         !> Whether joints are so many that sweeps rather go on where faces do not agree at once
+         logical, intent(in) :: hasty
+         type(interior_t), intent(inout) :: x
+         integer, intent(inout) :: passes
+         !> Whether the faces agree with springs as soft as those of few joints at the least
+         logical, intent(out) :: agreed
+         !> Whether they nearly agree at the least
+         logical, intent(out) :: near
+      end subroutine settle_many_faces
+
+   end interface
 
    !> What slack and flow begin with at the least, over the size of a force
    real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 2.0e-1_wp
@@ -50,30 +69,8 @@ module dda_contact_interior
 
 contains
 
-   !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
-   !> the blocks those nearest to the ones before
-   pure subroutine keep_to_faces(equations, springs, view, joint, hasty, fineness, before, moved, &
-      & force, passes, agreed)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      !> Numbers of the joints: (n)
-      integer, intent(in) :: joint(:)
-      !> Whether sweeps rather go on where joints are so many that faces take as long
-      logical, intent(in) :: hasty
-      !> How much smaller than usual forces must be that faces leave
-      real(wp), intent(in) :: fineness
-      !> Forces of all joints in the step before: (3, n_joint) [N/m]
-      real(wp), intent(in) :: before(:, :)
-      !> Motion of all blocks by these: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: moved(:, :)
-      !> Forces of all joints; those of these joints are set if they agree, or nearly where
-      !> joints are very many: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Factorisations so far
-      integer, intent(inout) :: passes
-      !> Whether forces and faces agree
-      logical, intent(out) :: agreed
+   !> Forces of some joints if these keep nearly to the faces that they had
+   module procedure keep_to_faces
       type(problem_t) :: p
       type(interior_t) :: x
       logical :: near
@@ -88,24 +85,10 @@ contains
          near = agreed
       end if
       if (near) call take_forces(x, p, force)
-   end subroutine keep_to_faces
+   end procedure keep_to_faces
 
    !> Forces of some joints, wherever the search for them begins
-   pure subroutine solve_interior(equations, springs, view, joint, left, before, force, motion, &
-      & passes, agreed)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      integer, intent(in) :: joint(:)
-      !> Gap that springs of many joints may leave [m]
-      real(wp), intent(in) :: left
-      real(wp), intent(in) :: before(:, :)
-      !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of all blocks by these: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: motion(:, :)
-      integer, intent(inout) :: passes
-      logical, intent(out) :: agreed
+   module procedure solve_interior
       type(problem_t) :: p
       type(interior_t) :: on_faces, x
 
@@ -120,7 +103,7 @@ contains
       call settle_faces(p, on_faces, passes, agreed)
       if (agreed) x = on_faces
       call take_forces(x, p, force)
-   end subroutine solve_interior
+   end procedure solve_interior
 
    !> Iterate from slack and flow to the iterate that comes nearest to the law of contact
    pure subroutine iterate(force, motion, p, x, passes)
@@ -375,4 +358,4 @@ contains
       end do
    end subroutine take_forces
 
-end module dda_contact_interior
+end submodule dda_contact_interior

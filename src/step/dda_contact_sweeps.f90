@@ -12,22 +12,115 @@
 !> itself, and those that would take long go on by interior springs (`dda_contact_interior`).
 !>
 !> Equation (M5) of docs/method.md
-module dda_contact_sweeps
-   use dda_contact_interior, only : keep_to_faces, solve_interior
-   use dda_contact_types, only : joint_springs_t, unbounded
+submodule (dda_multipliers) dda_contact_sweeps
+   use dda_contact_types, only : unbounded
    use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
-   use dda_group_sweeps, only : coarsest, sweep_group, sweeps_for, sweeps_t, vast
    use dda_interior_problem, only : many
-   use dda_kinds, only : wp
    use dda_small_systems, only : solved
    use dda_sort, only : list_by_owner
    use dda_spring_products, only : relative_displacement
-   use dda_step_state, only : equations_t, step_state_t
    implicit none
-   private
 
-   public :: group_joints, sweep_contacts
+   !> What a group is swept for
+   type :: sweeps_for_enum
+      integer :: a_look = 0    !! To see whether its forces stay
+      integer :: rounding = 1  !! To rounding
+      integer :: haste = 2     !! To see whether it settles soon
+      integer :: patience = 3  !! Until no step notices what is left
+      integer :: the_rest = 4  !! To make good what interior springs leave
+      integer :: the_last = 5  !! The same where more may be left
+      integer :: the_end = 6   !! The same where a longer step has failed by what was left
+   end type sweeps_for_enum
+
+   !> Names of what a group is swept for
+   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
+
+   !> What sweeps work on
+   type :: sweeps_t
+      !> How the blocks answer
+      type(contact_view_t) :: view
+      !> Gap that rounding can make [m]
+      real(wp) :: noise = 0.0_wp
+      !> Changes that count as none, of a force [N/m] and of a gap [m]
+      real(wp) :: enough(2) = 0.0_wp
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> That by the forces before: (n_dof, n_equation) [m]
+      real(wp), allocatable :: moved(:, :)
+   end type sweeps_t
+
+   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
+   !> end wherever they are, and only the firmest springs are tried before them
+   integer, parameter :: vast = 2000
+
+   !> Multiple of a change that counts as none that will do where more sweeps bring no less without
+   !> haste either, or where many joints move
+   real(wp), parameter :: coarsest = 5.0e3_wp
+
+   interface
+
+      !> Forces of some joints if these keep nearly to the faces that they had: of all forces that
+      !> stop the blocks those nearest to the ones before
+      pure module subroutine keep_to_faces(equations, springs, view, joint, hasty, fineness, &
+         & before, moved, force, passes, agreed)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> Numbers of the joints: (n)
+         integer, intent(in) :: joint(:)
+         !> Whether sweeps rather go on where joints are so many that faces take as long
+         logical, intent(in) :: hasty
+         !> How much smaller than usual forces must be that faces leave
+         real(wp), intent(in) :: fineness
+         !> Forces of all joints in the step before: (3, n_joint) [N/m]
+         real(wp), intent(in) :: before(:, :)
+         !> Motion of all blocks by these: (n_dof, n_equation) [m]
+         real(wp), intent(in) :: moved(:, :)
+         !> Forces of all joints; those of these joints are set if they agree, or nearly where
+         !> joints are very many: (3, n_joint) [N/m]
+         real(wp), intent(inout) :: force(:, :)
+         !> Factorisations so far
+         integer, intent(inout) :: passes
+         !> Whether forces and faces agree
+         logical, intent(out) :: agreed
+      end subroutine keep_to_faces
+
+      !> Forces of some joints, wherever the search for them begins
+      pure module subroutine solve_interior(equations, springs, view, joint, left, before, force, &
+         & motion, passes, agreed)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         integer, intent(in) :: joint(:)
+         !> Gap that springs of many joints may leave [m]
+         real(wp), intent(in) :: left
+         real(wp), intent(in) :: before(:, :)
+         !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
+         real(wp), intent(inout) :: force(:, :)
+         !> Motion of all blocks by these: (n_dof, n_equation) [m]
+         real(wp), intent(in) :: motion(:, :)
+         integer, intent(inout) :: passes
+         logical, intent(out) :: agreed
+      end subroutine solve_interior
+
+      !> Sweep one group until nothing changes, or until that is seen to take too long
+      pure module subroutine sweep_group(springs, joint, purpose, enough, sweeps, settled)
+         type(joint_springs_t), intent(in) :: springs
+         !> Joints of the group: (n)
+         integer, intent(in) :: joint(:)
+         !> One of sweeps_for
+         integer, intent(in) :: purpose
+         !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
+         real(wp), intent(in) :: enough(2)
+         type(sweeps_t), intent(inout) :: sweeps
+         !> Whether it is settled
+         logical, intent(out) :: settled
+      end subroutine sweep_group
+
+   end interface
 
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
@@ -43,13 +136,7 @@ module dda_contact_sweeps
 contains
 
    !> Settle contact forces and motion of one step, or begin to
-   pure subroutine sweep_contacts(equations, springs, state)
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints; their stiffness only measures gaps here
-      type(joint_springs_t), intent(in) :: springs
-      !> Forces and trial forces to begin with in; motion, forces and faces out, as far as they
-      !> came
-      type(step_state_t), intent(inout) :: state
+   module procedure sweep_contacts
       type(sweeps_t) :: sweeps
       integer, allocatable :: joint(:)
       integer :: begun, first(size(springs%stiffness) + 1), g, most, n
@@ -84,7 +171,7 @@ contains
       state%passes = begun + most + 1
       state%settled = all(settled(:n))
       call keep_forces(equations, springs, sweeps, state)
-   end subroutine sweep_contacts
+   end procedure sweep_contacts
 
    !> Settle one group: forces that stay need no more than a look; those nearest to the ones before
    !> are found by the faces that these had, or else by interior springs; many joints that move are
@@ -248,22 +335,13 @@ contains
    end function face_of
 
    !> Groups of joints whose blocks hang together: each is a problem of its own
-   pure subroutine group_joints(springs, n_equation, n, first, joint)
-      type(joint_springs_t), intent(in) :: springs
-      !> Number of movable blocks
-      integer, intent(in) :: n_equation
-      !> Number of groups
-      integer, intent(out) :: n
-      !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
-      integer, intent(out) :: first(:)
-      !> The joints, group by group, rising in each: (n_joint)
-      integer, allocatable, intent(out) :: joint(:)
+   module procedure group_joints
       integer :: group(size(springs%equation, 2))
 
       call number_groups(springs, n_equation, n, group)
       first = size(group) + 1
       call list_by_owner(group, first(:n + 1), joint)
-   end subroutine group_joints
+   end procedure group_joints
 
    !> Which group each joint is of
    pure subroutine number_groups(springs, n_equation, n, group)
@@ -304,4 +382,4 @@ contains
          end do
       end function root_of
    end subroutine number_groups
-end module dda_contact_sweeps
+end submodule dda_contact_sweeps

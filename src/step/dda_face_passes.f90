@@ -4,14 +4,9 @@
 !> linear equations, unsymmetric where joints slide; joints that disagree change their faces, all at
 !> once. Near the answer that ends after one to three passes and leaves rounding; far from it, it
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
-module dda_face_passes
-   use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
-   use dda_interior_problem, only : factor_springs, interior_t, problem_t, respond, see_lack
-   use dda_kinds, only : wp
+submodule (dda_multipliers:dda_contact_interior) dda_face_passes
+   use dda_friction_cone, only : joint_face_t, shear_bound
    implicit none
-   private
-
-   public :: settle_faces, settle_many_faces
 
    !> Compliance of a force that does not follow its opening, over that of the blocks
    real(wp), parameter :: free = 1.0e20_wp
@@ -42,11 +37,7 @@ module dda_face_passes
 contains
 
    !> Find forces and motion whose faces agree, from those of an iterate
-   pure subroutine settle_faces(p, x, passes, agreed)
-      type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
-      type(interior_t), intent(inout) :: x
-      integer, intent(inout) :: passes     !! Factorisations so far
-      logical, intent(out) :: agreed       !! Whether the faces agree
+   module procedure settle_faces
       type(joint_face_t) :: face(size(p%joint))
       real(wp) :: last_rest, rest
       integer :: changes, last, pass, turn
@@ -83,21 +74,10 @@ contains
          end if
          last = changes
       end do
-   end subroutine settle_faces
+   end procedure settle_faces
 
-   !> The same of many joints, which rather end than keep to the way that the loads have led them:
-   !> with ever firmer springs, as far as these agree
-   pure subroutine settle_many_faces(p, hasty, x, passes, agreed, near)
-      !> The problem; the size of a force is given, its springs are as they were in the end
-      type(problem_t), intent(inout) :: p
-      !> Whether joints are so many that sweeps rather go on where faces do not agree at once
-      logical, intent(in) :: hasty
-      type(interior_t), intent(inout) :: x
-      integer, intent(inout) :: passes
-      !> Whether the faces agree with springs as soft as those of few joints at the least
-      logical, intent(out) :: agreed
-      !> Whether they nearly agree at the least
-      logical, intent(out) :: near
+   !> The same of many joints, which rather end than keep to the way that the loads have led them
+   module procedure settle_many_faces
       type(joint_face_t) :: face(size(p%joint))
       type(interior_t) :: firmer
       real(wp) :: soft(3, size(p%joint))
@@ -121,7 +101,7 @@ contains
       end do
       near = near .or. agreed
       p%soft = soft
-   end subroutine settle_many_faces
+   end procedure settle_many_faces
 
    !> Solve with the faces as they are and change those that disagree, again and again
    pure subroutine pass_faces(p, hasty, x, face, passes, changes)
@@ -248,4 +228,4 @@ contains
       end do
    end subroutine change_faces
 
-end module dda_face_passes
+end submodule dda_face_passes

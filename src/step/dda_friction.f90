@@ -2,25 +2,11 @@
 !> that has converged, never by one that has not
 !>
 !> Equation (M4) of docs/method.md
-module dda_friction
-   use dda_contact_types, only : joint_springs_t
-   use dda_friction_cone, only : cone_kind, cone_t
-   use dda_kinds, only : wp
-   use dda_open_close, only : iterate_open_close
+submodule (dda_multipliers) dda_friction
+   use dda_friction_cone, only : cone_t
    use dda_small_systems, only : least_squares
-   use dda_step_state, only : equations_t, force_noise, step_state_t
+   use dda_step_state, only : force_noise
    implicit none
-   private
-
-   public :: anderson_t, iterate_friction, accelerate, coulomb_bound
-
-   !> What is known of a fixed-point iteration
-   type :: anderson_t
-      integer :: kept = 0                   !! Number of remembered points
-      real(wp), allocatable :: point(:, :)  !! The points, the newest last: (n, kept or more)
-      !> How the iteration would change each of them: (n, kept or more)
-      real(wp), allocatable :: change(:, :)
-   end type anderson_t
 
    !> Most corrections of the bounds in one step
    integer, parameter :: max_corrections = 200
@@ -34,20 +20,8 @@ module dda_friction
 
 contains
 
-   !> Find the motion and the states of one step under Coulomb friction. In time the bounds begin
-   !> with the normal forces of the step before, and faces as they were: what changes little costs
-   !> little, and what slid goes on sliding. Else, and where that does not settle, no joint may
-   !> slide at first
-   pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
-      !> Blocks assembled; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces before Newton's method takes over
-      integer, intent(in) :: max_changes
-      !> Whether the step goes on from the forces of the one before
-      logical, intent(in) :: goes_on
-      !> Faces to begin with in, motion and joints out
-      type(step_state_t), intent(inout) :: state
+   !> Find the motion and the states of one step under Coulomb friction
+   module procedure iterate_friction
       type(step_state_t) :: begun
       real(wp) :: bound(size(springs%stiffness)), tolerance
 
@@ -69,7 +43,7 @@ contains
       if (all(abs(state%force(3, :)) <= bound + tolerance &
          & .or. springs%cone%kind == cone_kind%no_slip)) return
       call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
-   end subroutine iterate_friction
+   end procedure iterate_friction
 
    !> Bound all shear forces by friction times the normal forces of the pass before, until these no
    !> longer change. Where blocks fall so far that rounding hides smaller changes, the bounds that
@@ -112,13 +86,8 @@ contains
       state%settled = .false.
    end subroutine follow_bounds
 
-   !> Anderson's acceleration of a fixed-point iteration: the mixture of the remembered points whose
-   !> mixed change is least, moved by that change
-   pure subroutine accelerate(known, point, change, next)
-      type(anderson_t), intent(inout) :: known
-      real(wp), intent(in) :: point(:)   !! The last point: (n)
-      real(wp), intent(in) :: change(:)  !! How the iteration would change it: (n)
-      real(wp), intent(out) :: next(:)   !! The point to try next: (n)
+   !> Anderson's acceleration of a fixed-point iteration
+   module procedure accelerate
       integer :: k
 
       if (.not. allocated(known%point)) allocate (known%point(size(point), memory + 1), &
@@ -138,16 +107,11 @@ contains
          & turns => spread(change, 2, k - 1) - known%change(:, :k - 1))
          next = next - matmul(steps + turns, least_squares(turns, change, negligible))
       end associate
-   end subroutine accelerate
+   end procedure accelerate
 
-   !> Largest shear forces that the joints carry with the normal forces that they have; 0 where they
-   !> cannot slide
-   pure function coulomb_bound(springs, state) result(bound)
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(in) :: state
-      real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
-
+   !> Largest shear forces that the joints carry with the normal forces that they have
+   module procedure coulomb_bound
       bound = springs%cone%limit + springs%cone%friction &
          & *sum(state%force(1:2, :) + springs%shift(1:2, :), dim=1)
-   end function coulomb_bound
-end module dda_friction
+   end procedure coulomb_bound
+end submodule dda_friction

@@ -2,60 +2,16 @@
 !> forces that close its gaps and stop its slip, as far as the law of contact allows
 !>
 !> Equation (M5) of docs/method.md
-module dda_group_sweeps
-   use dda_contact_types, only : joint_springs_t
-   use dda_contact_view, only : contact_view_t
-   use dda_friction_cone, only : shear_bound
-   use dda_interior_problem, only : many
-   use dda_kinds, only : wp
+submodule (dda_multipliers:dda_contact_sweeps) dda_group_sweeps
    implicit none
-   private
-
-   public :: coarsest, sweep_group, sweeps_for, sweeps_t, vast
-
-   !> What a group is swept for
-   type :: sweeps_for_enum
-      integer :: a_look = 0    !! To see whether its forces stay
-      integer :: rounding = 1  !! To rounding
-      integer :: haste = 2     !! To see whether it settles soon
-      integer :: patience = 3  !! Until no step notices what is left
-      integer :: the_rest = 4  !! To make good what interior springs leave
-      integer :: the_last = 5  !! The same where more may be left
-      integer :: the_end = 6   !! The same where a longer step has failed by what was left
-   end type sweeps_for_enum
-
-   !> Names of what a group is swept for
-   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
-
-   !> What sweeps work on
-   type :: sweeps_t
-      !> How the blocks answer
-      type(contact_view_t) :: view
-      !> Gap that rounding can make [m]
-      real(wp) :: noise = 0.0_wp
-      !> Changes that count as none, of a force [N/m] and of a gap [m]
-      real(wp) :: enough(2) = 0.0_wp
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> That by the forces before: (n_dof, n_equation) [m]
-      real(wp), allocatable :: moved(:, :)
-   end type sweeps_t
-
-   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
-   !> end wherever they are, and only the firmest springs are tried before them
-   integer, parameter :: vast = 2000
 
    !> Few blocks settle to rounding in so many sweeps
    integer, parameter :: strictly = 64
    !> Change of a force that counts as none, over the largest of its group: of few joints, lest what
    !> rests creeps and gains energy, and of many
    real(wp), parameter :: no_force = 1.0e-9_wp, no_force_of_many = 1.0e-7_wp
-   !> Multiple of a change that counts as none that will do where more sweeps bring no less
+   !> Multiple of a change that counts as none that will do where sweeps in haste bring no less
    real(wp), parameter :: coarse = 1.0e2_wp
-   !> The same where they bring no less without haste either, or where many joints move
-   real(wp), parameter :: coarsest = 5.0e3_wp
 
    !> After this many sweeps the change must have fallen noticeably
    integer, parameter :: patience = 100
@@ -85,17 +41,7 @@ module dda_group_sweeps
 contains
 
    !> Sweep one group until nothing changes, or until that is seen to take too long
-   pure subroutine sweep_group(springs, joint, purpose, enough, sweeps, settled)
-      type(joint_springs_t), intent(in) :: springs
-      !> Joints of the group: (n)
-      integer, intent(in) :: joint(:)
-      !> One of sweeps_for
-      integer, intent(in) :: purpose
-      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
-      real(wp), intent(in) :: enough(2)
-      type(sweeps_t), intent(inout) :: sweeps
-      !> Whether it is settled
-      logical, intent(out) :: settled
+   module procedure sweep_group
       real(wp) :: before(3, size(joint)), change(2), last, lately, square, way(3, size(joint))
       logical :: active(size(joint)), ended, hasty
       integer :: sweep
@@ -124,7 +70,7 @@ contains
          if (hasty) &
             & call go_on(springs, joint, sweeps%force(:, joint) - before, square, way, sweeps)
       end do
-   end subroutine sweep_group
+   end procedure sweep_group
 
    !> Whether sweeps go on where gaps no longer change less: without haste, or no more
    pure subroutine see_progress(sweep, change, last, hasty, settled, ended)
@@ -341,4 +287,4 @@ contains
       end do
    end subroutine push
 
-end module dda_group_sweeps
+end submodule dda_group_sweeps
