@@ -1,24 +1,11 @@
 !> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
-module dda_cut_points
-   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, cut_model_t, point_kind
-   use dda_error, only : error_t, fatal_error
-   use dda_kinds, only : wp
-   use dda_line_model, only : entities_t, line_model_t
-   use dda_polygon, only : contains_point, polygon_distance
+submodule (dda_cutting) dda_cut_points
+   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, point_kind
+   use dda_line_model, only : entities_t
+   use dda_polygon, only : polygon_distance
    use dda_segment, only : crossing_parameters
-   use dda_text, only : to_text
    use dda_vector, only : along, area_moments, area_moments_t, right_normal
    implicit none
-   private
-
-   public :: block_around, block_boxes, boxes_t, give_materials, place_bolts, place_points
-   public :: remove_holes
-
-   !> Boxes around blocks
-   type :: boxes_t
-      real(wp), allocatable :: low(:, :)   !! Lower left corners: (2, n) [m]
-      real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, n) [m]
-   end type boxes_t
 
    !> How far inside its block the point of a fixed line lies, over the size of the model
    real(wp), parameter :: fixed_depth = 0.005_wp
@@ -26,8 +13,7 @@ module dda_cut_points
 contains
 
    !> Boxes around all blocks
-   pure type(boxes_t) function block_boxes(cut)
-      type(cut_model_t), intent(in) :: cut
+   module procedure block_boxes
       integer :: b, n
 
       n = size(cut%area)
@@ -38,14 +24,10 @@ contains
             block_boxes%high(:, b) = maxval(vertex, dim=2)
          end associate
       end do
-   end function block_boxes
+   end procedure block_boxes
 
-   !> The block that holds a point; if none does, the nearest one within the distance in which
-   !> nodes may have been moved. 0 if there is none
-   pure integer function block_around(cut, boxes, point)
-      type(cut_model_t), intent(in) :: cut
-      type(boxes_t), intent(in) :: boxes
-      real(wp), intent(in) :: point(2)  !! The point, from the origin of the cut: (2) [m]
+   !> The block that holds a point
+   module procedure block_around
       real(wp) :: nearest, here
       integer :: b, next_best
 
@@ -64,13 +46,10 @@ contains
          next_best = b
       end do
       block_around = next_best
-   end function block_around
+   end procedure block_around
 
    !> Take out the blocks that hold hole points (Shi: dc11)
-   pure subroutine remove_holes(model, cut, error)
-      type(line_model_t), intent(in) :: model
-      type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point go
-      type(error_t), allocatable, intent(out) :: error  !! A hole point that lies in no block
+   module procedure remove_holes
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
       type(boxes_t) :: boxes
@@ -111,14 +90,10 @@ contains
          cut%pair(n)%side([1, 3]) = number(cut%pair(k)%side([1, 3]))
       end do
       cut%pair = cut%pair(:n)
-   end subroutine remove_holes
+   end procedure remove_holes
 
-   !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
-   !> crosses, or else the block of its first end (Shi: dc10, dc11)
-   pure subroutine place_points(model, cut, error)
-      type(line_model_t), intent(in) :: model
-      type(cut_model_t), intent(inout) :: cut
-      type(error_t), allocatable, intent(out) :: error
+   !> Points and fixed lines to blocks
+   module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
       integer :: n
@@ -133,7 +108,7 @@ contains
       if (.not. allocated(error)) call add_points(model, model%measured, "measured point", &
          & point_kind%measured, boxes, cut, point, n, error)
       if (.not. allocated(error)) cut%point = point(:n)
-   end subroutine place_points
+   end procedure place_points
 
    !> Points of one kind in their blocks
    pure subroutine add_points(model, entities, what, kind, boxes, cut, point, n, error)
@@ -214,9 +189,7 @@ contains
    end function inside_point
 
    !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
-   pure subroutine place_bolts(model, cut)
-      type(line_model_t), intent(in) :: model
-      type(cut_model_t), intent(inout) :: cut
+   module procedure place_bolts
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
       integer :: i, n, side
@@ -236,14 +209,11 @@ contains
          cut%n_idle_bolts = cut%n_idle_bolts + 1
       end do
       cut%bolt = bolt(:n)
-   end subroutine place_bolts
+   end procedure place_bolts
 
    !> Blocks get the material of the last material line that crosses one of their edges, or that
-   !> starts in them and crosses none; the first material otherwise (Shi: dc13)
-   pure subroutine give_materials(model, cut, error)
-      type(line_model_t), intent(in) :: model
-      type(cut_model_t), intent(inout) :: cut
-      type(error_t), allocatable, intent(out) :: error  !! A material line that meets no block
+   !> starts in them and crosses none
+   module procedure give_materials
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
       integer :: i, n, b
@@ -262,7 +232,7 @@ contains
          if (b == 0) return
          cut%material(b) = model%material_line%material(i)
       end do
-   end subroutine give_materials
+   end procedure give_materials
 
    !> Add a point to a list
    pure subroutine append_point(point, n, new)
@@ -289,4 +259,4 @@ contains
          & //") outside all; move it into one or remove it", model%file, entities%row(i))
    end subroutine no_block
 
-end module dda_cut_points
+end submodule dda_cut_points

@@ -3,16 +3,12 @@
 !> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
 !> dc06).
 module dda_cutting
-   use dda_cut_model, only : cut_model_t, cut_scale
-   use dda_cut_points, only : block_around, block_boxes, boxes_t, give_materials, place_bolts, &
-      & place_points, remove_holes
+   use dda_cut_model, only : cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
    use dda_line_network, only : crossings_t, find_crossings, half_edge_start, join_crossings, &
       & network_t
-   use dda_network_trim, only : blocks_of_loops, cut_trees, drop_close_edges, &
-      & drop_crossing_edges, loops_t
    use dda_polygon, only : contains_point
    use dda_sort, only : sorted_order
    use dda_text, only : to_text
@@ -20,7 +16,103 @@ module dda_cutting
    implicit none
    private
 
-   public :: check_areas, cut_blocks
+   public :: check_areas, cut_blocks, cut_trees, drop_close_edges, drop_crossing_edges, loops_t
+
+   !> Boxes around blocks
+   type :: boxes_t
+      real(wp), allocatable :: low(:, :)   !! Lower left corners: (2, n) [m]
+      real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, n) [m]
+   end type boxes_t
+
+   !> Loops of half-edges. Edge e has the half-edges 2e - 1, from its first node to its second, and
+   !> 2e, back; each has its loop on its left
+   type :: loops_t
+      !> First item of each loop, and one beyond the last: (n_loop + 1)
+      integer, allocatable :: first(:)
+      !> Half-edges, loop by loop
+      integer, allocatable :: half_edge(:)
+      !> Area of each loop, negative where it runs around the outside: (n_loop) [m2]
+      real(wp), allocatable :: area(:)
+   end type loops_t
+
+   interface
+
+      !> Boxes around all blocks
+      pure type(boxes_t) module function block_boxes(cut)
+         type(cut_model_t), intent(in) :: cut
+      end function block_boxes
+
+      !> The block that holds a point; if none does, the nearest one within the distance in which
+      !> nodes may have been moved. 0 if there is none
+      pure integer module function block_around(cut, boxes, point)
+         type(cut_model_t), intent(in) :: cut
+         type(boxes_t), intent(in) :: boxes
+         real(wp), intent(in) :: point(2)  !! The point, from the origin of the cut: (2) [m]
+      end function block_around
+
+      !> Take out the blocks that hold hole points (Shi: dc11)
+      pure module subroutine remove_holes(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point go
+         type(error_t), allocatable, intent(out) :: error  !! A hole point that lies in no block
+      end subroutine remove_holes
+
+      !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
+      !> crosses, or else the block of its first end (Shi: dc10, dc11)
+      pure module subroutine place_points(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine place_points
+
+      !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+      pure module subroutine place_bolts(model, cut)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+      end subroutine place_bolts
+
+      !> Blocks get the material of the last material line that crosses one of their edges, or that
+      !> starts in them and crosses none; the first material otherwise (Shi: dc13)
+      pure module subroutine give_materials(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+         type(error_t), allocatable, intent(out) :: error  !! A material line that meets no block
+      end subroutine give_materials
+
+      !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
+      pure module subroutine cut_trees(network, remarks)
+         type(network_t), intent(inout) :: network
+         type(cut_remarks_t), intent(inout) :: remarks
+      end subroutine cut_trees
+
+      !> Drop one of two edges that cross between their nodes, as happens when nodes were merged:
+      !> the one that is no boundary, else that of the later line (Shi: dc06)
+      pure module subroutine drop_crossing_edges(network, scale, remarks, crossing)
+         type(network_t), intent(inout) :: network
+         type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
+         type(cut_remarks_t), intent(inout) :: remarks
+         !> Two boundary lines that still cross; 0 if none do: (2)
+         integer, intent(out) :: crossing(2)
+      end subroutine drop_crossing_edges
+
+      !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
+      pure module subroutine drop_close_edges(network, scale, remarks)
+         type(network_t), intent(inout) :: network
+         type(cut_scale_t), intent(in) :: scale
+         type(cut_remarks_t), intent(inout) :: remarks
+      end subroutine drop_close_edges
+
+      !> Blocks of the loops that run around an area; scales, points and materials are left to
+      !> others
+      pure module subroutine blocks_of_loops(network, loops, joint, cut)
+         type(network_t), intent(in) :: network
+         type(loops_t), intent(in) :: loops
+         integer, intent(in) :: joint(:)  !! Joint material of each line: (n_line)
+         !> Receives corners, edges and pairs of edges; its scales are set
+         type(cut_model_t), intent(inout) :: cut
+      end subroutine blocks_of_loops
+
+   end interface
 
 contains
 

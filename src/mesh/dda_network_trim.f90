@@ -1,36 +1,17 @@
 !> Edges that bound nothing or stand in the way are taken out of a network (Shi: dc05, dc06). From
 !> loops to blocks: corners on a straight edge go, coincident edges are found (Shi: dc08, dc09)
-module dda_network_trim
+submodule (dda_cutting) dda_network_trim
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
-   use dda_cut_model, only : add_remark, cut_model_t, cut_reason, cut_remarks_t, cut_scale_t, &
-      & edge_pair_t
-   use dda_kinds, only : wp
-   use dda_line_network, only : drop_edge, edge_place, half_edge_start, network_t
+   use dda_cut_model, only : add_remark, cut_reason, edge_pair_t
+   use dda_line_network, only : drop_edge, edge_place
    use dda_segment, only : crossing_parameters, segment_distance
-   use dda_sort, only : list_by_owner, sort_numbers, sorted_order
-   use dda_vector, only : cross
+   use dda_sort, only : list_by_owner, sort_numbers
    implicit none
-   private
-
-   public :: blocks_of_loops, cut_trees, drop_close_edges, drop_crossing_edges, loops_t
-
-   !> Loops of half-edges. Edge e has the half-edges 2e - 1, from its first node to its second, and
-   !> 2e, back; each has its loop on its left
-   type :: loops_t
-      !> First item of each loop, and one beyond the last: (n_loop + 1)
-      integer, allocatable :: first(:)
-      !> Half-edges, loop by loop
-      integer, allocatable :: half_edge(:)
-      !> Area of each loop, negative where it runs around the outside: (n_loop) [m2]
-      real(wp), allocatable :: area(:)
-   end type loops_t
 
 contains
 
    !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
-   pure subroutine cut_trees(network, remarks)
-      type(network_t), intent(inout) :: network
-      type(cut_remarks_t), intent(inout) :: remarks
+   module procedure cut_trees
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
 
@@ -57,16 +38,10 @@ contains
             exit
          end do
       end do
-   end subroutine cut_trees
+   end procedure cut_trees
 
-   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged:
-   !> the one that is no boundary, else that of the later line (Shi: dc06)
-   pure subroutine drop_crossing_edges(network, scale, remarks, crossing)
-      type(network_t), intent(inout) :: network
-      type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
-      type(cut_remarks_t), intent(inout) :: remarks
-      !> Two boundary lines that still cross; 0 if none do: (2)
-      integer, intent(out) :: crossing(2)
+   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged
+   module procedure drop_crossing_edges
       type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
       integer, allocatable :: number(:), near(:)
@@ -91,7 +66,7 @@ contains
             end if
          end do
       end do
-   end subroutine drop_crossing_edges
+   end procedure drop_crossing_edges
 
    !> Whether two edges cross between their nodes
    pure logical function edges_cross(network, reach, edge, first, second)
@@ -111,10 +86,7 @@ contains
    end function edges_cross
 
    !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
-   pure subroutine drop_close_edges(network, scale, remarks)
-      type(network_t), intent(inout) :: network
-      type(cut_scale_t), intent(in) :: scale
-      type(cut_remarks_t), intent(inout) :: remarks
+   module procedure drop_close_edges
       type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
       real(wp) :: point(2)
@@ -142,7 +114,7 @@ contains
          if (blocker(k) > 0) &
             & call drop_edge(network, number(k), cut_reason%too_close, blocker(k), remarks)
       end do
-   end subroutine drop_close_edges
+   end procedure drop_close_edges
 
    !> Edges that were not dropped
    pure subroutine living_edges(network, number, place)
@@ -158,14 +130,8 @@ contains
       end do
    end subroutine living_edges
 
-   !> Blocks of the loops that run around an area; scales, points and materials are left to
-   !> others
-   pure subroutine blocks_of_loops(network, loops, joint, cut)
-      type(network_t), intent(in) :: network
-      type(loops_t), intent(in) :: loops
-      integer, intent(in) :: joint(:)  !! Joint material of each line: (n_line)
-      !> Receives corners, edges and pairs of edges; its scales are set
-      type(cut_model_t), intent(inout) :: cut
+   !> Blocks of the loops that run around an area
+   module procedure blocks_of_loops
       ! block and edge that each half-edge is a part of
       integer, allocatable :: owner(:, :), corner(:)
       real(wp) :: place(4)
@@ -198,7 +164,7 @@ contains
       cut%vertex = cut%vertex(:, :n_vertex)
       cut%edge_joint = cut%edge_joint(:n_vertex)
       call find_pairs(network, owner, joint, cut)
-   end subroutine blocks_of_loops
+   end procedure blocks_of_loops
 
    !> Places in a loop where it turns: a node is no corner if it lies on the straight way from the
    !> corner before it to the next node (Shi: dc09)
@@ -344,4 +310,4 @@ contains
       if (dot_product(way, place(3:4) - pair%place(3:4)) > 0.0_wp) pair%place(3:4) = place(3:4)
    end subroutine join_parts
 
-end module dda_network_trim
+end submodule dda_network_trim
