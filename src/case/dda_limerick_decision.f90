@@ -11,7 +11,7 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
       & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene
-   use dda_limerick_assembly, only : limerick_run_t
+   use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
    use dda_verdict, only : verdict
    implicit none

@@ -16,8 +16,7 @@ module dda_limerick_assembly
    implicit none
    private
 
-   public :: add_contacts, assemble_limerick, couple_blocks, limerick_equations_t
-   public :: limerick_run_t, placed_bolts
+   public :: add_contacts, assemble_limerick, couple_blocks, limerick_equations_t, placed_bolts
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
@@ -31,19 +30,6 @@ module dda_limerick_assembly
       !> Right-hand side, then the motion of the step: (6, n_block)
       real(wp), allocatable :: motion(:, :)
    end type limerick_equations_t
-
-   !> Everything that a run carries from step to step
-   type :: limerick_run_t
-      type(limerick_blocks_t) :: blocks                 !! The blocks
-      type(contact_list_t) :: contacts                  !! Contacts of the last step
-      type(limerick_march_t) :: march                   !! Numbers of the march
-      type(contact_list_t) :: before                    !! Work space: contacts of the step before
-      type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
-      type(limerick_equations_t) :: equations           !! Work space: the equations
-      !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
-      real(wp), allocatable :: moved(:, :)
-      integer, allocatable :: order(:)  !! Work space: blocks from left to right: (n_block)
-   end type limerick_run_t
 
 contains
 

@@ -1,21 +1,9 @@
 !> Contacts by distance and by angle (Shi: df04, df05), from the directions and angles of all
 !> corners (Shi: angl)
-module dda_limerick_detection
-   use dda_kinds, only : degree, wp
-   use dda_limerick_contact, only : append_contact, contact_list_t, limerick_contact_t
-   use dda_limerick_model, only : limerick_blocks_t
+submodule (dda_limerick_step) dda_limerick_detection
+   use dda_kinds, only : degree
+   use dda_limerick_contact, only : append_contact, limerick_contact_t
    implicit none
-   private
-
-   public :: corners_t, entrance_lines, find_limerick_contacts, measure_corners, overlap, turn
-
-   !> Shape of all corners of a step
-   type :: corners_t
-      !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
-      real(wp), allocatable :: direction(:)
-      real(wp), allocatable :: angle(:)   !! Inner angle: (n_vertex) [deg]
-      real(wp), allocatable :: length(:)  !! Length of the edge that starts there: (n_vertex) [m]
-   end type corners_t
 
    !> Corners wider than this are concave [deg]
    real(wp), parameter :: straight = 180.0001_wp
@@ -23,9 +11,7 @@ module dda_limerick_detection
 contains
 
    !> Directions, inner angles and lengths of all corners
-   pure subroutine measure_corners(blocks, corners)
-      type(limerick_blocks_t), intent(in) :: blocks
-      type(corners_t), intent(out) :: corners
+   module procedure measure_corners
       real(wp) :: edge(2)
       integer :: v, n
 
@@ -40,23 +26,15 @@ contains
          corners%angle(v) = turn(corners%direction(v), &
             & corners%direction(blocks%previous(v)) - 180.0_wp)
       end do
-   end subroutine measure_corners
+   end procedure measure_corners
 
    !> Anticlockwise angle from one direction to another
-   pure real(wp) function turn(from, to)
-      real(wp), intent(in) :: from  !! First direction [deg]
-      real(wp), intent(in) :: to    !! Second direction [deg]
-
+   module procedure turn
       turn = modulo(to - from, 360.0_wp)
-   end function turn
+   end procedure turn
 
    !> Whether two sectors overlap by more than is overlooked
-   pure logical function overlap(start_a, angle_a, start_b, angle_b, least)
-      real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
-      real(wp), intent(in) :: angle_a  !! Its angle [deg]
-      real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
-      real(wp), intent(in) :: angle_b  !! Its angle [deg]
-      real(wp), intent(in) :: least    !! What is overlooked [deg]
+   module procedure overlap
       real(wp) :: ray(3), wide
 
       if (angle_a > angle_b) then
@@ -68,16 +46,10 @@ contains
       end if
       ray = modulo(ray, 360.0_wp)
       overlap = any(ray > least .and. ray < wide - least)
-   end function overlap
+   end procedure overlap
 
    !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
-   pure function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
-      type(limerick_blocks_t), intent(in) :: blocks
-      type(corners_t), intent(in) :: corners
-      integer, intent(in) :: i             !! Vertex of the first block
-      integer, intent(in) :: j             !! Vertex of the second block
-      real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
-      integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
+   module procedure entrance_lines
       real(wp) :: start, finish, slack, steep_i, steep_j, steep(2)
 
       slack = 0.3_wp*overlap_deg
@@ -101,7 +73,7 @@ contains
          steep(2) = steepness(corners%direction(blocks%previous(j)))
       end if
       if (steep(1) < steep(2)) line = line(:, [2, 1])
-   end function entrance_lines
+   end procedure entrance_lines
 
    !> How steep a direction is, from 0 to 1
    pure real(wp) function steepness(direction)
@@ -111,13 +83,7 @@ contains
    end function steepness
 
    !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
-   pure subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
-      type(limerick_blocks_t), intent(in) :: blocks
-      real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
-      real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
-      !> Blocks from left to right, as near as the step before left them: (n_block)
-      integer, intent(inout) :: order(:)
-      type(contact_list_t), intent(inout) :: list
+   module procedure find_limerick_contacts
       type(corners_t) :: corners
       real(wp) :: low(2, size(order)), high(2, size(order))
       integer :: i, j, a, b
@@ -141,7 +107,7 @@ contains
             call meet_blocks(blocks, corners, min(a, b), max(a, b), reach, overlap_deg, list)
          end do
       end do
-   end subroutine find_limerick_contacts
+   end procedure find_limerick_contacts
 
    !> Put indices in the order of their keys; quick if they nearly are
    pure subroutine sort_by(key, order)
@@ -319,4 +285,4 @@ contains
       call append_contact(list, settled)
    end subroutine settle
 
-end module dda_limerick_detection
+end submodule dda_limerick_detection

@@ -1,19 +1,13 @@
 !> The open-close loop of the original (Shi: df18 to df22)
-module dda_limerick_open_close
+submodule (dda_limerick_step) dda_limerick_open_close
    use dda_block_factor, only : factorise, substitute
    use dda_deformation, only : displacement_matrix
-   use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
-   use dda_limerick_assembly, only : add_contacts, limerick_run_t
-   use dda_limerick_contact, only : contact_spring_t, limerick_contact_t, place_shear_spring, &
-      & projection
-   use dda_limerick_model, only : contact_law, limerick_blocks_t, limerick_march_t, &
-      & limerick_model_t, limerick_state
+   use dda_limerick_assembly, only : add_contacts
+   use dda_limerick_contact, only : limerick_contact_t, place_shear_spring, projection
+   use dda_limerick_model, only : contact_law
    use dda_material, only : joint_law_t
    implicit none
-   private
-
-   public :: open_and_close
 
    !> Most passes of one attempt
    integer, parameter :: max_passes = 8
@@ -25,15 +19,7 @@ module dda_limerick_open_close
 contains
 
    !> Solve and judge until no contact opens or closes
-   pure subroutine open_and_close(model, run, first_pass, settled)
-      type(limerick_model_t), intent(in) :: model
-      !> The run; states of its contacts are changed, and the motion is set; a shear spring is
-      !> set anew where a contact closes
-      type(limerick_run_t), intent(inout) :: run
-      !> Whether nothing was solved in this step yet; then it was
-      logical, intent(inout) :: first_pass
-      !> Whether no contact opened or closed in the last pass
-      logical, intent(out) :: settled
+   module procedure open_and_close
       integer :: pass, c
 
       settled = .false.
@@ -59,7 +45,7 @@ contains
             if (settled) return
          end do
       end associate
-   end subroutine open_and_close
+   end procedure open_and_close
 
    !> The state of one contact after a solution
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
@@ -167,4 +153,4 @@ contains
       call place_shear_spring(blocks, contact, spring)
    end subroutine set_shear_spring
 
-end module dda_limerick_open_close
+end submodule dda_limerick_open_close

@@ -5,8 +5,7 @@ module dda_limerick_run
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_model_t, limerick_state, loads_end, new_blocks, new_march
-   use dda_limerick_assembly, only : limerick_run_t
-   use dda_limerick_step, only : advance_limerick
+   use dda_limerick_step, only : advance_limerick, limerick_run_t
    use dda_material, only : friction_coefficient
    implicit none
    private

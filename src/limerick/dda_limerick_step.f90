@@ -4,19 +4,96 @@ module dda_limerick_step
    use dda_bar_springs, only : elongation_by
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t, &
-      & limerick_run_t
-   use dda_limerick_contact, only : begin_contacts, contact_list_t, place_springs, &
-      & transfer_contacts
-   use dda_limerick_detection, only : find_limerick_contacts
-   use dda_limerick_model, only : force_at, limerick_march_t, limerick_model_t, limerick_state, &
-      & measure_blocks, next_record
-   use dda_limerick_open_close, only : open_and_close
+   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t
+   use dda_limerick_contact, only : begin_contacts, contact_list_t, contact_spring_t, &
+      & place_springs, transfer_contacts
+   use dda_limerick_model, only : force_at, limerick_blocks_t, limerick_march_t, limerick_model_t, &
+      & limerick_state, measure_blocks, next_record
    use dda_material, only : elasticity_matrix
    implicit none
    private
 
-   public :: advance_limerick, choose_interval, judge_limerick_step, move_vertices, update
+   public :: advance_limerick, choose_interval, corners_t, entrance_lines, find_limerick_contacts
+   public :: judge_limerick_step, limerick_run_t, measure_corners, move_vertices, open_and_close
+   public :: overlap, turn, update
+
+   !> Everything that a run carries from step to step
+   type :: limerick_run_t
+      type(limerick_blocks_t) :: blocks                 !! The blocks
+      type(contact_list_t) :: contacts                  !! Contacts of the last step
+      type(limerick_march_t) :: march                   !! Numbers of the march
+      type(contact_list_t) :: before                    !! Work space: contacts of the step before
+      type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
+      type(limerick_equations_t) :: equations           !! Work space: the equations
+      !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
+      real(wp), allocatable :: moved(:, :)
+      integer, allocatable :: order(:)  !! Work space: blocks from left to right: (n_block)
+   end type limerick_run_t
+
+   !> Shape of all corners of a step
+   type :: corners_t
+      !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
+      real(wp), allocatable :: direction(:)
+      real(wp), allocatable :: angle(:)   !! Inner angle: (n_vertex) [deg]
+      real(wp), allocatable :: length(:)  !! Length of the edge that starts there: (n_vertex) [m]
+   end type corners_t
+
+   interface
+
+      !> Solve and judge until no contact opens or closes
+      pure module subroutine open_and_close(model, run, first_pass, settled)
+         type(limerick_model_t), intent(in) :: model
+         !> The run; states of its contacts are changed, and the motion is set; a shear spring is
+         !> set anew where a contact closes
+         type(limerick_run_t), intent(inout) :: run
+         !> Whether nothing was solved in this step yet; then it was
+         logical, intent(inout) :: first_pass
+         !> Whether no contact opened or closed in the last pass
+         logical, intent(out) :: settled
+      end subroutine open_and_close
+
+      !> Directions, inner angles and lengths of all corners
+      pure module subroutine measure_corners(blocks, corners)
+         type(limerick_blocks_t), intent(in) :: blocks
+         type(corners_t), intent(out) :: corners
+      end subroutine measure_corners
+
+      !> Anticlockwise angle from one direction to another
+      pure real(wp) module function turn(from, to)
+         real(wp), intent(in) :: from  !! First direction [deg]
+         real(wp), intent(in) :: to    !! Second direction [deg]
+      end function turn
+
+      !> Whether two sectors overlap by more than is overlooked
+      pure logical module function overlap(start_a, angle_a, start_b, angle_b, least)
+         real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
+         real(wp), intent(in) :: angle_a  !! Its angle [deg]
+         real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
+         real(wp), intent(in) :: angle_b  !! Its angle [deg]
+         real(wp), intent(in) :: least    !! What is overlooked [deg]
+      end function overlap
+
+      !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
+      pure module function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
+         type(limerick_blocks_t), intent(in) :: blocks
+         type(corners_t), intent(in) :: corners
+         integer, intent(in) :: i             !! Vertex of the first block
+         integer, intent(in) :: j             !! Vertex of the second block
+         real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
+         integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
+      end function entrance_lines
+
+      !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
+      pure module subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
+         type(limerick_blocks_t), intent(in) :: blocks
+         real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
+         real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
+         !> Blocks from left to right, as near as the step before left them: (n_block)
+         integer, intent(inout) :: order(:)
+         type(contact_list_t), intent(inout) :: list
+      end subroutine find_limerick_contacts
+
+   end interface
 
    !> Most attempts at one step: the original has no such bound and may loop forever
    integer, parameter :: max_attempts = 200
