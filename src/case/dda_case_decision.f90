@@ -1,33 +1,42 @@
 !> The decision of a case: as a chain, stage by stage, or from where an earlier run has ended; and
 !> the scene that its tables and pictures need. What the pictures show, and the runs that are
 !> repeated for them
-submodule (dda_compute_case) dda_case_decision
+module dda_case_decision
    use dda_block_system, only : block_system_t
+   use dda_case, only : case_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain, unfold
    use dda_contacts, only : contacts_t, place_all_joints
-   use dda_decision, only : decide_in_stages
    use dda_deck, only : source_of
+   use dda_deck_scene, only : deck_scene
    use dda_forward, only : run_to_verdict
    use dda_key_names, only : analysis_duration, analysis_restart, analysis_steps, arch_radius, &
-      & output_energy, output_joints, output_reactions
+      & arch_thickness_ratio, output_energy, output_frames, output_joints, output_reactions
+   use dda_kinds, only : wp
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_mechanism, only : follow_collapse
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
-   use dda_scene, only : move_scene, searched_load
+   use dda_scene, only : build_once, move_scene, scene_t, searched_load
+   use dda_search, only : decision_t
    use dda_settings, only : settings_t
+   use dda_stages, only : decide_in_stages, enter_stage
    use dda_verdict, only : outcome_t, verdict
    implicit none
+   private
+
+   public :: compute_decision, place_joints, plan_album, see_collapse, take_pictures
 
 contains
 
-   !> Decide the scene
-   module procedure compute_decision
-      type(block_system_t) :: system
-      type(contacts_t) :: contacts
+   !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
+   !> earlier run has ended
+   subroutine compute_decision(this)
+      type(case_t), intent(inout) :: this
       type(settings_t) :: settings
       type(chain_t) :: chain
+      type(scene_t) :: begun
+      real(wp) :: last
       logical :: decided
 
       ! tables tell displacements, which a chain does not keep
@@ -40,31 +49,29 @@ contains
       if (decided) return
       call deck_scene(this%family%deck, this%plan, this%scene)
       call plan_fall(this)
-      if (this%family%deck%value(analysis_restart)%given) then
-         system = this%scene%system
-         contacts = this%scene%contacts
-         call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
-            & this%error)
-         if (allocated(this%error)) return
-         call keep_supports(this, system)
-         call decide_in_stages(this%scene, this%decision, this%album, this%onward, system, contacts)
-      else
-         call keep_supports(this, this%scene%system)
-         call decide_in_stages(this%scene, this%decision, this%album, this%onward)
-      end if
-   end procedure compute_decision
+      associate (scene => this%scene, boundary => this%scene%settings%boundary)
+         if (scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
+            & this%album%support = supports_of(scene%system, boundary)
+         if (this%family%deck%value(analysis_restart)%given) then
+            begun = scene
+            call load_restart(this%restart_file, begun%settings, begun%system, begun%contacts, &
+               & this%onward, this%error)
+            if (allocated(this%error)) return
+            call decide_in_stages(begun, this%decision, this%album, this%onward, last)
+         else
+            call decide_in_stages(scene, this%decision, this%album, this%onward, last)
+         end if
+         if (allocated(boundary%change)) &
+            & call enter_stage(scene%settings, last, scene%system, scene%contacts)
+      end associate
+   end subroutine compute_decision
 
-   !> Supports whose reactions a dynamic run tells
-   pure subroutine keep_supports(this, system)
+   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
+   !> tables of joints, for pictures, or to follow a sliding collapse
+   pure subroutine see_collapse(this, value, decision)
       type(case_t), intent(inout) :: this
-      type(block_system_t), intent(in) :: system
-
-      if (this%scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
-         & this%album%support = supports_of(system, this%scene%settings%boundary)
-   end subroutine keep_supports
-
-   !> Make the scene of a decision where a chain has done without it and it is wanted now
-   module procedure see_collapse
+      real(wp), intent(in) :: value  !! Value of the parameter that was decided
+      type(decision_t), intent(inout) :: decision
       logical :: collapsed, wanted
 
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
@@ -77,10 +84,12 @@ contains
          & call move_scene(this%critical%scene, this%scene)
       if (wanted) call build_once(this%family, value, this%scene)
       if (collapsed) call follow_collapse(this%scene, decision, this%album)
-   end procedure see_collapse
+   end subroutine see_collapse
 
-   !> Give what was decided the joints of its scene where it has none
-   module procedure place_joints
+   !> Give what was decided the joints of its scene where it has none; the scene may lose them
+   pure subroutine place_joints(this)
+      type(case_t), intent(inout) :: this
+
       if (allocated(this%critical%standing)) call place_standing(this, &
          & this%critical%standing%contacts)
       if (this%limerick .or. allocated(this%error)) return
@@ -89,7 +98,7 @@ contains
       else if (allocated(this%critical%fallen)) then
          call take_joints(this%scene, this%critical%fallen%contacts)
       end if
-   end procedure place_joints
+   end subroutine place_joints
 
    !> Give the assembly nearest to critical that was found to stand its joints: a load coefficient
    !> moves none
@@ -120,7 +129,8 @@ contains
    end subroutine take_joints
 
    !> What the album of the case is to hold
-   module procedure plan_album
+   pure subroutine plan_album(this)
+      type(case_t), intent(inout) :: this
       integer :: frames
 
       frames = nint(this%family%deck%value(output_frames)%number)
@@ -134,7 +144,7 @@ contains
          & .and. this%family%deck%value(output_energy)%flag
       if (allocated(this%family%deck%plan%boundary%measured)) &
          & this%album%point = this%family%deck%plan%boundary%measured
-   end procedure plan_album
+   end subroutine plan_album
 
    !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
    !> a tenth of the radius, or of the size of the blocks; or on the path of its histories
@@ -155,8 +165,10 @@ contains
       this%album%interval = (clock%bend(size(clock%bend)) - clock%bend(1))/real(frames, wp)
    end subroutine plan_fall
 
-   !> Repeat the run nearest to critical that a search has found to fall, else to stand
-   module procedure take_pictures
+   !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its
+   !> pictures
+   pure subroutine take_pictures(this)
+      type(case_t), intent(inout) :: this
       type(outcome_t) :: outcome
       type(settings_t) :: settings
       type(block_system_t) :: system
@@ -179,7 +191,7 @@ contains
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)
-   end procedure take_pictures
+   end subroutine take_pictures
 
    !> Radius of an arch, half size of what was cut, or mean size of the blocks that move [m]
    pure real(wp) function scene_size(this)
@@ -195,4 +207,4 @@ contains
       end associate
    end function scene_size
 
-end submodule dda_case_decision
+end module dda_case_decision

@@ -4,10 +4,11 @@ module dda_case_rows
       & tell_total_motion
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
+   use dda_blocks_of_deck, only : movable_blocks
    use dda_case, only : case_t, searched_name
+   use dda_collapse_rows, only : tell_mechanism, tell_nearest
    use dda_contacts, only : contacts_t
    use dda_deck, only : deck_t, source_of
-   use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
    use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
       & arch_thickness_ratio, joint_friction_deg, output_condition, scene_kind, vehicle_position
@@ -30,26 +31,6 @@ module dda_case_rows
    !> Words for the verdicts, by their number
    character(len=10), parameter :: verdict_word(0:4) = [character(len=10) :: "undecided", &
       & "stable", "collapsed", "completed", "found"]
-
-   interface
-
-      !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
-      pure module subroutine tell_nearest(this, joint_row, blocks)
-         type(case_t), intent(in) :: this
-         !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
-         type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-         type(told_blocks_t), intent(inout) :: blocks
-      end subroutine tell_nearest
-
-      !> Fill the columns of a collapse
-      pure module subroutine tell_mechanism(fallen, joint_angle_deg, row)
-         type(decision_t), intent(in) :: fallen
-         !> Angle of each joint from the crown: (n_joint) [deg]
-         real(wp), intent(in) :: joint_angle_deg(:)
-         type(result_row_t), intent(inout) :: row
-      end subroutine tell_mechanism
-
-   end interface
 
 contains
 

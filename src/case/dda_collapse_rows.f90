@@ -1,14 +1,27 @@
 !> How a case falls, or would fall next, in its rows
-submodule (dda_case_rows) dda_collapse_rows
-   use dda_block_rows, only : scale_to_one
+module dda_collapse_rows
+   use dda_block_rows, only : joint_rows, scale_to_one, tell_blocks, tell_mechanism_motion, &
+      & tell_roles, tell_total_motion
+   use dda_case, only : case_t
+   use dda_contacts, only : contacts_t
+   use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
+   use dda_search, only : critical_t, decision_t
+   use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
+   private
+
+   public :: tell_mechanism, tell_nearest
 
 contains
 
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
-   module procedure tell_nearest
+   pure subroutine tell_nearest(this, joint_row, blocks)
+      type(case_t), intent(in) :: this
+      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene
 
       ! a load coefficient changes no blocks
@@ -19,7 +32,7 @@ contains
       else
          call tell_scene(this%scene, this%critical, joint_row, blocks)
       end if
-   end procedure tell_nearest
+   end subroutine tell_nearest
 
    !> The same of its scene
    pure subroutine tell_scene(scene, critical, joint_row, blocks)
@@ -69,7 +82,11 @@ contains
    end subroutine tell_fall
 
    !> Fill the columns of a collapse
-   module procedure tell_mechanism
+   pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
+      type(decision_t), intent(in) :: fallen
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 
       associate (outcome => fallen%outcome)
@@ -84,6 +101,6 @@ contains
       row%intrados_hinge_deg = mechanism%intrados_deg
       row%extrados_hinge_deg = mechanism%extrados_deg
       row%springing_hinge = mechanism%springing
-   end procedure tell_mechanism
+   end subroutine tell_mechanism
 
-end submodule dda_collapse_rows
+end module dda_collapse_rows

@@ -3,14 +3,13 @@
 module dda_force_rows
    use dda_bar, only : bar_name, bar_state_t
    use dda_bar_joints, only : bar_joint
-   use dda_block_system, only : block_system_t
    use dda_case, only : case_t
-   use dda_contacts, only : contacts_t, joint_place
+   use dda_contacts, only : joint_place
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
+   use dda_reaction_shares, only : share_among_points
    use dda_reactions, only : forces_of_blocks, supports_of
    use dda_search, only : proof_t
-   use dda_settings, only : settings_t
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    use dda_verdict, only : verdict
    use dda_write_results, only : reaction_lines
@@ -22,23 +21,6 @@ module dda_force_rows
 
    !> Names of the columns
    character(len=*), parameter :: bars_header = "case,time,bar,force,state"
-
-   interface
-
-      !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
-      !> least forces
-      pure module subroutine share_among_points(settings, system, contacts, time, support, block, &
-         & reaction)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         real(wp), intent(in) :: time               !! The time [s]
-         integer, intent(in) :: support(:, :)       !! The supports: (2, n)
-         integer, intent(in) :: block               !! The block
-         real(wp), intent(inout) :: reaction(:, :)  !! Receives the reactions: (3, n)
-      end subroutine share_among_points
-
-   end interface
 
    !> Names of the columns of proof_forces.csv
    character(len=*), parameter :: proof_forces_header = &
@@ -91,7 +73,7 @@ contains
    !> Add a row a bar
    pure subroutine add_rows(number, time, bar, rows)
       integer, intent(in) :: number
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: time             !! Their time [s]
       type(bar_state_t), intent(in) :: bar(:)  !! The bars
       type(growing_text_t), intent(inout) :: rows
       integer :: i
@@ -133,8 +115,8 @@ contains
    !> Reactions of blocks at rest
    pure subroutine find_reactions(this, time, support, reaction)
       type(case_t), intent(in) :: this
-      real(wp), intent(in) :: time  !! Time of the loads [s]
-      integer, intent(in) :: support(:, :)
+      real(wp), intent(in) :: time          !! Time of the loads [s]
+      integer, intent(in) :: support(:, :)  !! The supports: (2, n)
       !> Force, and moment about the origin of the blocks' coordinates: (3, n) [N/m, N/m, N]
       real(wp), allocatable, intent(out) :: reaction(:, :)
       integer :: first, i

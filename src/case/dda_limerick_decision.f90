@@ -1,10 +1,12 @@
 !> A run of Shi's scheme as a decision of ours: its verdict and the joints at its end
-submodule (dda_compute_case) dda_limerick_decision
-   use dda_contact_types, only : place_joint
+module dda_limerick_decision
    use dda_block_system, only : begin_motion, block_system_t
+   use dda_contact_types, only : place_joint
    use dda_contacts, only : begin_forces, contacts_t
-   use dda_frames, only : frame_is_due, keep_frame
-   use dda_key_names, only : scene_kind
+   use dda_deck, only : deck_t
+   use dda_frames, only : album_t, frame_is_due, keep_frame
+   use dda_key_names, only : output_frames, scene_kind
+   use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state
@@ -13,13 +15,23 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
+   use dda_scene, only : scene_t
+   use dda_search, only : decision_t
    use dda_verdict, only : verdict
    implicit none
+   private
+
+   public :: decide_limerick
 
 contains
 
    !> Run what a deck describes under Shi's scheme
-   module procedure decide_limerick
+   pure subroutine decide_limerick(deck, scene, decision, album)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
+      type(decision_t), intent(out) :: decision
+      !> Receives the ways of its points, if it has some
+      type(album_t), intent(inout), optional :: album
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run
       type(limerick_outcome_t) :: outcome
@@ -43,7 +55,7 @@ contains
          if (allocated(outcome%reason)) told%reason = outcome%reason
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
-   end procedure decide_limerick
+   end subroutine decide_limerick
 
    !> When pictures are due: evenly in the steps of a dynamic run, in displacement in a static one
    pure subroutine plan_pictures(frames, constants, album)
@@ -257,4 +269,4 @@ contains
          force(2) = sign(max(0.0_wp, force(1))*law%friction, contact%shear)
       end if
    end function contact_force
-end submodule dda_limerick_decision
+end module dda_limerick_decision

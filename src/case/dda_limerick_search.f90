@@ -1,11 +1,22 @@
 !> Critical value under Shi's scheme: a bracket of two runs, halved
-submodule (dda_compute_case) dda_limerick_search
-   use dda_deck_scene, only : deck_family_t, put_value
+module dda_limerick_search
+   use dda_case, only : case_t
+   use dda_deck, only : deck_t
+   use dda_deck_family, only : deck_family_t, put_value
+   use dda_deck_scene, only : deck_scene
    use dda_error, only : error_t
+   use dda_frames, only : album_t
+   use dda_key_names, only : output_frames
+   use dda_kinds, only : wp
+   use dda_limerick_decision, only : decide_limerick
+   use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
-   use dda_search, only : critical_t, keep_decision, search_t
+   use dda_search, only : critical_t, decision_t, keep_decision, search_t
    use dda_verdict, only : verdict
    implicit none
+   private
+
+   public :: search_limerick
 
    !> First step away from the start, over the start; the steps double
    real(wp), parameter :: first_stride = 0.02_wp
@@ -14,8 +25,10 @@ submodule (dda_compute_case) dda_limerick_search
 
 contains
 
-   !> Search the critical value of Shi's scheme
-   module procedure search_limerick
+   !> Search the critical value of Shi's scheme, with pictures of the run nearest to it that was
+   !> found to fall, else to stand
+   pure subroutine search_limerick(this)
+      type(case_t), intent(inout) :: this
       type(error_t), allocatable :: error
 
       ! the limit of this scheme lies somewhat above the exact value
@@ -26,7 +39,7 @@ contains
          & call this%family%build(this%critical%falls, this%scene, error)
       if (nint(this%family%deck%value(output_frames)%number) > 0) &
          & call repeat_with_pictures(this%family, this%critical, this%album)
-   end procedure search_limerick
+   end subroutine search_limerick
 
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)
@@ -139,4 +152,4 @@ contains
       call keep_decision(critical, value, decision)
    end subroutine decide_at
 
-end submodule dda_limerick_search
+end module dda_limerick_search

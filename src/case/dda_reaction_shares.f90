@@ -1,21 +1,36 @@
 !> Reactions of one block shared among the points that hold it
-submodule (dda_force_rows) dda_reaction_shares
+module dda_reaction_shares
+   use dda_block_system, only : block_system_t
+   use dda_contacts, only : contacts_t, joint_place
    use dda_deformation, only : moved_point
+   use dda_kinds, only : wp
    use dda_outer_loads, only : outer_loads
    use dda_reactions, only : force_on
-   use dda_settings, only : load_direction
+   use dda_settings, only : load_direction, settings_t
    use dda_small_systems, only : least_squares
    use dda_submatrices, only : body_load
    use dda_vector, only : cross
    implicit none
+   private
+
+   public :: share_among_points
 
    !> Columns of which less than this share of the largest is left say nothing new
    real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains
 
-   !> Reactions of the points of a block
-   module procedure share_among_points
+   !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
+   !> least forces
+   pure subroutine share_among_points(settings, system, contacts, time, support, block, &
+      & reaction)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      real(wp), intent(in) :: time               !! The time [s]
+      integer, intent(in) :: support(:, :)       !! The supports: (2, n)
+      integer, intent(in) :: block               !! The block
+      real(wp), intent(inout) :: reaction(:, :)  !! Receives the reactions: (3, n)
       real(wp) :: wanted(3), place(2), size_of
       real(wp), allocatable :: column(:, :), force(:)
       integer, allocatable :: owner(:)
@@ -59,7 +74,7 @@ contains
          column(3, i) = size_of*column(3, i) + place(1)*column(2, i) - place(2)*column(1, i)
          reaction(:, owner(i)) = reaction(:, owner(i)) + force(i)*column(:, i)
       end do
-   end procedure share_among_points
+   end subroutine share_among_points
 
    !> A force with its moment seen from another point, in a length
    pure function moved(wrench, place, length) result(seen)
@@ -106,4 +121,4 @@ contains
       wrench(3) = wrench(3) + cross(place, wrench(1:2))
    end function outer_force
 
-end submodule dda_reaction_shares
+end module dda_reaction_shares

@@ -11,6 +11,8 @@ module dda_scene_check
    use dda_line_scene, only : check_line_scene, cut_lines
    use dda_read_deck, only : geometry_file
    use dda_scene, only : scene_t
+   use dda_scene_doubts, only : check_live_cases, check_stages, check_start, check_support, &
+      & check_widths, doubt_scene
    use dda_scene_plan, only : plan_scene
    use dda_shape_check, only : check_shapes
    use dda_watch, only : watch_t
@@ -18,50 +20,6 @@ module dda_scene_check
    private
 
    public :: check_lines, check_scene
-
-   interface
-
-      !> Check that live loads act on blocks that move, and that the load factor has loads
-      pure module subroutine check_live_cases(deck, error)
-         type(deck_t), intent(in) :: deck
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_live_cases
-
-      !> Check the file that a run goes on from: a single case must be able to, of many each finds
-      !> out
-      module subroutine check_start(deck, error)
-         type(deck_t), intent(in) :: deck
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_start
-
-      !> Check that a static scene can come to rest at all
-      pure module subroutine check_support(deck, scene, error)
-         type(deck_t), intent(in) :: deck
-         type(scene_t), intent(in) :: scene
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_support
-
-      !> Check that a deck can be run in stages
-      pure module subroutine check_stages(deck, error)
-         type(deck_t), intent(in) :: deck
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_stages
-
-      !> Check that what may be crushed does not stand on corners, which bear nothing then
-      pure module subroutine check_widths(deck, scene, error)
-         type(deck_t), intent(in) :: deck
-         type(scene_t), intent(in) :: scene
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_widths
-
-      !> Warn of blocks that will fall, and of units that are no metres
-      pure module subroutine doubt_scene(deck, scene, warnings)
-         type(deck_t), intent(in) :: deck
-         type(scene_t), intent(in) :: scene
-         type(warnings_t), intent(inout) :: warnings
-      end subroutine doubt_scene
-
-   end interface
 
 contains
 

@@ -1,18 +1,28 @@
 !> Stages, widths, supports and units of a deck that its scene contradicts or makes doubtful; where
 !> a run starts: restart files that fit its blocks, and points that live loads lie on
-submodule (dda_scene_check) dda_scene_doubts
+module dda_scene_doubts
    use dda_block_scene, only : floating_block
-   use dda_deck, only : deck_error, file_beside, has_group, key_error, place_of
+   use dda_deck, only : deck_error, deck_t, file_beside, has_group, key_error, place_of
    use dda_deck_keys, only : deck_key
-   use dda_key_names, only : analysis_flow, analysis_geometry, live_group, &
-      & load_displacement_factor, load_load_factor, material_compressive_strength, output_energy, &
-      & output_reactions, search_group, search_parameter, vehicle_group
+   use dda_deck_scene, only : deck_scene
+   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_error, only : add_warning, error_t, fatal_error, warnings_t
+   use dda_key_names, only : analysis_flow, analysis_geometry, analysis_mode, analysis_restart, &
+      & live_group, load_displacement_factor, load_load_factor, material_compressive_strength, &
+      & output_energy, output_reactions, search_group, search_parameter, vehicle_group
    use dda_key_value, only : deck_place_t
+   use dda_kinds, only : wp
    use dda_live_loads, only : bears_live, check_live_points
+   use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
+   use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene
    use dda_step_context, only : march_t
    use dda_text, only : to_text
    implicit none
+   private
+
+   public :: check_live_cases, check_stages, check_start, check_support, check_widths, doubt_scene
 
    !> A block whose weight strains it more than this is doubtful
    real(wp), parameter :: doubtful_strain = 1.0e-3_wp
@@ -20,17 +30,22 @@ submodule (dda_scene_check) dda_scene_doubts
 contains
 
    !> Check that a static scene can come to rest at all
-   module procedure check_support
+   pure subroutine check_support(deck, scene, error)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
       integer :: b
 
       b = floating_block(scene)
       if (b > 0) call fatal_error(error, "block "//to_text(b)//" has no support: no chain of "// &
          & "joints ties it to a fixed block, as mode = 'static' needs; add a joint or remove it", &
          & geometry_file(deck), deck%plan%line(b))
-   end procedure check_support
+   end subroutine check_support
 
    !> Check that a deck can be run in stages
-   module procedure check_stages
+   pure subroutine check_stages(deck, error)
+      type(deck_t), intent(in) :: deck
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
       problem = ""
@@ -55,10 +70,13 @@ contains
       end if
       if (len(problem) > 0) call fatal_error(error, problem//"; change it or remove this line", &
          & geometry_file(deck), deck%plan%boundary%change(1)%line)
-   end procedure check_stages
+   end subroutine check_stages
 
    !> Check that what may be crushed does not stand on corners, which bear nothing then
-   module procedure check_widths
+   pure subroutine check_widths(deck, scene, error)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
       integer :: j
 
       do j = 1, size(scene%contacts%joint)
@@ -72,10 +90,13 @@ contains
             return
          end associate
       end do
-   end procedure check_widths
+   end subroutine check_widths
 
    !> Warn of blocks that will fall, and of units that are no metres
-   module procedure doubt_scene
+   pure subroutine doubt_scene(deck, scene, warnings)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
+      type(warnings_t), intent(inout) :: warnings
       integer :: b
 
       call doubt_units(deck, scene, warnings)
@@ -87,7 +108,7 @@ contains
       b = 0
       if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
       if (b == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
-   end procedure doubt_scene
+   end subroutine doubt_scene
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
    !> then often millimetres
@@ -119,7 +140,9 @@ contains
    end subroutine doubt_units
 
    !> Check that live loads act on blocks that move, and that the load factor has loads
-   module procedure check_live_cases
+   pure subroutine check_live_cases(deck, error)
+      type(deck_t), intent(in) :: deck
+      type(error_t), allocatable, intent(out) :: error
       type(deck_place_t) :: place
       type(deck_t) :: work
       type(scene_t) :: scene
@@ -148,7 +171,7 @@ contains
          end if
          if (allocated(error)) return
       end do
-   end procedure check_live_cases
+   end subroutine check_live_cases
 
    !> Whether a file of blocks leads a point
    pure logical function leads_points(deck)
@@ -178,8 +201,11 @@ contains
       if (deck%searched%key == key) place = place_of(deck, search_parameter)
    end function factor_place
 
-   !> Check the file that a run goes on from
-   module procedure check_start
+   !> Check the file that a run goes on from: a single case must be able to, of many each finds
+   !> out
+   subroutine check_start(deck, error)
+      type(deck_t), intent(in) :: deck
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       type(scene_t) :: scene
       type(march_t) :: march
@@ -197,6 +223,6 @@ contains
       else
          call check_restart(file_beside(deck, name), error)
       end if
-   end procedure check_start
+   end subroutine check_start
 
-end submodule dda_scene_doubts
+end module dda_scene_doubts

@@ -1,23 +1,35 @@
 !> Scenes of arches of any shape, of files of blocks and of lines that were cut
-submodule (dda_deck_scene) dda_blocks_of_deck
+module dda_blocks_of_deck
    use dda_arch_assembly, only : arch_assembly_t, n_movable
    use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_arch_scene, only : joint_angles_deg, material_of, settings_of, unit_weight
+   use dda_block_input, only : block_plan_t
    use dda_block_scene, only : base_t, block_scene
-   use dda_deck, only : has_group
+   use dda_deck, only : deck_t, has_group, source_of
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
    use dda_key_names, only : arch_lune_deg, fill_group, joint_cohesion, joint_friction_deg, &
       & joint_residual_deg, joint_slip_length, joint_tension, load_displacement_factor, &
       & load_gravity, load_water_rise, scene_kind, tie_group
+   use dda_kinds, only : pi, wp
    use dda_line_scene, only : held_blocks
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
+   use dda_live_loads, only : add_live_loads
+   use dda_scene, only : scene_t
+   use dda_scene_plan, only : scene_plan_t
    use dda_shape_check, only : add_ties
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    implicit none
+   private
+
+   public :: file_scene, movable_blocks, shape_scene
 
 contains
 
    !> The scene of an arch of any shape
-   module procedure shape_scene
+   pure subroutine shape_scene(deck, plan, scene)
+      type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
+      !> The scene; of an arch that cannot be, without blocks
+      type(scene_t), intent(out) :: scene
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
       type(fill_t) :: fill
@@ -37,10 +49,14 @@ contains
       else
          call add_live_loads(deck, scene)
       end if
-   end procedure shape_scene
+   end subroutine shape_scene
 
    !> The scene of blocks as a file or an arch gives them
-   module procedure file_scene
+   pure subroutine file_scene(deck, plan, blocks, scene)
+      type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
+      type(block_plan_t), intent(in) :: blocks
+      type(scene_t), intent(out) :: scene
       type(base_t) :: base
       integer :: i
 
@@ -61,10 +77,11 @@ contains
                & deck%value(load_displacement_factor)%number*path%value
          end associate
       end do
-   end procedure file_scene
+   end subroutine file_scene
 
    !> Number of blocks that can move in the scene of a case
-   module procedure movable_blocks
+   pure integer function movable_blocks(deck)
+      type(deck_t), intent(in) :: deck
       type(arch_form_t) :: form
       type(form_problem_t) :: problem
 
@@ -78,6 +95,6 @@ contains
       else
          movable_blocks = size(joint_angles_deg(deck)) - 1
       end if
-   end procedure movable_blocks
+   end function movable_blocks
 
-end submodule dda_blocks_of_deck
+end module dda_blocks_of_deck

@@ -1,12 +1,9 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_chain, only : arch_numbers_t, arch_rays_t
    use dda_arch_scene, only : arch_scene
-   use dda_block_input, only : block_plan_t
+   use dda_blocks_of_deck, only : file_scene, shape_scene
    use dda_boundary, only : history_t
-   use dda_chain, only : chain_t
-   use dda_deck, only : deck_t, parameter_t, source_of
-   use dda_error, only : error_t
+   use dda_deck, only : deck_t, source_of
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
    use dda_key_names, only : ground_amplitude, ground_direction_deg, ground_duration, &
@@ -14,103 +11,12 @@ module dda_deck_scene
    use dda_kinds, only : degree, pi, wp
    use dda_line_scene, only : line_scene
    use dda_live_loads, only : add_live_loads
-   use dda_scene, only : family_t, scene_t
+   use dda_scene, only : scene_t
    use dda_scene_plan, only : scene_plan_t
-   use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family, put_value
-
-   !> The scenes of one deck whose searched parameter varies
-   type, extends(family_t) :: deck_family_t
-      type(deck_t), allocatable :: deck  !! The deck of one case
-      !> The parameter
-      type(parameter_t) :: parameter
-      !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
-      logical :: chains = .false.
-      type(scene_plan_t) :: plan       !! Then: what all of them need
-      type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
-      type(settings_t) :: settings     !! Settings of their runs
-      !> Angle of each joint from the crown: (n_joint) [deg]
-      real(wp), allocatable :: joint_angle_deg(:)
-      !> What does not depend on the thickness; made by the one who searches
-      type(arch_rays_t) :: rays
-   contains
-      !> Make the chain of one value
-      procedure :: link => link_arch
-      !> Make the scene of one value
-      procedure :: build => build_deck_scene
-      !> Make the scene of one value from that of another one
-      procedure :: turn => turn_deck_scene
-   end type deck_family_t
-
-   interface
-
-      !> Make a deck a family, its numbers read
-      pure module subroutine new_family(plan, parameter, family)
-         type(scene_plan_t), intent(in) :: plan
-         type(parameter_t), intent(in) :: parameter
-         type(deck_family_t), intent(inout) :: family  !! New but for the deck
-      end subroutine new_family
-
-      !> Make the chain of one thickness ratio
-      pure module subroutine link_arch(family, value, settings, chain, linked)
-         class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value  !! The thickness ratio
-         type(settings_t), intent(out) :: settings
-         !> Any chain in, whose arrays are used again where they fit
-         type(chain_t), intent(inout) :: chain
-         logical, intent(out) :: linked  !! Whether the scenes are chains, and one has this value
-      end subroutine link_arch
-
-      !> Put one value of the parameter into a deck
-      pure module subroutine put_value(family, value, deck, error)
-         class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value        !! The value
-         type(deck_t), intent(inout) :: deck  !! That of the family, or its values alone
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine put_value
-
-      !> Make the scene of one value of the parameter
-      pure module subroutine build_deck_scene(family, value, scene, error)
-         class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value  !! Value of its parameter
-         type(scene_t), intent(out) :: scene
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine build_deck_scene
-
-      !> Make the scene of one value from that of another one: where a load coefficient is the
-      !> parameter, nothing else differs
-      pure module subroutine turn_deck_scene(family, value, scene, error)
-         class(deck_family_t), intent(in) :: family
-         real(wp), intent(in) :: value
-         type(scene_t), intent(inout) :: scene
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine turn_deck_scene
-
-      !> The scene of an arch of any shape
-      pure module subroutine shape_scene(deck, plan, scene)
-         type(deck_t), intent(in) :: deck
-         type(scene_plan_t), intent(in) :: plan
-         !> The scene; of an arch that cannot be, without blocks
-         type(scene_t), intent(out) :: scene
-      end subroutine shape_scene
-
-      !> The scene of blocks as a file or an arch gives them
-      pure module subroutine file_scene(deck, plan, blocks, scene)
-         type(deck_t), intent(in) :: deck
-         type(scene_plan_t), intent(in) :: plan
-         type(block_plan_t), intent(in) :: blocks
-         type(scene_t), intent(out) :: scene
-      end subroutine file_scene
-
-      !> Number of blocks that can move in the scene of a case
-      pure integer module function movable_blocks(deck)
-         type(deck_t), intent(in) :: deck
-      end function movable_blocks
-
-   end interface
+   public :: deck_scene, move_ground
 
    !> Points of a period of a sine
    integer, parameter :: points = 360

@@ -2,8 +2,21 @@
 !>
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
-submodule (dda_critical:dda_find_critical) dda_bracket
+module dda_bracket
+   use dda_chain_decision, only : decide_chain
+   use dda_chain_foresight, only : foresee
+   use dda_collapse_trace, only : proposal_t, trace
+   use dda_decision, only : decide
+   use dda_error, only : error_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, link_once, scene_t
+   use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
+   use dda_verdict, only : verdict
    implicit none
+   private
+
+   public :: close_bracket, decide_at, middle
 
    !> Most decisions of a search
    integer, parameter :: max_decisions = 100
@@ -20,7 +33,10 @@ submodule (dda_critical:dda_find_critical) dda_bracket
 contains
 
    !> Close the bracket around the value
-   module procedure close_bracket
+   pure subroutine close_bracket(family, search, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(out) :: critical  !! What was found; chains may be halves
       type(proposal_t) :: proposal
       type(joint_face_t), allocatable :: foreseen(:)
       real(wp) :: limit, start, value
@@ -74,7 +90,7 @@ contains
             undecided = 0
          end if
       end do
-   end procedure close_bracket
+   end subroutine close_bracket
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
    pure subroutine find_collapse(family, search, start, limit, critical)
@@ -220,4 +236,48 @@ contains
          & .and. 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
    end function closed
 
-end submodule dda_bracket
+   !> Decide one value and keep the decision on its side of the bracket
+   pure subroutine decide_at(family, value, critical, answer)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value   !! The value
+      type(critical_t), intent(inout) :: critical
+      integer, intent(out) :: answer  !! One of verdict
+      type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      logical :: decided
+
+      answer = verdict%undecided
+      critical%decisions = critical%decisions + 1
+      allocate (decision)
+      decided = family%decides_chains
+      if (decided) call link_once(family, value, critical%link)
+      if (decided) decided = critical%link%known
+      if (decided) call decide_chain(critical%link%settings, critical%link%chain, decision, &
+         & decided, critical%reaction)
+      if (.not. decided) then
+         call family%build(value, scene, error)
+         if (allocated(error)) then
+            critical%reason = error%message
+            critical%undecided_at = value
+            return
+         end if
+         critical%current = scene%settings%current
+         call decide(scene, decision, verdict_only=.true.)
+         ! what has not fallen at the end of its time stands
+         if (decision%outcome%verdict == verdict%completed) &
+            & decision%outcome%verdict = verdict%stable
+      end if
+      answer = decision%outcome%verdict
+      if (.not. scene%settings%dynamic) call shed(decision, keeps_joints=.true.)
+      call keep_decision(critical, value, decision)
+   end subroutine decide_at
+
+   !> Middle of a bracket; the geometric one where the ends are of different magnitude
+   pure real(wp) function middle(a, b)
+      real(wp), intent(in) :: a, b  !! Its ends
+
+      middle = (a + b)/2.0_wp
+      if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
+   end function middle
+end module dda_bracket

@@ -1,18 +1,47 @@
 !> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
-submodule (dda_critical) dda_collapse_trace
+module dda_collapse_trace
    use dda_assembly, only : new_equations, solve_faces
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : begin_motion, block_system_t
-   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_decision, only : fold
-   use dda_contact_types, only : joint_springs_t, new_joint_springs, same_joint
+   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
+   use dda_contact_types, only : joint_springs_t, joint_t, new_joint_springs, same_joint
    use dda_contacts, only : joint_place
    use dda_error, only : error_t
-   use dda_scene, only : link_once
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, link_once, scene_t
+   use dda_search, only : critical_t, search_t
    use dda_settings, only : flow_rule, settings_t
    use dda_step_state, only : equations_t
    implicit none
+   private
+
+   public :: frozen_mechanism_t, proposal_t, mechanism_power, trace
+
+   !> A collapse to be traced from one value of the parameter to another
+   type :: frozen_mechanism_t
+      type(joint_t), allocatable :: joint(:)      !! The joints: (n_joint)
+      type(joint_face_t), allocatable :: face(:)  !! Faces of the joints in its last step: (n_joint)
+      !> Motion of its last step without strains: (3, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Length of a step long enough that elastic motion hides nothing, and short enough that
+      !> rounding leaves the power smooth [s]
+      real(wp) :: dt = 0.0_wp
+   end type frozen_mechanism_t
+
+   !> Where a frozen collapse stops
+   type :: proposal_t
+      logical :: usable = .false.  !! Whether it stops anywhere
+      real(wp) :: value = 0.0_wp   !! The value
+      !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
+      !> coordinates can tell apart
+      real(wp) :: half = 0.0_wp
+      !> How far beyond and before it to decide; more than half where the frozen joints, which know
+      !> nothing of moving blocks, only come near
+      real(wp) :: reach = 0.0_wp
+   end type proposal_t
 
    !> A collapse whose joints keep to their faces
    type :: frozen_t
@@ -41,8 +70,15 @@ submodule (dda_critical) dda_collapse_trace
 
 contains
 
-   !> Trace the last collapse to where it stops, by the secant method on the power of the loads
-   module procedure trace
+   !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
+   !> from the third value on the parabola through three tells what the secant leaves
+   pure subroutine trace(family, search, limit, critical, proposal)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: limit  !! The end of the range on the side that stands
+      !> What was found so far; the factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      type(proposal_t), intent(out) :: proposal  !! Where the collapse stops
       type(frozen_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
       real(wp) :: bend, last_slope, near, x_before
@@ -94,7 +130,7 @@ contains
          power(1) = power(2)
       end do
       call propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
-   end procedure trace
+   end subroutine trace
 
    !> Where a mechanism stops, and how near to that to decide
    pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
@@ -245,8 +281,16 @@ contains
       critical%factorisations = critical%factorisations + 1
    end subroutine power_at
 
-   !> Power of the loads on the mechanism
-   module procedure mechanism_power
+   !> Power of the loads on the mechanism. The structure with faces held moves under its loads;
+   !> two more solutions with its own inertia as the load leave of that motion the mechanism
+   !> alone, which is then measured by the mechanism's motion at the value where it was found
+   pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      type(scene_t), intent(in) :: scene  !! Scene of the value wanted
+      real(wp), intent(out) :: power      !! Power: positive where the mechanism moves by itself
+      !> What the rounding of the corners' coordinates alone makes of it
+      real(wp), intent(out) :: noise
+      logical, intent(out) :: usable  !! Whether the power could be found
       type(equations_t) :: equations
       type(joint_springs_t) :: springs
       type(settings_t) :: settings
@@ -287,7 +331,7 @@ contains
             & *abs(dot_product(equations%weight(:, e), mechanism%motion(:, e)))
       end do
       noise = noise/scale
-   end procedure mechanism_power
+   end subroutine mechanism_power
 
    !> Whether a scene has the blocks and joints of a mechanism, in the same order
    pure logical function is_of(mechanism, scene)
@@ -322,4 +366,4 @@ contains
             & *sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))/system%area(block)
       end associate
    end function area_rounding
-end submodule dda_collapse_trace
+end module dda_collapse_trace

@@ -1,108 +1,162 @@
-!> Critical value of a parameter: a bracket of two decisions, one collapsed and one stable
-!>
-!> Each way of searching is a submodule: by any parameter, by a load coefficient, by runs in time.
+!> Critical value of a parameter: of runs in time, of a load coefficient, or of anything else, where
+!> what lies between two ends that agree is looked through, too
 module dda_critical
-   use dda_contact_types, only : joint_t
-   use dda_friction_cone, only : joint_face_t
+   use dda_bracket, only : close_bracket, decide_at, middle
+   use dda_chain_decision, only : unfold
+   use dda_collapse_trace, only : proposal_t, trace
+   use dda_decision, only : decide
+   use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_scene, only : family_t, scene_t
-   use dda_search, only : critical_t, decision_t, search_t
+   use dda_load_search, only : find_critical_load
+   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene_graph, only : decides_as_graph
+   use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
+   use dda_time_search, only : find_critical_in_time
+   use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: find_critical, find_critical_in_time, proposal_t, trace, frozen_mechanism_t
-   public :: mechanism_power, foresee
+   public :: find_critical
 
-   !> A collapse to be traced from one value of the parameter to another
-   type :: frozen_mechanism_t
-      type(joint_t), allocatable :: joint(:)      !! The joints: (n_joint)
-      type(joint_face_t), allocatable :: face(:)  !! Faces of the joints in its last step: (n_joint)
-      !> Motion of its last step without strains: (3, n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> Length of a step long enough that elastic motion hides nothing, and short enough that
-      !> rounding leaves the power smooth [s]
-      real(wp) :: dt = 0.0_wp
-   end type frozen_mechanism_t
+   !> Values between two ends, as shares of what is left, that may rule out nothing before the ends
+   !> are held to agree
+   real(wp), parameter :: share(7) = [4, 2, 6, 1, 3, 5, 7]/8.0_wp
+   !> Part of the range in which nothing is looked for any more
+   real(wp), parameter :: narrow = 1.0e-6_wp
 
-   !> Where a frozen collapse stops
-   type :: proposal_t
-      logical :: usable = .false.  !! Whether it stops anywhere
-      real(wp) :: value = 0.0_wp   !! The value
-      !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
-      !> coordinates can tell apart
-      real(wp) :: half = 0.0_wp
-      !> How far beyond and before it to decide; more than half where the frozen joints, which know
-      !> nothing of moving blocks, only come near
-      real(wp) :: reach = 0.0_wp
-   end type proposal_t
+contains
 
-   interface
+   !> Search the critical value of a family of scenes
+   pure subroutine find_critical(family, search, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(out) :: critical
+      type(search_t) :: part
+      real(wp) :: value
+      logical :: differs, done
 
-      !> Power of the loads on the mechanism. The structure with faces held moves under its loads;
-      !> two more solutions with its own inertia as the load leave of that motion the mechanism
-      !> alone, which is then measured by the mechanism's motion at the value where it was found
-      pure module subroutine mechanism_power(mechanism, scene, power, noise, usable)
-         type(frozen_mechanism_t), intent(in) :: mechanism
-         type(scene_t), intent(in) :: scene  !! Scene of the value wanted
-         real(wp), intent(out) :: power      !! Power: positive where the mechanism moves by itself
-         !> What the rounding of the corners' coordinates alone makes of it
-         real(wp), intent(out) :: noise
-         logical, intent(out) :: usable  !! Whether the power could be found
-      end subroutine mechanism_power
+      done = search%in_time
+      part = search
+      if (done) call find_critical_in_time(family, search, critical)
+      if (.not. done .and. family%load /= searched_load%none) &
+         & call find_critical_load(family, part, critical, done)
+      if (done) return
+      value = part%low
+      differs = value > search%low
+      if (.not. differs) then
+         call close_bracket(family, part, critical)
+         if (any(critical%verdict == [verdict%stable, verdict%collapsed])) &
+            & call look_between(family, search, critical, value, differs)
+      end if
+      if (differs) call close_both(family, search, value, critical)
+      if (family%load /= searched_load%none .and. allocated(critical%fallen)) then
+         if (.not. critical%fallen%by_graph) call tell_whole(family, verdict%collapsed, critical)
+      end if
+      if (allocated(critical%standing) .and. .not. family%decides_chains) &
+         & call tell_whole(family, verdict%stable, critical)
+      if (allocated(critical%fallen)) call unfold(critical%fallen)
+      if (allocated(critical%standing)) call unfold(critical%standing)
+   end subroutine find_critical
 
-      !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-      pure module subroutine foresee(family, search, critical, proposal, face)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         type(critical_t), intent(inout) :: critical  !! New in; its chain and their forces out
-         type(proposal_t), intent(out) :: proposal    !! Where it stops, usable if that is known
-         !> Faces of the joints of that collapse, where it is known: (n + 1)
-         type(joint_face_t), allocatable, intent(out) :: face(:)
-      end subroutine foresee
+   !> Search both sides of a value: above it, or below it where that falls and the ends stand. What
+   !> is found on the other side is told beside what is found there, or instead of it
+   pure subroutine close_both(family, search, value, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: value                !! A value that stands, or one that falls
+      type(critical_t), intent(inout) :: critical  !! What was found so far
+      type(search_t) :: part(2)
+      type(critical_t) :: found(2)
+      integer :: i, steps, passes, factorisations, first
 
-      !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
-      !> from the third value on the parabola through three tells what the secant leaves
-      pure module subroutine trace(family, search, limit, critical, proposal)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         real(wp), intent(in) :: limit  !! The end of the range on the side that stands
-         !> What was found so far; the factorisations are counted
-         type(critical_t), intent(inout) :: critical
-         type(proposal_t), intent(out) :: proposal  !! Where the collapse stops
-      end subroutine trace
+      part = search
+      part(1)%low = value
+      part(1)%start = value
+      part(2)%high = value
+      part(2)%start = min(search%start, value)
+      first = merge(2, 1, critical%verdict == verdict%stable)
+      do i = 1, 2
+         call close_bracket(family, part(i), found(i))
+      end do
+      steps = critical%steps + sum(found%steps)
+      passes = critical%passes + sum(found%passes)
+      factorisations = critical%factorisations + sum(found%factorisations)
+      associate (other => found(3 - first))
+         critical = found(first)
+         if (critical%verdict == verdict%found) then
+            critical%has_other = other%verdict == verdict%found
+            critical%other = merge(other%stop, middle(other%stands, other%falls), other%stops)
+         else if (critical%verdict /= verdict%undecided .and. other%verdict == verdict%found) then
+            critical = other
+         end if
+      end associate
+      critical%steps = steps
+      critical%passes = passes
+      critical%factorisations = factorisations
+   end subroutine close_both
 
-      !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
-      !> for their bars, which the family makes anew at any value
-      pure module subroutine shed(decision, keeps_joints)
-         type(decision_t), intent(inout) :: decision
-         !> Whether it keeps its joints: a load coefficient moves none
-         logical, intent(in) :: keeps_joints
-      end subroutine shed
+   !> Look between two ends that agree for a value that does not. A mechanism of limit analysis that
+   !> falls rules out all values beyond the one at which it stops; values that part what is left
+   !> evenly are tried
+   pure subroutine look_between(family, search, critical, value, differs)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      !> The verdict of both ends; the decisions that are made are counted
+      type(critical_t), intent(inout) :: critical
+      real(wp), intent(out) :: value   !! Such a value
+      logical, intent(out) :: differs  !! Whether there is one
+      real(wp) :: from, to
+      integer :: agree, answer, try
+      type(proposal_t) :: proposal
 
-      !> Search the critical value of a family of scenes
-      pure module subroutine find_critical(family, search, critical)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         type(critical_t), intent(out) :: critical
-      end subroutine find_critical
+      from = search%low
+      to = search%high
+      agree = critical%verdict
+      try = 1
+      answer = agree
+      do
+         if (answer == verdict%collapsed) then
+            call trace(family, search, merge(from, to, critical%falls > 0.5_wp*(from + to)), &
+               & critical, proposal)
+            if (proposal%usable) then
+               if (proposal%value < critical%falls) to = min(to, proposal%value)
+               if (proposal%value > critical%falls) from = max(from, proposal%value)
+               try = 1
+            end if
+         end if
+         differs = .false.
+         if (try > size(share)) return
+         if (to - from <= narrow*(search%high - search%low)) return
+         value = from + share(try)*(to - from)
+         try = try + 1
+         call decide_at(family, value, critical, answer)
+         differs = answer /= agree .and. answer /= verdict%undecided
+         if (differs) return
+      end do
+   end subroutine look_between
 
-      !> Search a family whose parameter is a load coefficient
-      pure module subroutine find_critical_load(family, search, critical, done)
-         class(family_t), intent(in) :: family
-         !> What is searched; where it is not done its low end may become a value that may stand
-         !> between others that fall
-         type(search_t), intent(inout) :: search
-         type(critical_t), intent(inout) :: critical
-         logical, intent(out) :: done  !! Whether the search could be done so
-      end subroutine find_critical_load
+   !> Decide again what is told of a search, where its joint graph does: how it falls, as to follow
+   !> that in steps takes minutes, or how what stands shares out its forces, as its proof does not
+   !> tell
+   pure subroutine tell_whole(family, wanted, critical)
+      class(family_t), intent(in) :: family
+      integer, intent(in) :: wanted  !! What is told, collapsed or stable
+      !> What was found, a decision of that verdict among it
+      type(critical_t), intent(inout) :: critical
+      type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      real(wp) :: value
 
-      !> Search the critical value
-      pure module subroutine find_critical_in_time(family, search, critical)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         type(critical_t), intent(out) :: critical
-      end subroutine find_critical_in_time
-
-   end interface
+      value = merge(critical%falls, critical%stands, wanted == verdict%collapsed)
+      call family%build(value, scene, error)
+      if (allocated(error)) return
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      allocate (decision)
+      call decide(scene, decision)
+      if (decision%outcome%verdict /= wanted) return
+      call shed(decision, keeps_joints=.true.)
+      call keep_decision(critical, value, decision)
+   end subroutine tell_whole
 
 end module dda_critical

@@ -5,25 +5,42 @@
 !> high the way to rest turns back. Elastic blocks that move in steps under the associated rule come
 !> to rest: if nothing slides in that rest it is one under Coulomb friction, too; if joints slide
 !> they hold only because sliding opens them, and the fall of the path counts.
-submodule (dda_decision) dda_dead_rest
+module dda_dead_rest
+   use dda_contacts, only : contacts_t
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
-   use dda_coulomb_law, only : face, shear_face, unloaded_state
+   use dda_coulomb_law, only : coulomb_state_t, face, shear_face, unloaded_state
    use dda_error, only : error_t
    use dda_forward, only : run_to_verdict
    use dda_graph_decision, only : no_start
-   use dda_joint_graph, only : add_joint_forces
-   use dda_load_stations, only : history_times, leads_at_once
+   use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_kinds, only : wp
+   use dda_load_stations, only : history_times, leads_at_once, load_stations_t
    use dda_path_event, only : path_end
    use dda_path_verdict, only : follow_stations
-   use dda_scene_graph, only : scene_graph
-   use dda_settings, only : flow_rule
+   use dda_scene, only : family_t, scene_t
+   use dda_scene_graph, only : graph_verdict_t, scene_graph
+   use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : outcome_t, verdict
    implicit none
+   private
+
+   public :: fall_at_once, follow_from_rest, rest_under_dead_loads
 
 contains
 
-   !> Follow the path from its dead loads
-   module procedure follow_from_rest
+   !> Follow the path from its dead loads; where it finds no state under them though forces balance
+   !> them, from the rest that blocks come to
+   pure subroutine follow_from_rest(family, value, settings, stations, is_balanced, scene, graph, &
+      & proof)
+      !> The family of the scene, of which it is made anew behind a path: its contacts leave room
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value                  !! Its parameter
+      type(settings_t), intent(in) :: settings
+      type(load_stations_t), intent(in) :: stations
+      logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
+      type(scene_t), intent(inout) :: scene
+      type(joint_graph_t), intent(inout) :: graph    !! Its joints, made anew, too
+      type(graph_verdict_t), intent(inout) :: proof  !! How the path went
       type(coulomb_state_t), allocatable :: start
       type(error_t), allocatable :: error
       integer :: n
@@ -34,7 +51,7 @@ contains
       call family%build(value, scene, error)
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       if (.not. (proof%no_start .and. is_balanced)) return
-      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, slides, n)
+      call rest_under_dead_loads(scene, start, slides, n)
       if (allocated(start)) then
          call follow_stations(settings, scene%system, graph, stations, proof, start)
          call scene_graph(scene%settings, scene%system, scene%contacts, graph)
@@ -44,45 +61,51 @@ contains
          if (slides) call fall_at_once(proof)
       end if
       proof%n_factorisation = proof%n_factorisation + n
-   end procedure follow_from_rest
+   end subroutine follow_from_rest
 
    !> Run the blocks under their dead loads alone
-   module procedure rest_under_dead_loads
+   pure subroutine rest_under_dead_loads(scene, start, slides, n)
+      type(scene_t), intent(in) :: scene
+      !> Where nothing slides, with the load that its forces balance
+      type(coulomb_state_t), allocatable, intent(out) :: start
+      logical, intent(out) :: slides  !! Whether there is a rest and joints slide in it
+      integer, intent(out) :: n       !! Factorisations
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20
-      type(block_system_t) :: moved
-      type(contacts_t) :: settled
+      type(scene_t) :: dead
       type(joint_graph_t) :: graph
       type(outcome_t) :: outcome
-      type(settings_t) :: dead
 
       n = 0
       slides = .false.
-      if (size(history_times(settings)) > 0 .or. leads_at_once(settings)) return
-      dead = settings
-      dead%tilt = 0.0_wp
-      dead%push = 0.0_wp
-      dead%load_factor = 0.0_wp
-      dead%max_steps = min(settings%max_steps, most_steps)
-      dead%flow = flow_rule%associated
-      moved = system
-      settled = contacts
-      call run_to_verdict(dead, moved, settled, outcome)
-      n = outcome%factorisations
-      if (outcome%verdict /= verdict%stable) return
-      slides = any(settled%face%slip /= 0)
-      if (slides) return
-      call scene_graph(dead, system, contacts, graph)
+      if (size(history_times(scene%settings)) > 0 .or. leads_at_once(scene%settings)) return
+      dead = scene
+      associate (settings => dead%settings)
+         settings%tilt = 0.0_wp
+         settings%push = 0.0_wp
+         settings%load_factor = 0.0_wp
+         settings%max_steps = min(settings%max_steps, most_steps)
+         settings%flow = flow_rule%associated
+         call run_to_verdict(settings, dead%system, dead%contacts, outcome)
+         n = outcome%factorisations
+         if (outcome%verdict /= verdict%stable) return
+         slides = any(dead%contacts%face%slip /= 0)
+         if (slides) return
+         call scene_graph(settings, scene%system, scene%contacts, graph)
+      end associate
       ! the springs of bars and fill have forces that contacts do not tell
-      if (size(graph%kind) == size(contacts%joint)) call take_state(graph, settled, start)
-   end procedure rest_under_dead_loads
+      if (size(graph%kind) == size(scene%contacts%joint)) &
+         & call take_state(graph, dead%contacts, start)
+   end subroutine rest_under_dead_loads
 
    !> A path whose fall, before it has begun, counts
-   module procedure fall_at_once
+   pure subroutine fall_at_once(proof)
+      type(graph_verdict_t), intent(inout) :: proof  !! The path, with the mechanism of its fall
+
       if (.not. allocated(proof%mechanism)) return
       proof%end = path_end%collapsed
       if (allocated(proof%reason)) deallocate (proof%reason)
-   end procedure fall_at_once
+   end subroutine fall_at_once
 
    !> The state of joints at rest
    pure subroutine take_state(graph, contacts, state)
@@ -110,5 +133,4 @@ contains
       call add_joint_forces(graph, state%force, state%load)
       state%load = -state%load
    end subroutine take_state
-
-end submodule dda_dead_rest
+end module dda_dead_rest

@@ -1,145 +1,304 @@
 !> Whether a structure is stable under Coulomb friction: the decision that searches are made of
 !>
-!> How it is decided stands in submodules: who asks needs no more than what is asked and answered.
+!> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
+!> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
+!> run again under Coulomb friction. Where blocks keep their places and friction alone holds them,
+!> the verdict is that of the joint graph, with a proof, and the run only tells how the forces are
+!> shared out.
 module dda_decision
-   use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
-   use dda_coulomb_law, only : coulomb_state_t
-   use dda_frames, only : album_t
-   use dda_joint_graph, only : joint_graph_t
-   use dda_load_stations, only : load_stations_t
+   use dda_block_system, only : begin_motion, block_system_t
+   use dda_boundary, only : held_at_start
+   use dda_contacts, only : begin_forces, contacts_t
+   use dda_coulomb_law, only : coulomb_state_t, face
+   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
+   use dda_forward, only : run_to_verdict
+   use dda_frames, only : album_t, blank_album, keep_pictures
+   use dda_graph_decision, only : decide_graph
+   use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
-   use dda_scene, only : family_t, scene_t
-   use dda_scene_graph, only : graph_verdict_t
+   use dda_material, only : weakens
+   use dda_path_event, only : path_end
+   use dda_scene, only : scene_t
+   use dda_scene_graph, only : decides_as_graph, graph_verdict_t
    use dda_search, only : decision_t
-   use dda_settings, only : settings_t
-   use dda_step_context, only : march_t
+   use dda_settings, only : flow_rule, settings_t
+   use dda_step_context, only : march_t, run_t
+   use dda_verdict, only : outcome_t, verdict
    implicit none
    private
 
-   public :: decide, record_rest, record_collapse, decide_by_steps, follow_coulomb
-   public :: follow_from_rest, rest_under_dead_loads, fall_at_once, decide_in_stages
+   public :: decide, decide_by_steps, record_collapse, record_rest, run_in_time, run_under
 
-   interface
+   !> Steps that the static beginning of a dynamic run may take, at the least
+   integer, parameter :: least_static_steps = 400
+   !> A joint slides against friction if its force is more than this share of the largest
+   real(wp), parameter :: felt = 1.0e-9_wp
 
-      !> Decide a static structure, or run a dynamic one
-      pure module subroutine decide(settings, system, contacts, decision, album, onward, &
-         & verdict_only)
-         type(settings_t), intent(in) :: settings
-         !> The blocks at the beginning
-         type(block_system_t), intent(in) :: system
-         !> The contacts at the beginning
-         type(contacts_t), intent(in) :: contacts
-         type(decision_t), intent(out) :: decision
-         !> Receives pictures of the run that decides
-         type(album_t), intent(inout), optional :: album
-         !> Where a dynamic run goes on and where it ended
-         type(march_t), intent(inout), optional :: onward
-         !> Whether forces and motions of what stands are not asked for
-         logical, intent(in), optional :: verdict_only
-      end subroutine decide
+contains
 
-      !> Blocks and contacts of what stands, as its proof has them
-      pure module subroutine record_rest(settings, system, contacts, proof, decision)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         type(graph_verdict_t), intent(in) :: proof
-         !> Receives them; what its outcome counts is kept
-         type(decision_t), intent(inout) :: decision
-      end subroutine record_rest
+   !> Decide a static structure, or run a dynamic one
+   pure subroutine decide(scene, decision, album, onward, verdict_only)
+      type(scene_t), intent(in) :: scene  !! The scene at its beginning
+      type(decision_t), intent(out) :: decision
+      !> Receives pictures of the run that decides
+      type(album_t), intent(inout), optional :: album
+      !> Where a dynamic run goes on and where it ended
+      type(march_t), intent(inout), optional :: onward
+      !> Whether forces and motions of what stands are not asked for
+      logical, intent(in), optional :: verdict_only
+      logical :: bare
 
-      !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
-      !> will do; where it does not know the first one a run tells it
-      pure module subroutine record_collapse(settings, system, contacts, proof, decision, album)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         type(graph_verdict_t), intent(in) :: proof  !! That it falls
-         type(decision_t), intent(inout) :: decision
-         type(album_t), intent(inout), optional :: album
-      end subroutine record_collapse
+      bare = .false.
+      if (present(verdict_only)) bare = verdict_only
+      if (scene%settings%dynamic) then
+         call run_in_time(scene, decision, album, onward)
+      else if (decides_as_graph(scene%settings, scene%contacts)) then
+         call decide_by_graph(scene, bare, decision, album)
+      else
+         call decide_by_steps(scene, decision, album)
+      end if
+   end subroutine decide
 
-      !> Decide by steps to rest or collapse
-      pure module subroutine decide_by_steps(settings, system, contacts, decision, album)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         type(decision_t), intent(out) :: decision
-         type(album_t), intent(inout), optional :: album
-      end subroutine decide_by_steps
+   !> Decide by the joint graph
+   pure subroutine decide_by_graph(scene, bare, decision, album)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: bare  !! Whether forces and motions of what stands are not asked for
+      type(decision_t), intent(out) :: decision
+      type(album_t), intent(inout), optional :: album
+      type(graph_verdict_t) :: proof
+      type(coulomb_state_t), allocatable :: start
+      integer :: n
+      logical :: slides
 
-      !> Run in time from the beginning, or from where a run has ended. Where it is to begin in
-      !> balance a static run leads there, under what acts at time 0 on a ground at rest; velocities
-      !> are those that the blocks were given
-      pure module subroutine run_in_time(settings, system, contacts, decision, album, onward)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         !> The decision; the counts of the run are added to those that it has
-         type(decision_t), intent(inout) :: decision
-         type(album_t), intent(inout), optional :: album
-         type(march_t), intent(inout), optional :: onward
-      end subroutine run_in_time
+      associate (settings => scene%settings, system => scene%system, contacts => scene%contacts)
+         call decide_graph(settings, system, contacts, bare, proof)
+         if (proof%no_start) then
+            call rest_under_dead_loads(scene, start, slides, n)
+            if (allocated(start) .and. .not. proof%unproven) &
+               & call decide_graph(settings, system, contacts, bare, proof, start)
+            if (slides) call fall_at_once(proof)
+            proof%n_factorisation = proof%n_factorisation + n
+         end if
+      end associate
+      if (proof%end == path_end%collapsed) then
+         call record_collapse(scene, proof, decision, album)
+      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
+         & .or. has_slid(proof) .or. .not. may_run(scene))) then
+         call record_rest(scene, proof, decision)
+      else if (proof%end == path_end%reached) then
+         call share_forces(scene, proof, decision, album)
+      else if (proof%unproven .and. may_run(scene)) then
+         call decide_by_steps(scene, decision, album)
+      else
+         decision%system = scene%system
+         decision%contacts = scene%contacts
+         call begin_forces(decision%contacts)
+         decision%outcome%reason = proof%reason
+      end if
+      call begin_motion(decision%system)
+      call move_alloc(proof%limit, decision%limit)
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + proof%n_event + 1
+         outcome%jumps = outcome%jumps + proof%n_jump
+         outcome%largest_jump = max(outcome%largest_jump, proof%largest_jump)
+         outcome%factorisations = outcome%factorisations + proof%n_factorisation
+         if (.not. allocated(outcome%motion)) allocate (outcome%motion(scene%settings%n_dof, &
+            & maxval(scene%system%equation)), source=0.0_wp)
+      end associate
+   end subroutine decide_by_graph
 
-      !> Run a structure under Coulomb friction from its beginning
-      pure module subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         type(decision_t), intent(inout) :: decision
-         type(album_t), intent(inout), optional :: album
-         type(march_t), intent(inout), optional :: onward
-      end subroutine follow_coulomb
+   !> Whether joints slide in the state that Coulomb's law has led to, or have strength, of which
+   !> the path alone knows what is lost: no elastic sharing without slip is looked for then
+   pure logical function has_slid(proof)
+      type(graph_verdict_t), intent(in) :: proof
 
-      !> Follow the path from its dead loads; where it finds no state under them though forces
-      !> balance them, from the rest that blocks come to
-      pure module subroutine follow_from_rest(family, value, settings, stations, is_balanced, &
-         & scene, graph, proof)
-         !> The family of the scene, of which it is made anew behind a path: its contacts leave room
-         class(family_t), intent(in) :: family
-         real(wp), intent(in) :: value                  !! Its parameter
-         type(settings_t), intent(in) :: settings
-         type(load_stations_t), intent(in) :: stations
-         logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
-         type(scene_t), intent(inout) :: scene
-         type(joint_graph_t), intent(inout) :: graph    !! Its joints, made anew, too
-         type(graph_verdict_t), intent(inout) :: proof  !! How the path went
-      end subroutine follow_from_rest
+      has_slid = .false.
+      if (.not. allocated(proof%state)) return
+      has_slid = allocated(proof%state%whole)
+      if (has_slid) return
+      associate (force => proof%state%force)
+         ! where two corners touch without force nothing resists
+         has_slid = any(abs(proof%state%face(3, :)) == face%slides &
+            & .and. sum(force(1:2, :), dim=1) > felt*maxval(abs(force)))
+      end associate
+   end function has_slid
 
-      !> Run the blocks under their dead loads alone
-      pure module subroutine rest_under_dead_loads(settings, system, contacts, start, slides, n)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         !> Where nothing slides, with the load that its forces balance
-         type(coulomb_state_t), allocatable, intent(out) :: start
-         logical, intent(out) :: slides  !! Whether there is a rest and joints slide in it
-         integer, intent(out) :: n       !! Factorisations
-      end subroutine rest_under_dead_loads
+   !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
+   !> strength
+   pure logical function may_run(scene)
+      type(scene_t), intent(in) :: scene
 
-      !> A path whose fall, before it has begun, counts
-      pure module subroutine fall_at_once(proof)
-         type(graph_verdict_t), intent(inout) :: proof  !! The path, with the mechanism of its fall
-      end subroutine fall_at_once
+      may_run = .not. (allocated(scene%settings%boundary%bounded) .or. any( &
+         & scene%contacts%law(scene%contacts%joint%law)%strength < huge(1.0_wp)))
+   end function may_run
 
-      !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
-      !> stage that falls is the last
-      pure module subroutine decide_in_stages(scene, decision, album, onward, system, contacts)
-         !> The scene; blocks and contacts become those of the last stage, where they were at the
-         !> beginning
-         type(scene_t), intent(inout) :: scene
-         !> The decision of the last stage; its counts are those of all
-         type(decision_t), intent(out) :: decision
-         type(album_t), intent(inout) :: album
-         !> Where a dynamic run goes on and where it ended
-         type(march_t), intent(inout) :: onward
-         !> Blocks and contacts where an earlier run has left them; without them they are the
-         !> scene's
-         type(block_system_t), intent(in), optional :: system
-         type(contacts_t), intent(in), optional :: contacts
-      end subroutine decide_in_stages
+   !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
+   !> slide under Coulomb friction, as the loading path leaves them
+   pure subroutine share_forces(scene, proof, decision, album)
+      type(scene_t), intent(in) :: scene
+      type(graph_verdict_t), intent(in) :: proof
+      type(decision_t), intent(inout) :: decision
+      type(album_t), intent(inout), optional :: album
+      logical :: shared
 
-   end interface
+      associate (outcome => decision%outcome)
+         call run_under(flow_rule%associated, scene%settings, scene%system, scene%contacts, &
+            & decision, album)
+         shared = outcome%verdict == verdict%stable .and. &
+            & .not. (scene%settings%verdict_flow == flow_rule%coulomb &
+            & .and. any(decision%contacts%face%slip /= 0))
+         outcome%verdict = verdict%stable
+         if (allocated(outcome%reason)) deallocate (outcome%reason)
+      end associate
+      if (shared) return
+      call record_rest(scene, proof, decision)
+      if (present(album)) call show_end(scene%settings, decision, album)
+   end subroutine share_forces
 
+   !> Blocks and contacts of what stands, as its proof has them
+   pure subroutine record_rest(scene, proof, decision)
+      type(scene_t), intent(in) :: scene
+      type(graph_verdict_t), intent(in) :: proof
+      !> Receives them; what its outcome counts is kept
+      type(decision_t), intent(inout) :: decision
+
+      decision%outcome%verdict = verdict%stable
+      decision%flow = proof%flow
+      decision%system = scene%system
+      decision%contacts = scene%contacts
+      call show_state(scene%settings, proof, decision%system, decision%contacts)
+   end subroutine record_rest
+
+   !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
+   !> will do; where it does not know the first one a run tells it
+   pure subroutine record_collapse(scene, proof, decision, album)
+      type(scene_t), intent(in) :: scene
+      type(graph_verdict_t), intent(in) :: proof  !! That it falls
+      type(decision_t), intent(inout) :: decision
+      type(album_t), intent(inout), optional :: album
+
+      associate (outcome => decision%outcome, settings => scene%settings)
+         if (proof%flow == flow_rule%associated .and. .not. proof%is_told .and. may_run(scene)) then
+            call run_under(proof%flow, settings, scene%system, scene%contacts, decision, album)
+            if (outcome%verdict == verdict%collapsed) return
+            if (allocated(outcome%reason)) deallocate (outcome%reason)
+         end if
+         decision%flow = proof%flow
+         decision%system = scene%system
+         decision%contacts = scene%contacts
+         decision%by_graph = .true.
+         outcome%verdict = verdict%collapsed
+         if (allocated(outcome%motion)) deallocate (outcome%motion)
+         allocate (outcome%motion(settings%n_dof, maxval(scene%system%equation)), source=0.0_wp)
+         outcome%motion(:3, :) = proof%mechanism(:, :maxval(scene%system%equation))
+         call show_mechanism(settings, scene%system, proof, decision%contacts)
+         if (present(album)) call show_end(settings, decision, album)
+      end associate
+   end subroutine record_collapse
+
+   !> Where the measured points are in a state that no run has led to
+   pure subroutine show_end(settings, decision, album)
+      type(settings_t), intent(in) :: settings
+      type(decision_t), intent(in) :: decision
+      type(album_t), intent(inout) :: album
+      type(run_t) :: run
+
+      album = blank_album(album)
+      run%settings = settings
+      run%system = decision%system
+      call begin_motion(run%system)
+      run%contacts = decision%contacts
+      call keep_pictures(run, .false., album)
+   end subroutine show_end
+
+   !> Decide by steps to rest or collapse
+   pure subroutine decide_by_steps(scene, decision, album)
+      type(scene_t), intent(in) :: scene
+      type(decision_t), intent(out) :: decision
+      type(album_t), intent(inout), optional :: album
+
+      associate (settings => scene%settings, system => scene%system, contacts => scene%contacts)
+         ! what slides as it opens wears another way, so that its fall proves nothing
+         if (.not. any(weakens(contacts%law(contacts%joint%law)))) then
+            call run_under(flow_rule%associated, settings, system, contacts, decision, album)
+            if (decision%outcome%verdict /= verdict%stable) return
+            if (settings%verdict_flow == flow_rule%associated) return
+            if (.not. any(decision%contacts%face%slip /= 0)) return
+            if (present(album)) album = blank_album(album)
+         end if
+         call run_under(flow_rule%coulomb, settings, system, contacts, decision, album)
+      end associate
+   end subroutine decide_by_steps
+
+   !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
+   !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
+   !> that the blocks were given
+   pure subroutine run_in_time(scene, decision, album, onward)
+      type(scene_t), intent(in) :: scene
+      !> The decision; the counts of the run are added to those that it has
+      type(decision_t), intent(inout) :: decision
+      type(album_t), intent(inout), optional :: album
+      type(march_t), intent(inout), optional :: onward
+      type(settings_t) :: static
+      type(decision_t) :: settled
+      type(march_t) :: rest, march
+      logical :: begins
+
+      begins = scene%settings%settles
+      if (present(onward)) begins = begins .and. onward%steps == 0
+      if (.not. begins) then
+         call run_under(flow_rule%coulomb, scene%settings, scene%system, scene%contacts, decision, &
+            & album, onward)
+         return
+      end if
+      static = scene%settings
+      static%dynamic = .false.
+      static%time_step = 0.0_wp
+      static%duration = 0.0_wp
+      static%collapse_displacement = 0.0_wp
+      static%max_steps = max(least_static_steps, static%max_steps)
+      static%boundary = held_at_start(scene%settings%boundary)
+      call run_under(flow_rule%coulomb, static, scene%system, scene%contacts, settled, onward=rest)
+      if (settled%outcome%verdict /= verdict%stable) then
+         decision = settled
+         if (.not. allocated(decision%outcome%reason)) decision%outcome%reason = &
+            & "the blocks collapse under their loads at time 0"
+         decision%outcome%reason = "start = 'static' found no rest: "//decision%outcome%reason
+         decision%outcome%verdict = verdict%undecided
+         return
+      end if
+      if (allocated(scene%system%velocity)) settled%system%velocity = scene%system%velocity
+      decision%outcome = settled%outcome
+      march%held_force = rest%held_force
+      call run_under(flow_rule%coulomb, scene%settings, settled%system, settled%contacts, &
+         & decision, album, march)
+      if (present(onward)) onward = march
+   end subroutine run_in_time
+
+   !> Run a structure under a flow rule to its verdict
+   pure subroutine run_under(flow, settings, system, contacts, decision, album, onward)
+      integer, intent(in) :: flow  !! One of flow_rule
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      type(decision_t), intent(inout) :: decision
+      type(album_t), intent(inout), optional :: album
+      type(march_t), intent(inout), optional :: onward
+      type(settings_t) :: ruled
+      type(outcome_t) :: before
+
+      before = decision%outcome
+      ruled = settings
+      ruled%flow = flow
+      decision%flow = flow
+      decision%system = system
+      decision%contacts = contacts
+      call run_to_verdict(ruled, decision%system, decision%contacts, decision%outcome, album, &
+         & onward)
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + before%steps
+         outcome%passes = outcome%passes + before%passes
+         outcome%factorisations = outcome%factorisations + before%factorisations
+      end associate
+   end subroutine run_under
 end module dda_decision

@@ -1,20 +1,26 @@
 !> Critical value of a load coefficient: the first collapse on the loading path, with the associated
 !> limit beside it. The coefficient comes last on the path, so one path finds its critical value
-submodule (dda_critical) dda_load_search
-   use dda_decision, only : follow_from_rest, record_collapse, record_rest
+module dda_load_search
+   use dda_dead_rest, only : follow_from_rest
+   use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
    use dda_graph_decision, only : see_fall, slide_along
    use dda_joint_graph, only : breaks, joint_graph_t
+   use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
       & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_path_event, only : path_end
-   use dda_scene, only : searched_load
+   use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
+   use dda_search, only : critical_t, search_t, shed
    use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : verdict
    implicit none
+   private
+
+   public :: find_critical_load
 
    !> Where a structure falls on one side of the unloaded state
    type :: side_t
@@ -46,7 +52,13 @@ submodule (dda_critical) dda_load_search
 contains
 
    !> Search a family whose parameter is a load coefficient
-   module procedure find_critical_load
+   pure subroutine find_critical_load(family, search, critical, done)
+      class(family_t), intent(in) :: family
+      !> What is searched; where it is not done its low end may become a value that may stand
+      !> between others that fall
+      type(search_t), intent(inout) :: search
+      type(critical_t), intent(inout) :: critical
+      logical, intent(out) :: done  !! Whether the search could be done so
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
       type(scene_t), allocatable :: scene
@@ -86,7 +98,7 @@ contains
       if (done) call move_alloc(scene, critical%scene)
       search%low = search%low + (origin - low)*(search%high - search%low)/(high - low)
       search%start = search%low
-   end procedure find_critical_load
+   end subroutine find_critical_load
 
    !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
    pure subroutine look_elsewhere(family, scene, graph, search, low, high, right, left, origin, &
@@ -320,10 +332,8 @@ contains
          critical%verdict = verdict%stable
          critical%stands = merge(search%high, search%low, high > 0.0_wp)
          allocate (critical%standing)
-         if (high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
-            & right%proof, critical%standing)
-         if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
-            & left%proof, critical%standing)
+         if (high > 0.0_wp) call record_rest(scene, right%proof, critical%standing)
+         if (.not. high > 0.0_wp) call record_rest(scene, left%proof, critical%standing)
          call shed(critical%standing, keeps_joints=.false.)
       end if
    end subroutine conclude
@@ -347,7 +357,7 @@ contains
       critical%stops = .true.
       call keep_collapse(scene, side, critical)
       allocate (critical%standing)
-      call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
+      call record_rest(scene, side%proof, critical%standing)
       call shed(critical%standing, keeps_joints=.false.)
       call keep_limit(search, low, high, side, critical)
    end subroutine close_bracket
@@ -380,9 +390,8 @@ contains
       type(critical_t), intent(inout) :: critical
 
       allocate (critical%fallen)
-      call record_collapse(scene%settings, scene%system, scene%contacts, side%proof, &
-         & critical%fallen)
+      call record_collapse(scene, side%proof, critical%fallen)
       call shed(critical%fallen, keeps_joints=.false.)
    end subroutine keep_collapse
 
-end submodule dda_load_search
+end module dda_load_search

@@ -1,7 +1,7 @@
 !> Collapse mechanism: hinges, sliding share and mode of the last step
 module dda_mechanism
    use dda_contacts, only : contacts_t
-   use dda_decision, only : follow_coulomb
+   use dda_decision, only : run_under
    use dda_frames, only : album_t, blank_album
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
@@ -71,7 +71,8 @@ contains
       if (maxval(scene%system%equation) > most_followed &
          & .and. decides_as_graph(scene%settings, scene%contacts)) return
       pictures = blank_album(album)
-      call follow_coulomb(scene%settings, scene%system, scene%contacts, other, pictures)
+      call run_under(flow_rule%coulomb, scene%settings, scene%system, scene%contacts, other, &
+         & pictures)
       if (other%outcome%verdict /= verdict%collapsed) return
       decision = other
       album = pictures

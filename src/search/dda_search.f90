@@ -1,7 +1,9 @@
 !> What a search looks for, and what it has found
 module dda_search
+   use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
+   use dda_contact_types, only : joint_springs_t
+   use dda_contacts, only : contacts_t, place_all_joints
    use dda_kinds, only : wp
    use dda_limit_decision, only : load_decision_t
    use dda_scene, only : link_t, scene_t
@@ -9,7 +11,7 @@ module dda_search
    implicit none
    private
 
-   public :: search_t, critical_t, decision_t, proof_t, keep_decision
+   public :: search_t, critical_t, decision_t, proof_t, keep_decision, shed
 
    !> What is searched
    type :: search_t
@@ -144,4 +146,21 @@ contains
       end select
    end subroutine keep_decision
 
+   !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
+   !> for their bars, which the family makes anew at any value
+   pure subroutine shed(decision, keeps_joints)
+      type(decision_t), intent(inout) :: decision
+      !> Whether it keeps its joints: a load coefficient moves none
+      logical, intent(in) :: keeps_joints
+      type(bar_state_t), allocatable :: bar(:)
+
+      if (keeps_joints) call place_all_joints(decision%system, decision%contacts)
+      if (.not. keeps_joints) deallocate (decision%contacts%joint)
+      if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
+      decision%system = block_system_t()
+      if (allocated(bar)) call move_alloc(bar, decision%system%bar)
+      decision%contacts%springs = joint_springs_t()
+      if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
+         & deallocate (decision%outcome%motion)
+   end subroutine shed
 end module dda_search

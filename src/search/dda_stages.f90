@@ -4,18 +4,28 @@
 !> carried is a load on its neighbours at first, which then goes to nothing; a block that is built
 !> fits where it stands, without force, and then gets its weight. A dynamic run goes on with the
 !> velocities of the blocks that stay.
-submodule (dda_decision) dda_stages
-   use dda_block_system, only : begin_motion
+module dda_stages
+   use dda_block_system, only : begin_motion, block_system_t
    use dda_boundary, only : present_at, stage_times
-   use dda_contacts, only : begin_forces, edge_pairs_t, keep_contacts
+   use dda_contacts, only : begin_forces, contacts_t, edge_pairs_t, keep_contacts
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
-   use dda_coulomb_law, only : unloaded_state
+   use dda_coulomb_law, only : coulomb_state_t, unloaded_state
+   use dda_decision, only : decide, record_collapse, record_rest, run_in_time
+   use dda_frames, only : album_t
    use dda_graph_decision, only : decide_graph
-   use dda_joint_graph, only : add_joint_forces
+   use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_kinds, only : wp
    use dda_path_event, only : path_end
-   use dda_scene_graph, only : has_limit_analysis, scene_graph
+   use dda_scene, only : scene_t
+   use dda_scene_graph, only : graph_verdict_t, has_limit_analysis, scene_graph
+   use dda_search, only : decision_t
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t
    use dda_verdict, only : outcome_t, verdict
    implicit none
+   private
+
+   public :: decide_in_stages, enter_stage
 
    !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it
    !> presses with more than this share of the largest force
@@ -23,39 +33,41 @@ submodule (dda_decision) dda_stages
 
 contains
 
-   !> Decide a scene stage by stage, or at once where nothing is built or taken away
-   module procedure decide_in_stages
+   !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
+   !> stage that falls is the last
+   pure subroutine decide_in_stages(scene, decision, album, onward, last)
+      !> The scene at its beginning, or where an earlier run has left it
+      type(scene_t), intent(in) :: scene
+      !> The decision of the last stage; its counts are those of all
+      type(decision_t), intent(out) :: decision
+      type(album_t), intent(inout) :: album
+      !> Where a dynamic run goes on and where it ended
+      type(march_t), intent(inout) :: onward
+      real(wp), intent(out) :: last  !! Time at which the last stage began [s]
       real(wp), allocatable :: time(:)
-      real(wp) :: last
 
+      last = 0.0_wp
       associate (settings => scene%settings)
-         if (.not. (allocated(settings%boundary%change) .or. present(system))) then
-            call decide(settings, scene%system, scene%contacts, decision, album, onward)
-            return
-         else if (.not. allocated(settings%boundary%change)) then
-            call decide(settings, system, contacts, decision, album, onward)
+         if (.not. allocated(settings%boundary%change)) then
+            call decide(scene, decision, album, onward)
             return
          end if
          time = stage_times(settings%boundary)
          time = [0.0_wp, pack(time, time > 0.0_wp), huge(1.0_wp)]
          decision%system = scene%system
          decision%contacts = scene%contacts
-         if (present(system)) decision%system = system
-         if (present(contacts)) decision%contacts = contacts
-         last = 0.0_wp
          if (settings%dynamic .and. settings%current) then
             call move_through(settings, time, decision, album, onward, last)
          else if (has_limit_analysis(settings, decision%contacts)) then
-            call decide_at_rest(settings, time, decision, last)
+            call decide_at_rest(scene, time, decision, last)
          else
             decision%outcome%reason = "stages need friction alone and geometry = 'reference' " &
                & //"in a static run, geometry = 'current' in a dynamic one"
          end if
          call begin_motion(decision%system)
          call begin_forces(decision%contacts)
-         call enter_stage(settings, last, scene%system, scene%contacts)
       end associate
-   end procedure decide_in_stages
+   end subroutine decide_in_stages
 
    !> Move from stage to stage
    pure subroutine move_through(settings, time, decision, album, onward, last)
@@ -66,84 +78,69 @@ contains
       type(decision_t), intent(inout) :: decision
       type(album_t), intent(inout) :: album
       type(march_t), intent(inout) :: onward
-      !> Time at which the last stage began [s]
       real(wp), intent(inout) :: last
-      type(settings_t) :: stage
+      type(outcome_t) :: begun
+      type(scene_t) :: stage
       integer :: k
 
-      stage = settings
+      stage%settings = settings
       do k = 1, size(time) - 1
          if (time(k + 1) <= onward%time) cycle
          if (settings%duration > 0.0_wp .and. time(k) >= settings%duration) exit
          last = time(k)
-         stage%duration = settings%duration
+         stage%settings%duration = settings%duration
          if (time(k + 1) < huge(1.0_wp) .and. .not. (settings%duration > 0.0_wp &
-            & .and. settings%duration < time(k + 1))) stage%duration = time(k + 1)
+            & .and. settings%duration < time(k + 1))) stage%settings%duration = time(k + 1)
          call enter_stage(settings, last, decision%system, decision%contacts)
          if (allocated(onward%last_motion)) deallocate (onward%last_motion)
-         call move_on(stage, album, onward, decision)
+         stage%system = decision%system
+         stage%contacts = decision%contacts
+         ! counts of a run that goes on are those since its beginning
+         decision%outcome = begun
+         call run_in_time(stage, decision, album, onward)
          if (decision%outcome%verdict /= verdict%completed) exit
       end do
    end subroutine move_through
 
-   !> Go on in time to the end of a stage
-   pure subroutine move_on(stage, album, onward, decision)
-      type(settings_t), intent(in) :: stage
-      type(album_t), intent(inout) :: album
-      type(march_t), intent(inout) :: onward
-      type(decision_t), intent(inout) :: decision
-      type(block_system_t) :: system
-      type(contacts_t) :: contacts
-      type(outcome_t) :: begun
-
-      system = decision%system
-      contacts = decision%contacts
-      ! counts of a run that goes on are those since its beginning
-      decision%outcome = begun
-      call run_in_time(stage, system, contacts, decision, album, onward)
-   end subroutine move_on
-
    !> Follow the loading path through all stages
-   pure subroutine decide_at_rest(settings, time, decision, last)
-      type(settings_t), intent(in) :: settings
+   pure subroutine decide_at_rest(scene, time, decision, last)
+      type(scene_t), intent(in) :: scene
       real(wp), intent(in) :: time(:)
       !> The decision; blocks and contacts at the beginning in, those of the last stage out
       type(decision_t), intent(inout) :: decision
       real(wp), intent(inout) :: last
-      type(settings_t) :: stage
-      type(block_system_t) :: system
-      type(contacts_t) :: all, contacts
+      type(scene_t) :: next, stage
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
-      logical :: slid(size(decision%contacts%joint)), there(size(slid)), built
+      logical :: slid(size(scene%contacts%joint)), there(size(slid)), built
       integer :: factorisations, j, k, steps
 
-      system = decision%system
-      all = decision%contacts
-      contacts = all
-      stage = settings
+      stage = scene
       slid = .false.
       steps = 0
       factorisations = 0
       do k = 1, size(time) - 1
          last = time(k)
-         stage%from = time(k)
-         stage%until = time(k + 1)
-         if (k > 1) call hand_over(settings, time(k), system, contacts, all, proof, start)
-         contacts = all
-         call enter_stage(settings, time(k), system, contacts)
-         call decide_graph(stage, system, contacts, .false., proof, start)
-         there = [(.not. any(system%absent(all%joint(j)%block)), j=1, size(there))]
+         next = stage
+         next%settings%from = time(k)
+         next%settings%until = time(k + 1)
+         next%contacts = scene%contacts
+         call enter_stage(next%settings, time(k), next%system, next%contacts)
+         if (k > 1) call hand_over(stage, next, scene%contacts, proof, start)
+         stage = next
+         call decide_graph(stage%settings, stage%system, stage%contacts, .false., proof, start)
+         there = [(.not. any(stage%system%absent(scene%contacts%joint(j)%block)), &
+            & j=1, size(there))]
          if (allocated(proof%state)) slid = slid .or. unpack(has_slid(proof%state, count(there), &
             & start), there, .false.)
          steps = steps + proof%n_event + 1
          factorisations = factorisations + proof%n_factorisation
          if (proof%end /= path_end%reached) exit
       end do
-      associate (change => settings%boundary%change)
+      associate (change => scene%settings%boundary%change)
          built = any(change%adds .and. change%time > 0.0_wp .and. change%time <= last)
       end associate
-      call record_stage(settings, stage, system, contacts, proof, any(slid) .or. built, decision)
+      call record_stage(scene%settings, stage, proof, any(slid) .or. built, decision)
       associate (outcome => decision%outcome)
          outcome%has_built = built
          outcome%n_slid = count(slid)
@@ -152,36 +149,38 @@ contains
          outcome%factorisations = factorisations
          outcome%has_path = .true.
          outcome%path_time = last
-         if (.not. allocated(outcome%motion)) &
-            & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
+         if (.not. allocated(outcome%motion)) allocate (outcome%motion(scene%settings%n_dof, &
+            & maxval(stage%system%equation)), source=0.0_wp)
       end associate
    end subroutine decide_at_rest
 
    !> Blocks and contacts of the last stage
-   pure subroutine record_stage(settings, stage, system, contacts, proof, in_order, decision)
-      type(settings_t), intent(in) :: settings, stage
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
+   pure subroutine record_stage(settings, stage, proof, in_order, decision)
+      type(settings_t), intent(in) :: settings  !! Settings of all stages
+      type(scene_t), intent(in) :: stage
       type(graph_verdict_t), intent(in) :: proof
       !> Whether joints have slid or blocks were built in any stage; otherwise forces are those of
       !> the last shape built at once
       logical, intent(in) :: in_order
       type(decision_t), intent(inout) :: decision
+      type(scene_t) :: at_once
       logical :: slides
 
       if (proof%end == path_end%collapsed) then
-         call record_collapse(stage, system, contacts, proof, decision)
+         call record_collapse(stage, proof, decision)
       else if (proof%end == path_end%reached) then
          slides = .false.
          if (.not. in_order) then
-            call decide(settings, system, contacts, decision)
+            at_once = stage
+            at_once%settings = settings
+            call decide(at_once, decision)
             slides = has_slipped(decision)
          end if
-         if (in_order .or. slides) call record_rest(stage, system, contacts, proof, decision)
+         if (in_order .or. slides) call record_rest(stage, proof, decision)
          decision%outcome%slides_at_once = slides
       else
-         decision%system = system
-         decision%contacts = contacts
+         decision%system = stage%system
+         decision%contacts = stage%contacts
          decision%outcome%reason = proof%reason
       end if
    end subroutine record_stage
@@ -243,32 +242,26 @@ contains
 
    !> The state that the next stage begins with: joints of blocks that stay keep what they carry;
    !> what the others carried is a load on those that stay
-   pure subroutine hand_over(settings, time, system, contacts, all, proof, start)
-      type(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: time  !! Time at which the next stage begins [s]
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts, all
+   pure subroutine hand_over(stage, next, all, proof, start)
+      type(scene_t), intent(in) :: stage   !! The stage that has ended
+      type(scene_t), intent(in) :: next    !! The stage that begins
+      type(contacts_t), intent(in) :: all  !! Contacts between all blocks
       type(graph_verdict_t), intent(in) :: proof
       type(coulomb_state_t), allocatable, intent(out) :: start
       type(joint_graph_t) :: before, after
-      type(block_system_t) :: next
-      type(contacts_t) :: contacts_after
       type(coulomb_joints_t) :: joints
       real(wp), allocatable :: force(:, :), load(:, :)
       integer, allocatable :: joint_of(:), label_before(:), label_after(:)
       integer :: b, e, i, j
 
       if (.not. allocated(proof%state)) return
-      next = system
-      contacts_after = all
-      call enter_stage(settings, time, next, contacts_after)
-      call scene_graph(settings, system, contacts, before)
-      call scene_graph(settings, next, contacts_after, after)
+      call scene_graph(stage%settings, stage%system, stage%contacts, before)
+      call scene_graph(next%settings, next%system, next%contacts, after)
       allocate (load(3, after%n_block), source=1.0_wp)
       call new_coulomb_joints(after, load, joints)
       start = unloaded_state(joints)
-      label_before = labels(settings, system, all, before)
-      label_after = labels(settings, next, all, after)
+      label_before = labels(stage, all, before)
+      label_after = labels(next, all, after)
       allocate (joint_of(max(maxval([0, label_before]), maxval([0, label_after]))), source=0)
       joint_of(label_before) = [(j, j=1, size(label_before))]
       force = proof%state%force
@@ -283,23 +276,22 @@ contains
       end do
       load = proof%state%load
       call add_joint_forces(before, force, load)
-      do b = 1, size(system%equation)
-         e = next%equation(b)
-         if (e == 0 .or. system%equation(b) == 0) cycle
-         start%motion(:, e) = proof%state%motion(:, system%equation(b))
-         start%load(:, e) = load(:, system%equation(b))
+      do b = 1, size(stage%system%equation)
+         e = next%system%equation(b)
+         if (e == 0 .or. stage%system%equation(b) == 0) cycle
+         start%motion(:, e) = proof%state%motion(:, stage%system%equation(b))
+         start%load(:, e) = load(:, stage%system%equation(b))
       end do
       ! nodes of bars come last in both
-      i = after%n_block - maxval(next%equation)
+      i = after%n_block - maxval(next%system%equation)
       start%motion(:, after%n_block - i + 1:) = proof%state%motion(:, before%n_block - i + 1:)
       start%load(:, after%n_block - i + 1:) = load(:, before%n_block - i + 1:)
    end subroutine hand_over
 
    !> A number for each joint of a stage that is the same in all stages: that of the joint between
    !> all blocks, then of the held point, then of the bar
-   pure function labels(settings, system, all, graph) result(label)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
+   pure function labels(stage, all, graph) result(label)
+      type(scene_t), intent(in) :: stage
       type(contacts_t), intent(in) :: all
       type(joint_graph_t), intent(in) :: graph
       integer, allocatable :: label(:)  !! The numbers: (n_joint)
@@ -307,17 +299,17 @@ contains
       integer :: i, j, n
 
       do j = 1, size(there)
-         there(j) = .not. any(system%absent(all%joint(j)%block))
+         there(j) = .not. any(stage%system%absent(all%joint(j)%block))
       end do
       label = pack([(j, j=1, size(there))], there)
       n = size(there)
-      if (allocated(settings%boundary%held)) then
-         associate (held => settings%boundary%held)
-            label = [label, pack([(n + i, i=1, size(held))], system%equation(held%block) > 0)]
+      if (allocated(stage%settings%boundary%held)) then
+         associate (held => stage%settings%boundary%held)
+            label = [label, pack([(n + i, i=1, size(held))], &
+               & stage%system%equation(held%block) > 0)]
             n = n + size(held)
          end associate
       end if
       label = [label, [(n + i, i=1, size(graph%kind) - size(label))]]
    end function labels
-
-end submodule dda_stages
+end module dda_stages

@@ -3,12 +3,16 @@
 !> What falls in time need not fall for all that is more, so values on both sides are run too. The
 !> critical value is the first change from the end that stands, or from the low end where both ends
 !> agree; what changes beyond it is kept for the log.
-submodule (dda_critical) dda_time_search
-   use dda_decision, only : decide
-   use dda_error, only : error_t
-   use dda_search, only : keep_decision
+module dda_time_search
+   use dda_bracket, only : decide_at
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t
+   use dda_search, only : critical_t, search_t
    use dda_verdict, only : verdict
    implicit none
+   private
+
+   public :: find_critical_in_time
 
    !> Most runs of a search
    integer, parameter :: max_runs = 200
@@ -33,7 +37,10 @@ submodule (dda_critical) dda_time_search
 contains
 
    !> Search the critical value
-   module procedure find_critical_in_time
+   pure subroutine find_critical_in_time(family, search, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(out) :: critical
       type(runs_t) :: runs
       real(wp) :: value
       integer :: answer, i, side
@@ -66,7 +73,7 @@ contains
       call close_bracket(family, search, runs, critical)
       call keep_decisions(family, runs, critical)
       call keep_changes(runs, critical)
-   end procedure find_critical_in_time
+   end subroutine find_critical_in_time
 
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
    !> where both agree
@@ -152,24 +159,9 @@ contains
       type(runs_t), intent(inout) :: runs
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! Stable, collapsed or undecided
-      type(decision_t), allocatable :: decision
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       integer :: i
 
-      answer = verdict%undecided
-      critical%decisions = critical%decisions + 1
-      call family%build(value, scene, error)
-      if (allocated(error)) then
-         critical%reason = error%message
-         critical%undecided_at = value
-         return
-      end if
-      allocate (decision)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
-      if (decision%outcome%verdict == verdict%completed) decision%outcome%verdict = verdict%stable
-      answer = decision%outcome%verdict
-      call keep_decision(critical, value, decision)
+      call decide_at(family, value, critical, answer)
       if (answer == verdict%undecided) return
       runs%kept(merge(2, 1, answer == verdict%collapsed)) = value
       i = count(runs%value(:runs%n) < value)
@@ -182,4 +174,4 @@ contains
       runs%n = runs%n + 1
    end subroutine run_value
 
-end submodule dda_time_search
+end module dda_time_search

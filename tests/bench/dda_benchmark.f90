@@ -336,8 +336,7 @@ contains
             call decide_chain(job%scene(i)%settings, job%chain(i), job%decision(i), decided)
             if (decided) cycle
          end if
-         call decide(job%scene(i)%settings, job%scene(i)%system, job%scene(i)%contacts, &
-            & job%decision(i))
+         call decide(job%scene(i), job%decision(i))
       end do
    end subroutine run_decisions
 

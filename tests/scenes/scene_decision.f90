@@ -25,7 +25,7 @@ contains
       type(error_t), allocatable :: error
 
       call family%build(value, scene, error)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
+      call decide(scene, decision)
    end function decision_at
 
    !> Decision of a family's scene by steps to rest or collapse
@@ -40,7 +40,7 @@ contains
       type(error_t), allocatable :: error
 
       call family%build(value, scene, error)
-      call decide_by_steps(scene%settings, scene%system, scene%contacts, decision)
+      call decide_by_steps(scene, decision)
    end function stepped_at
 
    !> Verdicts of a family just below and just above a value
@@ -69,6 +69,6 @@ contains
       type(scene_t) :: scene
 
       scene = scene_of(model)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
+      call decide(scene, decision)
    end function decision_of
 end module scene_decision
