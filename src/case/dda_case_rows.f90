@@ -20,7 +20,7 @@ module dda_case_rows
    implicit none
    private
 
-   public :: tell_case, change_remark, fall_remark, jump_remark, path_remark
+   public :: tell_case, change_remark, fall_remark, joined, jump_remark, path_remark
 
    !> A bracket whose middle is off by more than this share of its half is lopsided
    real(wp), parameter :: lopsided = 0.05_wp
@@ -133,12 +133,12 @@ contains
          if (allocated(outcome%reason)) remark = outcome%reason
          if (outcome%has_path) then
             row%path_time = some_number(outcome%path_time)
-            remark = path_remark(outcome, remark)
+            remark = joined(remark, path_remark(outcome))
          end if
-         remark = jump_remark(outcome%jumps, outcome%largest_jump, remark)
+         remark = joined(remark, jump_remark(outcome%jumps, outcome%largest_jump))
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
             & .and. .not. this%plan%velocities .and. source_of(this%family%deck) /= "arch") &
-            & remark = fall_remark(this%scene%system, outcome%motion, remark)
+            & remark = joined(remark, fall_remark(this%scene%system, outcome%motion))
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%system, this%decision%contacts, &
             & this%scene%joint_angle_deg, this%scene%origin)
@@ -196,9 +196,9 @@ contains
             row%exact_high = some_number(maxval(critical%limit))
          end if
          if (critical%has_other) remark = "it also collapses at "//to_text(critical%other)
-         remark = jump_remark(critical%jumps, critical%largest_jump, remark)
+         remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
-            & remark = change_remark(critical, remark)
+            & remark = joined(remark, change_remark(critical))
          if (allocated(critical%fallen)) &
             & call tell_mechanism(critical%fallen, this%scene%joint_angle_deg, row)
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
@@ -256,15 +256,14 @@ contains
    end function fallen_contacts
 
    !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
-   pure function fall_remark(system, motion, before) result(remark)
+   pure function fall_remark(system, motion) result(remark)
       type(block_system_t), intent(in) :: system  !! The blocks at the beginning
       real(wp), intent(in) :: motion(:, :)        !! Their collapse: (n_dof, n_equation)
-      character(len=*), intent(in) :: before      !! What else there is to know
-      character(len=:), allocatable :: remark     !! All of it
+      character(len=:), allocatable :: remark
       real(wp) :: way(size(system%equation))
       integer :: b, e, i, n
 
-      remark = before
+      remark = ""
       way = 0.0_wp
       do b = 1, size(way)
          e = system%equation(b)
@@ -273,8 +272,7 @@ contains
       end do
       n = count(way > moves*maxval(way))
       if (n == 0 .or. 3*n > count(system%equation > 0)) return
-      remark = joined(before, "of "//to_text(count(system%equation > 0))//" blocks " &
-         & //to_text(n)//" move:")
+      remark = "of "//to_text(count(system%equation > 0))//" blocks "//to_text(n)//" move:"
       do i = 1, min(n, most_named)
          b = maxloc(way, dim=1)
          way(b) = -1.0_wp
@@ -285,33 +283,31 @@ contains
    end function fall_remark
 
    !> What the user should know of the path of a static run
-   pure function path_remark(outcome, before) result(remark)
+   pure function path_remark(outcome) result(remark)
       type(outcome_t), intent(in) :: outcome
-      character(len=*), intent(in) :: before
       character(len=:), allocatable :: remark
       character(len=:), allocatable :: place
 
-      remark = before
+      remark = ""
       if (outcome%verdict /= verdict%stable) then
          place = " time "//to_text(outcome%path_time)
          if (outcome%path_time < 0.0_wp) place = " "//to_text(1.0_wp + outcome%path_time) &
             & //" of the prescribed displacement"
-         remark = joined(before, trim(merge("the blocks collapse at     ", &
-            & "equilibrium is proven up to", outcome%verdict == verdict%collapsed))//place)
+         remark = trim(merge("the blocks collapse at     ", "equilibrium is proven up to", &
+            & outcome%verdict == verdict%collapsed))//place
       end if
-      remark = order_remark(outcome, remark)
+      remark = joined(remark, order_remark(outcome))
    end function path_remark
 
    !> Why forces after stages are not those of the last shape built at once
-   pure function order_remark(outcome, before) result(remark)
+   pure function order_remark(outcome) result(remark)
       type(outcome_t), intent(in) :: outcome
-      character(len=*), intent(in) :: before
       character(len=:), allocatable :: remark
 
-      remark = before
+      remark = ""
       if (.not. (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once)) return
-      if (outcome%n_slid > 0) remark = joined(remark, "joints that slid between stages: " &
-         & //to_text(outcome%n_slid)//numbered(outcome%slid))
+      if (outcome%n_slid > 0) remark = "joints that slid between stages: " &
+         & //to_text(outcome%n_slid)//numbered(outcome%slid)
       if (outcome%has_built) remark = joined(remark, "blocks were built between stages")
       if (outcome%slides_at_once) remark = joined(remark, "no joint slid between stages, " &
          & //"but the last shape slides or collapses if it is built at once")
@@ -321,11 +317,11 @@ contains
    !> Two remarks in one
    pure function joined(first, second) result(both)
       character(len=*), intent(in) :: first   !! The one; it may be empty
-      character(len=*), intent(in) :: second  !! The other
+      character(len=*), intent(in) :: second  !! The other; likewise
       character(len=:), allocatable :: both   !! Both, parted by a semicolon
 
-      both = second
-      if (len(first) > 0) both = first//"; "//second
+      both = first//second
+      if (min(len(first), len(second)) > 0) both = first//"; "//second
    end function joined
 
    !> Numbers of joints in parentheses, not too many of them; nothing for none
@@ -344,19 +340,17 @@ contains
    end function numbered
 
    !> What a search in time has found on both sides of its bracket
-   pure function change_remark(critical, before) result(remark)
+   pure function change_remark(critical) result(remark)
       type(critical_t), intent(in) :: critical
-      character(len=*), intent(in) :: before
       character(len=:), allocatable :: remark
       integer :: i
 
       if (.not. allocated(critical%other_change)) then
-         remark = joined(before, to_text(critical%others) &
-            & //" values between the ends agree with them")
+         remark = to_text(critical%others)//" values between the ends agree with them"
       else if (size(critical%other_change) == 0) then
-         remark = joined(before, to_text(critical%others)//" values on both sides agree with it")
+         remark = to_text(critical%others)//" values on both sides agree with it"
       else
-         remark = joined(before, "not monotone: the answer changes again")
+         remark = "not monotone: the answer changes again"
          do i = 1, size(critical%other_change, 2)
             if (i > 1) remark = remark//","
             remark = remark//" between "//to_text(critical%other_change(1, i))//" and " &
@@ -366,14 +360,13 @@ contains
    end function change_remark
 
    !> What the user should know of jumps on the loading path
-   pure function jump_remark(jumps, largest, before) result(remark)
+   pure function jump_remark(jumps, largest) result(remark)
       integer, intent(in) :: jumps     !! How many there were
       real(wp), intent(in) :: largest  !! The largest displacement of one [m]
-      character(len=*), intent(in) :: before
       character(len=:), allocatable :: remark
 
-      remark = before
-      if (jumps > 0) remark = joined(before, "jumps on the loading path: "//to_text(jumps) &
-         & //", the largest "//to_text(largest)//" m")
+      remark = ""
+      if (jumps > 0) remark = "jumps on the loading path: "//to_text(jumps) &
+         & //", the largest "//to_text(largest)//" m"
    end function jump_remark
 end module dda_case_rows
