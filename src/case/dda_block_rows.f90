@@ -117,6 +117,7 @@ contains
       !> The rows, without the number of the case: (n_joint)
       type(joint_row_t) :: row(size(contacts%joint))
       type(joint_place_t) :: place
+      real(wp) :: way
       integer :: j
 
       do j = 1, size(row)
@@ -133,9 +134,12 @@ contains
          if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
          if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
          if (all(contacts%face(j)%open)) row(j)%state = "open"
-         if (row(j)%state == "sliding") row(j)%slides = &
-            & some_number(way_against(contacts%force(3, j), contacts%gap(3, j)) &
-            & *place%tangent)
+         if (row(j)%state /= "sliding") cycle
+         ! friction acts against the way in which the second block slides; without friction the slip
+         ! itself tells the way
+         way = sign(1.0_wp, contacts%gap(3, j))
+         if (abs(contacts%force(3, j)) > 0.0_wp) way = -sign(1.0_wp, contacts%force(3, j))
+         row(j)%slides = some_number(way*place%tangent)
       end do
    end function joint_rows
 
@@ -160,16 +164,6 @@ contains
       row%point = (force(1)*row%intrados + force(2)*row%extrados)/row%normal_force
    end subroutine tell_forces
 
-   !> Friction acts against the way in which the second block slides; without friction the slip
-   !> itself tells the way
-   pure real(wp) function way_against(shear_force, slip)
-      real(wp), intent(in) :: shear_force  !! Shear force on the second block [N/m]
-      real(wp), intent(in) :: slip         !! Its slip since the beginning [m]
-
-      way_against = sign(1.0_wp, slip)
-      if (abs(shear_force) > 0.0_wp) way_against = -sign(1.0_wp, shear_force)
-   end function way_against
-
    !> Tell what each joint does in a collapse; its motion is that of the last step
    pure subroutine tell_roles(fallen, system, contacts, row, motion)
       !> Contacts at the end of the collapse; without joints they are those of the rows
@@ -187,8 +181,7 @@ contains
       real(wp) :: largest
       type(joint_place_t) :: place
 
-      largest = largest_of(fallen)
-      if (present(motion)) largest = largest_of(fallen, motion)
+      largest = largest_of(fallen, motion)
       role = role_of_joint(fallen, largest)
       slip = slides(fallen%face, fallen%increment(3, :), largest)
       do j = 1, size(row)
@@ -198,11 +191,8 @@ contains
          if (k == 0) cycle
          row(j)%mechanism = role_word(role(k))
          if (.not. slip(k)) cycle
-         if (allocated(fallen%joint)) then
-            place = joint_place(system, fallen, k)
-         else
-            place = joint_place(system, contacts, j)
-         end if
+         if (allocated(fallen%joint)) place = joint_place(system, fallen, k)
+         if (.not. allocated(fallen%joint)) place = joint_place(system, contacts, j)
          row(j)%slides = some_number(sign(1.0_wp, fallen%increment(3, k))*place%tangent)
       end do
    end subroutine tell_roles
@@ -264,5 +254,4 @@ contains
          & states = contact_state%sliding
       where (frame%face(joint)%open) states = contact_state%open
    end function contact_states
-
 end module dda_block_rows

@@ -67,8 +67,7 @@ contains
       if (this%searches) then
          call prepare_search(this%plan, searched, this%family, this%search)
       else
-         call new_family(this%plan, parameter_t(key=arch_thickness_ratio), &
-            & this%family)
+         call new_family(parameter_t(key=arch_thickness_ratio), this%family)
       end if
    end subroutine prepare_case
 
@@ -88,7 +87,7 @@ contains
       type(deck_family_t), intent(inout) :: family  !! New but for its deck
       type(search_t), intent(inout) :: search
 
-      call new_family(plan, family%deck%searched, family)
+      call new_family(family%deck%searched, family)
       associate (deck => family%deck)
          call search_bracket(deck, search%low, search%high)
          search%in_time = plan%velocities

@@ -2,6 +2,7 @@
 !> the scene that its tables and pictures need. What the pictures show, and the runs that are
 !> repeated for them
 module dda_case_decision
+   use dda_arch_scene, only : joint_angles_deg
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
    use dda_chain, only : chain_t
@@ -47,7 +48,7 @@ contains
       ! a chain proves that it falls; how it does is told by all of its blocks
       if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
       if (decided) return
-      call deck_scene(this%family%deck, this%plan, this%scene)
+      call deck_scene(this%family%deck, this%scene)
       call plan_fall(this)
       associate (scene => this%scene, boundary => this%scene%settings%boundary)
          if (scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &
@@ -74,7 +75,8 @@ contains
       type(decision_t), intent(inout) :: decision
       logical :: collapsed, wanted
 
-      if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
+      if (this%family%decides_chains) this%scene%joint_angle_deg = &
+         & joint_angles_deg(this%family%deck)
       collapsed = decision%outcome%verdict == verdict%collapsed
       wanted = merge(this%tells_tables .or. nint(this%family%deck%value(output_frames)%number) &
          & > 0, this%searches, this%family%decides_chains)

@@ -65,7 +65,7 @@ contains
 
       if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-      call prove_state(scene, graph, decision%outcome%verdict, decision%limit, proof)
+      call prove_state(scene, graph, decision, proof)
       if (decision%outcome%verdict /= verdict%stable) return
       thrust_bar = nint(deck%value(output_thrust_bar)%number)
       thrust_joint = nint(deck%value(output_thrust_joint)%number)
@@ -100,7 +100,6 @@ contains
       type(scene_t), intent(inout) :: stands
       type(scene_t), intent(inout) :: falls
       type(proof_t), intent(inout) :: proof
-      type(joint_graph_t) :: graph
       type(proof_t) :: other
 
       if (allocated(critical%limit_force)) then
@@ -108,21 +107,12 @@ contains
          return
       end if
       if (allocated(critical%standing)) then
-         call build_once(family, critical%stands, stands)
-         if (.not. allocated(stands%contacts%joint)) return
-         if (.not. has_limit_analysis(stands%settings, stands%contacts)) return
-         call place_all_joints(stands%system, stands%contacts)
-         call scene_graph(stands%settings, stands%system, stands%contacts, graph)
-         call prove_state(stands, graph, verdict%stable, critical%standing%limit, proof)
+         call prove_side(family, critical%stands, critical%standing, stands, proof)
+         if (.not. allocated(proof%scene%contacts%joint)) return
          proof%force_at = critical%stands
       end if
       if (.not. allocated(critical%fallen)) return
-      call build_once(family, critical%falls, falls)
-      if (.not. allocated(falls%contacts%joint)) return
-      if (.not. has_limit_analysis(falls%settings, falls%contacts)) return
-      call place_all_joints(falls%system, falls%contacts)
-      call scene_graph(falls%settings, falls%system, falls%contacts, graph)
-      call prove_state(falls, graph, verdict%collapsed, critical%fallen%limit, other)
+      call prove_side(family, critical%falls, critical%fallen, falls, other)
       if (.not. allocated(other%velocity)) return
       proof%law_violation = max(proof%law_violation, other%law_violation)
       proof%power = other%power
@@ -131,6 +121,23 @@ contains
       if (.not. allocated(proof%force)) proof%scene = falls
       proof%same_shape = .not. any(abs(proof%scene%system%vertex - falls%system%vertex) > 0.0_wp)
    end subroutine prove_search
+
+   !> Prove the decision of one value; nothing is proven where limit analysis knows no scene of it
+   pure subroutine prove_side(family, value, decision, scene, proof)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value  !! The value
+      type(decision_t), intent(in) :: decision
+      type(scene_t), intent(inout) :: scene
+      type(proof_t), intent(inout) :: proof
+      type(joint_graph_t) :: graph
+
+      call build_once(family, value, scene)
+      if (.not. allocated(scene%contacts%joint)) return
+      if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
+      call place_all_joints(scene%system, scene%contacts)
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      call prove_state(scene, graph, decision, proof)
+   end subroutine prove_side
 
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
    pure subroutine find_bar_range(scene, bar, proof)
@@ -176,34 +183,34 @@ contains
    end subroutine find_bar_range
 
    !> Forces that carry the load of a scene, or a mechanism that it drives
-   pure subroutine prove_state(scene, graph, wanted, known, proof)
+   pure subroutine prove_state(scene, graph, decision, proof)
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      integer, intent(in) :: wanted  !! The verdict that is to be proven: stable or collapsed
-      !> What limit analysis has said when it was found; unallocated if it was not asked
-      type(load_decision_t), allocatable, intent(in) :: known
+      !> What is to be proven, with what limit analysis has said when it was found, if it was asked
+      type(decision_t), intent(in) :: decision
       type(proof_t), intent(inout) :: proof
-      type(load_decision_t) :: decision
+      type(load_decision_t) :: answer
       real(wp) :: load(3, graph%n_block)
       integer :: b
 
       load = full_loads(scene%settings, scene, graph)
-      if (allocated(known)) then
-         decision = known
+      if (allocated(decision%limit)) then
+         answer = decision%limit
       else
-         call decide_load(graph, load, decision)
+         call decide_load(graph, load, answer)
       end if
       proof%scene = scene
       ! beside what acts on blocks, without nodes of bars and carriers of bounded forces
       b = maxval(scene%system%equation)
-      if (decision%state == load_state%stands .and. wanted == verdict%stable) then
-         proof%imbalance = decision%imbalance
-         proof%law_violation = decision%violation
-         call move_alloc(decision%force, proof%force)
-      else if (decision%state == load_state%falls .and. wanted == verdict%collapsed) then
-         proof%law_violation = decision%violation
-         proof%power = decision%power/most_power(load(:, :b), decision%velocity(:, :b))
-         call move_alloc(decision%velocity, proof%velocity)
+      if (answer%state == load_state%stands .and. decision%outcome%verdict == verdict%stable) then
+         proof%imbalance = answer%imbalance
+         proof%law_violation = answer%violation
+         call move_alloc(answer%force, proof%force)
+      else if (answer%state == load_state%falls &
+         & .and. decision%outcome%verdict == verdict%collapsed) then
+         proof%law_violation = answer%violation
+         proof%power = answer%power/most_power(load(:, :b), answer%velocity(:, :b))
+         call move_alloc(answer%velocity, proof%velocity)
       end if
    end subroutine prove_state
 

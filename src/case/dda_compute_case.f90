@@ -37,7 +37,7 @@ contains
       else if (this%searches) then
          call search_critical(this)
       else if (this%limerick) then
-         call deck_scene(this%family%deck, this%plan, this%scene)
+         call deck_scene(this%family%deck, this%scene)
          call decide_limerick(this%family%deck, this%scene, this%decision, this%album)
       else
          call compute_decision(this)

@@ -55,20 +55,12 @@ contains
                & call add_rows(number, time, this%critical%standing%system%bar, rows)
          end if
       else if (allocated(this%decision%system%bar)) then
-         call add_rows(number, end_time(this, time), this%decision%system%bar, rows)
+         if (this%scene%settings%dynamic) time = max(time, this%onward%time)
+         if (this%decision%outcome%has_path) time = this%decision%outcome%path_time
+         call add_rows(number, time, this%decision%system%bar, rows)
       end if
       lines = lines_of(rows)
    end function bar_lines
-
-   !> Time at the end of a case
-   pure real(wp) function end_time(this, last)
-      type(case_t), intent(in) :: this
-      real(wp), intent(in) :: last  !! Time of its last picture [s]
-
-      end_time = last
-      if (this%scene%settings%dynamic) end_time = max(last, this%onward%time)
-      if (this%decision%outcome%has_path) end_time = this%decision%outcome%path_time
-   end function end_time
 
    !> Add a row a bar
    pure subroutine add_rows(number, time, bar, rows)

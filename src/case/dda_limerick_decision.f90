@@ -40,7 +40,11 @@ contains
       if (present(album)) then
          call plan_pictures(nint(deck%value(output_frames)%number), model%constants, album)
          call run_with_pictures(deck, scene, model, run, outcome, album)
-         call keep_ways(outcome, album)
+         if (size(album%point) > 0) then
+            album%n_track = outcome%steps + 1
+            album%when = outcome%when(:, :album%n_track)
+            album%track = outcome%track(:, :, :album%n_track)
+         end if
       else
          call run_limerick(model, run, outcome)
       end if
@@ -126,17 +130,6 @@ contains
       system%motion(1:2, :n) = run%blocks%centroid(:, :n) - scene%system%centroid(:, :n)
       system%motion(3, :n) = run%blocks%rotation(:n)
    end subroutine report_state
-
-   !> Keep the ways of the measured points
-   pure subroutine keep_ways(outcome, album)
-      type(limerick_outcome_t), intent(in) :: outcome
-      type(album_t), intent(inout) :: album
-
-      if (size(album%point) == 0) return
-      album%n_track = outcome%steps + 1
-      album%when = outcome%when(:, :album%n_track)
-      album%track = outcome%track(:, :, :album%n_track)
-   end subroutine keep_ways
 
    !> Corners of the scene's blocks at the end of a run
    pure subroutine place_corners(kind, run, system)

@@ -10,7 +10,6 @@ module dda_limerick_search
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene
    use dda_search, only : critical_t, decision_t, keep_decision, search_t
    use dda_verdict, only : verdict
    implicit none
@@ -29,6 +28,7 @@ contains
    !> found to fall, else to stand
    pure subroutine search_limerick(this)
       type(case_t), intent(inout) :: this
+      type(decision_t) :: decision
       type(error_t), allocatable :: error
 
       ! the limit of this scheme lies somewhat above the exact value
@@ -37,8 +37,10 @@ contains
       call close_bracket(this%family, this%search, this%critical)
       if (allocated(this%critical%fallen)) &
          & call this%family%build(this%critical%falls, this%scene, error)
-      if (nint(this%family%deck%value(output_frames)%number) > 0) &
-         & call repeat_with_pictures(this%family, this%critical, this%album)
+      if (nint(this%family%deck%value(output_frames)%number) == 0) return
+      if (.not. (allocated(this%critical%fallen) .or. allocated(this%critical%standing))) return
+      call run_at(this%family, merge(this%critical%falls, this%critical%stands, &
+         & allocated(this%critical%fallen)), decision, error, this%album)
    end subroutine search_limerick
 
    !> Close the bracket around the value
@@ -49,7 +51,6 @@ contains
       type(critical_t), intent(out) :: critical
       integer :: answer
 
-      critical%current = .true.
       if (search%check_far_end) then
          call decide_at(family, search%low, critical, answer)
          if (answer /= verdict%undecided) call decide_at(family, search%high, critical, answer)
@@ -68,25 +69,6 @@ contains
       if (answer == verdict%undecided .or. both_sides(critical)) return
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
    end subroutine close_bracket
-
-   !> Pictures of the run nearest to critical that was found to fall, else to stand
-   pure subroutine repeat_with_pictures(family, critical, album)
-      type(deck_family_t), intent(in) :: family
-      type(critical_t), intent(in) :: critical
-      type(album_t), intent(inout) :: album
-      type(error_t), allocatable :: error
-      type(decision_t) :: decision
-      type(deck_t) :: deck
-      type(scene_t) :: scene
-
-      if (.not. (allocated(critical%fallen) .or. allocated(critical%standing))) return
-      deck = family%deck
-      call put_value(family, merge(critical%falls, critical%stands, allocated(critical%fallen)), &
-         & deck, error)
-      if (allocated(error)) return
-      call deck_scene(deck, plan_scene(deck), scene)
-      call decide_limerick(deck, scene, decision, album)
-   end subroutine repeat_with_pictures
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)
@@ -127,21 +109,16 @@ contains
       integer, intent(out) :: answer  !! One of verdict
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
-      type(deck_t) :: deck
-      type(scene_t) :: scene
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      deck = family%deck
-      call put_value(family, value, deck, error)
+      allocate (decision)
+      call run_at(family, value, decision, error)
       if (allocated(error)) then
          critical%reason = error%message
          critical%undecided_at = value
          return
       end if
-      call deck_scene(deck, plan_scene(deck), scene)
-      allocate (decision)
-      call decide_limerick(deck, scene, decision)
       associate (outcome => decision%outcome)
          if (outcome%verdict == verdict%completed) then
             outcome%verdict = verdict%undecided
@@ -152,4 +129,20 @@ contains
       call keep_decision(critical, value, decision)
    end subroutine decide_at
 
+   !> Run one value
+   pure subroutine run_at(family, value, decision, error, album)
+      type(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      type(decision_t), intent(out) :: decision
+      type(error_t), allocatable, intent(out) :: error  !! A value that the deck cannot have
+      type(album_t), intent(inout), optional :: album   !! Receives its pictures
+      type(deck_t) :: deck
+      type(scene_t) :: scene
+
+      deck = family%deck
+      call put_value(family, value, deck, error)
+      if (allocated(error)) return
+      call deck_scene(deck, scene)
+      call decide_limerick(deck, scene, decision, album)
+   end subroutine run_at
 end module dda_limerick_search

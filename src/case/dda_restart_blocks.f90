@@ -255,7 +255,6 @@ contains
       sound = .true.
       do j = 1, size(joint)
          sound = is_joint(system, outline, whole(:, j), number(:, j))
-         if (sound) sound = edges_face(system, outline, whole(:, j))
          if (.not. sound) return
          do k = 1, 2
             joint(j)%contact(k)%vertex_block = outline%block(whole(3 + k, j))
@@ -278,13 +277,15 @@ contains
       end do
    end subroutine make_joints
 
-   !> Whether numbers are those of a joint of two blocks, of which one moves
+   !> Whether numbers are those of a joint of two blocks, of which one moves; its edges run against
+   !> one another, if they are of both blocks
    pure logical function is_joint(system, outline, whole, number)
       type(block_system_t), intent(in) :: system
       type(outline_t), intent(in) :: outline
       integer(int32), intent(in) :: whole(:)  !! Whole numbers: (n_joint_whole)
       real(wp), intent(in) :: number(:)       !! Numbers: (n_joint_number)
       real(wp), parameter :: rounding = 1.0e-9_wp
+      real(wp) :: edge(2, 2)
       integer :: block(2)
 
       is_joint = all(whole(:3) == 1 .or. whole(:3) == 2) &
@@ -294,18 +295,10 @@ contains
       block = blocks_of(outline, whole, 1)
       is_joint = block(1) /= block(2) .and. any(system%equation(block) > 0) &
          & .and. all(block == blocks_of(outline, whole, 2))
-   end function is_joint
-
-   !> Whether the edges of a joint run against one another, if they are of both blocks
-   pure logical function edges_face(system, outline, whole)
-      type(block_system_t), intent(in) :: system
-      type(outline_t), intent(in) :: outline
-      integer(int32), intent(in) :: whole(:)  !! Whole numbers of the joint: (n_joint_whole)
-      real(wp) :: edge(2, 2)
-
       edge = system%moved(:, outline%next(whole(6:7))) - system%moved(:, whole(6:7))
-      edges_face = whole(2) == whole(3) .or. dot_product(edge(:, 1), edge(:, 2)) < 0.0_wp
-   end function edges_face
+      is_joint = is_joint &
+         & .and. (whole(2) == whole(3) .or. dot_product(edge(:, 1), edge(:, 2)) < 0.0_wp)
+   end function is_joint
 
    !> The two blocks that a contact is of
    pure function blocks_of(outline, whole, k) result(block)
@@ -317,5 +310,4 @@ contains
       block(whole(1 + k)) = outline%block(whole(5 + k))
       block(3 - whole(1 + k)) = outline%block(whole(3 + k))
    end function blocks_of
-
 end module dda_restart_blocks

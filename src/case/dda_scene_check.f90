@@ -13,7 +13,6 @@ module dda_scene_check
    use dda_scene, only : scene_t
    use dda_scene_doubts, only : check_live_cases, check_stages, check_start, check_support, &
       & check_widths, doubt_scene
-   use dda_scene_plan, only : plan_scene
    use dda_shape_check, only : check_shapes
    use dda_watch, only : watch_t
    implicit none
@@ -70,7 +69,7 @@ contains
             & work%value(analysis_mode)%text, .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
          if (number == 1 .and. work%value(scene_kind)%text == "blocks") &
-            & call deck_scene(work, plan_scene(work), scene)
+            & call deck_scene(work, scene)
          if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
          if (allocated(error) .or. all(seen) .or. .not. any( &

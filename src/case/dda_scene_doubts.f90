@@ -16,7 +16,6 @@ module dda_scene_doubts
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene
    use dda_step_context, only : march_t
    use dda_text, only : to_text
    implicit none
@@ -166,7 +165,7 @@ contains
             call deck_error(error, "load%load_factor needs a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
          else if (points) then
-            if (number == 1 .or. reshaped) call deck_scene(work, plan_scene(work), scene)
+            if (number == 1 .or. reshaped) call deck_scene(work, scene)
             call check_live_points(work, scene, error)
          end if
          if (allocated(error)) return
@@ -217,7 +216,7 @@ contains
          call key_error(error, "there is no restart file '"//name//"'; check the name", deck, &
             & analysis_restart)
       else if (n_cases(deck) == 1) then
-         call deck_scene(deck, plan_scene(deck), scene)
+         call deck_scene(deck, scene)
          call load_restart(file_beside(deck, name), scene%settings, scene%system, &
             & scene%contacts, march, error)
       else

@@ -64,7 +64,7 @@ contains
       type(stretch_t), allocatable :: stretch(:)
       integer :: first, last
 
-      call deck_scene(this%family%deck, this%plan, scene)
+      call deck_scene(this%family%deck, scene)
       if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
       call take_bridge(this%family%deck, scene, bridge)
       call part_road(bridge, stretch)

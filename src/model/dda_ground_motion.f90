@@ -59,18 +59,9 @@ contains
    pure function acceleration_of_displacement(displacement) result(acceleration)
       type(history_t), intent(in) :: displacement  !! The displacement: two times or more [m]
       type(history_t) :: acceleration              !! Its second derivative [m/s2]
-      integer :: n
 
-      n = size(displacement%time)
-      allocate (acceleration%time(n + 2), acceleration%value(2, n + 2))
-      associate (time => displacement%time)
-         acceleration%time(1) = time(1) - jump_beside(time(1:2))
-         acceleration%time(2:n + 1) = time
-         acceleration%time(n + 2) = time(n) + jump_beside(time(n - 1:n))
-         acceleration%value(:, 1) = 0.0_wp
-         acceleration%value(:, 2:n + 1) = second_derivatives(time, displacement%value)
-         acceleration%value(:, n + 2) = 0.0_wp
-      end associate
+      acceleration = acceleration_of_record(history_t(displacement%time, &
+         & second_derivatives(displacement%time, displacement%value)))
    end function acceleration_of_displacement
 
    !> Length of a jump at an end of an interval: no time, but more than rounding

@@ -12,12 +12,10 @@ module dda_arch_lines
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
       & limerick_joint_t, analysis_material_t
-   use dda_limerick_scene, only : abutment_sides, set_constants
+   use dda_limerick_scene, only : abutment_depth, set_constants, widen
    use dda_line_model, only : add_entity, line_model_t, new_line_model
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene
    use dda_text, only : to_text
-   use dda_vector, only : along, right_normal
    implicit none
    private
 
@@ -41,19 +39,23 @@ contains
       !> Abutments that are too large to lie side by side
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
-      real(wp) :: depth, overhang, corner(2, 4, 2)
-      integer :: n, b, side
+      real(wp) :: corner(2, 4, 2)
+      integer :: n, b, first, side
 
-      call arch_scene(deck, plan_scene(deck), scene)
+      call arch_scene(deck, scene)
       n = size(scene%system%area) - 2
-      call abutment_sides(deck, depth, overhang)
       do side = 1, 2
-         corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
+         first = scene%system%first_vertex(n + side)
+         corner(:, :, side) = scene%system%vertex(:, first:first + 3)
+         call widen(deck, corner(:, :, side))
       end do
+      ! the face first, from the intrados to the extrados
+      corner(:, :, 1) = corner(:, [4, 1, 2, 3], 1)
+      corner(:, :, 2) = corner(:, [1, 4, 3, 2], 2)
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) &
          & call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
-         & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
-         & deck%value(arch_abutment_size)%place)
+         & //to_text(abutment_depth(deck))//" m, where they meet below the arch; make it " &
+         & //"smaller", deck, deck%value(arch_abutment_size)%place)
       if (allocated(error)) return
       call new_line_model(model)
       model%file = deck%file
@@ -68,33 +70,6 @@ contains
       end do
       model%edge_node_ratio = edge_node_ratio(model)
    end subroutine arch_lines
-
-   !> Corners of an abutment: the face first, from the intrados to the extrados, prolonged on both
-   !> sides
-   pure function abutment(system, springing, is_right, size, overhang) result(corner)
-      type(block_system_t), intent(in) :: system
-      !> Number of the springing block, whose fourth edge is the joint
-      integer, intent(in) :: springing
-      logical, intent(in) :: is_right   !! Whether it is the right one
-      real(wp), intent(in) :: size      !! Its depth [m]
-      real(wp), intent(in) :: overhang  !! How far it reaches beyond the joint at either end [m]
-      !> The corners: (2, 4) [m]
-      real(wp) :: corner(2, 4)
-      real(wp) :: direction(2), depth(2)
-      integer :: first
-
-      first = system%first_vertex(springing)
-      corner(:, 1:2) = system%vertex(:, [first + 3, first])
-      ! the edge of the right springing runs from the extrados to the intrados
-      if (is_right) corner(:, 1:2) = corner(:, [2, 1])
-      direction = along(corner(:, 1), corner(:, 2))
-      depth = size*right_normal(direction)
-      if (.not. is_right) depth = -depth
-      corner(:, 1) = corner(:, 1) - overhang*direction
-      corner(:, 2) = corner(:, 2) + overhang*direction
-      corner(:, 3) = corner(:, 2) + depth
-      corner(:, 4) = corner(:, 1) + depth
-   end function abutment
 
    !> Chords of a voussoir at the intrados and at the extrados
    pure subroutine add_chords(system, block, model)

@@ -19,7 +19,7 @@ module dda_arch_scene
    use dda_kinds, only : degree, pi, wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : scene_plan_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : flow_rule, settings_t
    implicit none
    private
@@ -39,21 +39,22 @@ module dda_arch_scene
 contains
 
    !> The scene that the deck of one case describes
-   pure subroutine arch_scene(deck, plan, scene)
+   pure subroutine arch_scene(deck, scene)
       type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
+      real(wp) :: half_angle
       integer :: n
 
       call arch_blocks(shape_of(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
-      scene%settings = settings_of(deck, plan, degree*deck%value(arch_half_angle_deg)%number, &
-         & size(half_joints_deg(deck)))
-      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, &
-         & weight_rounding(degree*deck%value(arch_half_angle_deg)%number, &
-         & deck%value(arch_thickness_ratio)%number))
+      half_angle = degree*deck%value(arch_half_angle_deg)%number
+      scene%settings = settings_of(deck, half_angle, size(half_joints_deg(deck)))
+      ! rounding feigns an acceleration: a corner off by eps r makes the weight of a voussoir wrong
+      ! by eps over the thickness ratio
+      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, min(1.0_wp, &
+         & half_angle**2/2.0_wp)*epsilon(1.0_wp)/deck%value(arch_thickness_ratio)%number)
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
       if (deck%value(arch_springing)%text == "no-slip") law([1, n])%no_slip = .true.
@@ -154,14 +155,15 @@ contains
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
    !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
-   pure type(settings_t) function settings_of(deck, plan, half_angle, joints) result(settings)
+   pure type(settings_t) function settings_of(deck, half_angle, joints) result(settings)
       type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
       !> Angle from the crown to a springing; a right angle for what is no arch [rad]
       real(wp), intent(in) :: half_angle
       integer, intent(in) :: joints  !! Joints of one half of an arch, or all joints
+      type(scene_plan_t) :: plan
       real(wp) :: noise, rise
 
+      plan = plan_scene(deck)
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns
@@ -208,15 +210,6 @@ contains
       settings%live_push = deck%value(load_live_horizontal)%flag
       settings%load_factor = deck%value(load_load_factor)%number
    end subroutine set_loads
-
-   !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
-   !> weight of a voussoir wrong by eps over the thickness ratio
-   pure real(wp) function weight_rounding(half_angle, thickness_ratio)
-      real(wp), intent(in) :: half_angle
-      real(wp), intent(in) :: thickness_ratio  !! Thickness over radius
-
-      weight_rounding = min(1.0_wp, half_angle**2/2.0_wp)*epsilon(1.0_wp)/thickness_ratio
-   end function weight_rounding
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)

@@ -14,7 +14,6 @@ module dda_blocks_of_deck
    use dda_line_scene, only : held_blocks
    use dda_live_loads, only : add_live_loads
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : scene_plan_t
    use dda_shape_check, only : add_ties
    use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    implicit none
@@ -25,9 +24,8 @@ module dda_blocks_of_deck
 contains
 
    !> The scene of an arch of any shape
-   pure subroutine shape_scene(deck, plan, scene)
+   pure subroutine shape_scene(deck, scene)
       type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
       !> The scene; of an arch that cannot be, without blocks
       type(scene_t), intent(out) :: scene
       type(arch_assembly_t) :: assembly
@@ -37,7 +35,7 @@ contains
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
       if (has_group(deck, tie_group)) call add_ties(deck, assembly%plan)
-      call file_scene(deck, plan, assembly%plan, scene)
+      call file_scene(deck, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
       if (deck%value(arch_lune_deg)%given) call add_lune_weights(deck%value(arch_lune_deg)%number, &
          & scene)
@@ -52,9 +50,8 @@ contains
    end subroutine shape_scene
 
    !> The scene of blocks as a file or an arch gives them
-   pure subroutine file_scene(deck, plan, blocks, scene)
+   pure subroutine file_scene(deck, blocks, scene)
       type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
       type(block_plan_t), intent(in) :: blocks
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
@@ -67,7 +64,7 @@ contains
          & deck%value(joint_tension)%number, 90.0_wp, deck%value(joint_slip_length)%number]
       if (deck%value(joint_residual_deg)%given) base%law(4) = deck%value(joint_residual_deg)%number
       base%water_rise = deck%value(load_water_rise)%number
-      scene%settings = settings_of(deck, plan, pi/2.0_wp, size(blocks%fixed))
+      scene%settings = settings_of(deck, pi/2.0_wp, size(blocks%fixed))
       call block_scene(blocks, base, scene)
       if (.not. deck%value(load_displacement_factor)%given) return
       if (.not. allocated(scene%settings%boundary%held)) return

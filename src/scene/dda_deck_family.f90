@@ -3,8 +3,7 @@ module dda_deck_family
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_form, only : form_problem_t
-   use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, set_loads, &
-      & settings_of, unit_weight
+   use dda_arch_scene, only : arch_numbers, half_joints_deg, set_loads, settings_of, unit_weight
    use dda_chain, only : chain_t
    use dda_deck, only : deck_t, parameter_t, put_number, source_of
    use dda_deck_keys, only : deck_key
@@ -31,11 +30,8 @@ module dda_deck_family
       type(parameter_t) :: parameter
       !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
       logical :: chains = .false.
-      type(scene_plan_t) :: plan       !! Then: what all of them need
       type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
       type(settings_t) :: settings     !! Settings of their runs
-      !> Angle of each joint from the crown: (n_joint) [deg]
-      real(wp), allocatable :: joint_angle_deg(:)
       !> What does not depend on the thickness; made by the one who searches
       type(arch_rays_t) :: rays
    contains
@@ -50,26 +46,25 @@ module dda_deck_family
 contains
 
    !> Make a deck a family, its numbers read
-   pure subroutine new_family(plan, parameter, family)
-      type(scene_plan_t), intent(in) :: plan
+   pure subroutine new_family(parameter, family)
       type(parameter_t), intent(in) :: parameter
       type(deck_family_t), intent(inout) :: family  !! New but for the deck
+      type(scene_plan_t) :: plan
 
+      plan = plan_scene(family%deck)
       family%parameter = parameter
       if (parameter%key == load_horizontal_coefficient) family%load = searched_load%push
       if (parameter%key == load_gravity_direction_deg) family%load = searched_load%tilt
       if (parameter%key == load_load_factor) family%load = searched_load%factor
-      family%plan = plan
       family%chains = plan%row .and. parameter%key == arch_thickness_ratio
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
       associate (deck => family%deck)
-         family%settings = settings_of(deck, plan, degree*deck%value(arch_half_angle_deg)%number, &
+         family%settings = settings_of(deck, degree*deck%value(arch_half_angle_deg)%number, &
             & size(half_joints_deg(deck)))
          family%numbers = arch_numbers(deck)
          family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
          family%numbers%halved = family%decides_chains .and. plan%halved
-         allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
       end associate
    end subroutine new_family
 
@@ -113,7 +108,6 @@ contains
       type(deck_t) :: deck
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
-      type(scene_plan_t) :: plan
 
       deck = family%deck
       call put_value(family, value, deck, error)
@@ -122,9 +116,7 @@ contains
       if (len_trim(problem%text) > 0) call fatal_error(error, &
          & "the searched parameter makes no arch of this value")
       if (allocated(error)) return
-      plan = family%plan
-      if (.not. family%chains) plan = plan_scene(deck)
-      call deck_scene(deck, plan, scene)
+      call deck_scene(deck, scene)
       call check_live_points(deck, scene, error)
    end subroutine build_deck_scene
 

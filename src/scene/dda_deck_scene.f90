@@ -12,7 +12,6 @@ module dda_deck_scene
    use dda_line_scene, only : line_scene
    use dda_live_loads, only : add_live_loads
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : scene_plan_t
    implicit none
    private
 
@@ -27,20 +26,19 @@ module dda_deck_scene
 contains
 
    !> The scene that the deck of one case describes
-   pure subroutine deck_scene(deck, plan, scene)
+   pure subroutine deck_scene(deck, scene)
       type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
 
       select case (source_of(deck))
       case ("arch")
-         call arch_scene(deck, plan, scene)
+         call arch_scene(deck, scene)
       case ("lines")
-         call line_scene(deck, plan, scene)
+         call line_scene(deck, scene)
       case ("blocks")
-         call file_scene(deck, plan, deck%plan, scene)
+         call file_scene(deck, deck%plan, scene)
       case ("shape")
-         call shape_scene(deck, plan, scene)
+         call shape_scene(deck, scene)
       end select
       call move_ground(deck, scene%settings%boundary%base_acceleration)
       if (source_of(deck) /= "shape") call add_live_loads(deck, scene)
@@ -65,7 +63,7 @@ contains
    !> nothing
    pure type(history_t) function pulse_of(deck) result(pulse)
       type(deck_t), intent(in) :: deck
-      real(wp) :: duration, frequency, along(2)
+      real(wp) :: duration, frequency, along(2), half_step
       integer :: i, n
 
       along = deck%value(ground_amplitude)%number*direction_of(deck)
@@ -75,9 +73,11 @@ contains
          if (.not. deck%value(ground_duration)%given) duration = 1.0_wp/frequency
          n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
          allocate (pulse%time(n + 2), pulse%value(2, n + 2))
+         ! corners lie so far outside the sine that the broken line has its impulse
+         half_step = pi*frequency*duration/real(n, wp)
          do i = 0, n
             pulse%time(i + 1) = duration*real(i, wp)/real(n, wp)
-            pulse%value(:, i + 1) = along*swell(pi*frequency*duration/real(n, wp)) &
+            pulse%value(:, i + 1) = along*(tan(half_step)/half_step) &
                & *sin(2.0_wp*pi*frequency*pulse%time(i + 1))
          end do
       else
@@ -89,13 +89,6 @@ contains
       pulse%time(n + 2) = (1.0_wp + jump)*duration
       pulse%value(:, n + 2) = 0.0_wp
    end function pulse_of
-
-   !> By how much the corners of a broken line lie outside its sine, that it have the same impulse
-   pure real(wp) function swell(half_step)
-      real(wp), intent(in) :: half_step  !! Half the angle from corner to corner [rad]
-
-      swell = tan(half_step)/half_step
-   end function swell
 
    !> Unit vector of the direction of a pulse; the four main ones are free of rounding
    pure function direction_of(deck) result(direction)

@@ -22,8 +22,7 @@ module dda_limerick_scene
    implicit none
    private
 
-   public :: abutment_sides, limerick_scene, set_constants
-   public :: blocks_model, check_limerick_blocks, inner_points
+   public :: abutment_depth, check_limerick_blocks, limerick_scene, set_constants, widen
 
    !> Depth of the abutments over the radius: with the overhang as large, an arch of 10 m has the
    !> half size of 14.9 m that the published results of the original point to
@@ -95,24 +94,23 @@ contains
       call set_laws(scene, n, nv, model)
    end subroutine arch_model
 
-   !> How large the abutments are
-   pure subroutine abutment_sides(deck, depth, overhang)
+   !> Depth of the abutments, away from the springing joint [m]
+   pure real(wp) function abutment_depth(deck)
       type(deck_t), intent(in) :: deck
-      real(wp), intent(out) :: depth     !! Depth, away from the springing joint [m]
-      real(wp), intent(out) :: overhang  !! How far they reach beyond the joint at either end [m]
 
-      depth = number_or(deck, arch_abutment_size, usual_depth*deck%value(arch_radius)%number)
-      overhang = number_or(deck, arch_abutment_overhang, depth)
-   end subroutine abutment_sides
+      abutment_depth = number_or(deck, arch_abutment_size, &
+         & usual_depth*deck%value(arch_radius)%number)
+   end function abutment_depth
 
-   !> Make an abutment as large as the deck says
+   !> Make an abutment as large as the deck says; it reaches beyond the joint at either end
    pure subroutine widen(deck, vertex)
       type(deck_t), intent(in) :: deck
       !> Corners, counter-clockwise; the last edge contains the springing joint: (2, 4) [m]
       real(wp), intent(inout) :: vertex(:, :)
       real(wp) :: depth, overhang, tangent(2), outward(2)
 
-      call abutment_sides(deck, depth, overhang)
+      depth = abutment_depth(deck)
+      overhang = number_or(deck, arch_abutment_overhang, depth)
       tangent = along(vertex(:, 1), vertex(:, 4))
       outward = depth*right_normal(tangent)
       vertex(:, 1) = vertex(:, 1) - overhang*tangent

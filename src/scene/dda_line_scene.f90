@@ -16,7 +16,6 @@ module dda_line_scene
    use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : scene_plan_t
    implicit none
    private
 
@@ -47,9 +46,8 @@ contains
    end subroutine cut_lines
 
    !> The scene of the blocks that a deck's files make
-   pure subroutine line_scene(deck, plan, scene)
+   pure subroutine line_scene(deck, scene)
       type(deck_t), intent(in) :: deck  !! The deck of a case, with its blocks; checked
-      type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
       type(cut_model_t) :: split
       type(joint_law_t), allocatable :: law(:)
@@ -62,7 +60,7 @@ contains
       split%pair = pack(split%pair, scene%system%equation(split%pair%side(1)) > 0 &
          & .or. scene%system%equation(split%pair%side(3)) > 0)
       n = size(split%pair)
-      scene%settings = settings_of(deck, plan, pi/2.0_wp, n)
+      scene%settings = settings_of(deck, pi/2.0_wp, n)
       allocate (law(n), edge_pair(4, n), scene%joint_angle_deg(0))
       do j = 1, n
          law(j) = law_of_joint(deck, split%pair(j)%joint)

@@ -10,7 +10,6 @@ module dda_line_text
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene
    use dda_shape_text, only : add_bar_lines
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
@@ -47,7 +46,7 @@ contains
       type(scene_t) :: scene
 
       call line_system(deck, deck%cut, system)
-      call deck_scene(deck, plan_scene(deck), scene)
+      call deck_scene(deck, scene)
       call add_line(lines, "! the blocks of "//deck%file//", written by dda export")
       call add_blocks(deck%cut, system, lines)
       call add_materials(system, lines)

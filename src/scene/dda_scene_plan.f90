@@ -73,12 +73,6 @@ contains
       plan%moving = deck%value(analysis_geometry)%text == "current"
       plan%strength = deck%value(joint_cohesion)%number > 0.0 &
          & .or. deck%value(joint_tension)%number > 0.0 .or. deck%value(joint_residual_deg)%given
-      if (deck%value(analysis_unknowns)%given) then
-         plan%reason = strain_reason%forced
-         plan%unknowns = nint(deck%value(analysis_unknowns)%number)
-         call see_chain(deck, plan)
-         return
-      end if
       plan%reason = strain_reason%none
       if (deck%value(output_joints)%flag .and. .not. has_group(deck, search_group)) plan%reason = &
          & strain_reason%forces
@@ -89,6 +83,10 @@ contains
       if (source_of(deck) /= "arch") plan%reason = strain_reason%files
       if (deck%value(analysis_mode)%text == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) plan%unknowns = n_rigid
+      if (deck%value(analysis_unknowns)%given) then
+         plan%reason = strain_reason%forced
+         plan%unknowns = nint(deck%value(analysis_unknowns)%number)
+      end if
       call see_chain(deck, plan)
    end function plan_scene
 

@@ -9,7 +9,6 @@ module dda_shape_text
    use dda_key_names, only : arch_lune_deg, fill_group
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
@@ -30,7 +29,7 @@ contains
       integer :: i
 
       call shape_assembly(deck, assembly, problem)
-      call deck_scene(deck, plan_scene(deck), scene)
+      call deck_scene(deck, scene)
       call add_line(lines, "! the arch of "//deck%file//", written by dda export")
       call add_blocks(assembly%plan, lines)
       call add_line(lines, "material 2")

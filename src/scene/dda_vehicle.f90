@@ -221,6 +221,7 @@ contains
       real(wp), intent(in) :: x
       integer, intent(out) :: edge  !! Its number; 0 if there is none
       real(wp), intent(out) :: top  !! Its height [m]
+      real(wp) :: y
       integer :: after, before, k, middle
 
       edge = 0
@@ -238,31 +239,25 @@ contains
       end do
       ! on a corner the edge to its left counts, too, past those corners that are at the same place
       do k = before, 0, -1
-         call take_higher(road, road%highest(k), x, edge, top)
+         associate (other => road%highest(k))
+            if (other > 0) then
+               y = height(road, other, x)
+               ! of two at one height the first
+               if (y > top .or. .not. y < top .and. other <= edge) then
+                  top = y
+                  edge = other
+               end if
+            end if
+         end associate
          if (k == 0) exit
          if (road%corner(k) < x) exit
       end do
    end subroutine find_top
 
-   !> Take an edge that is higher than the others
-   pure subroutine take_higher(road, k, x, edge, top)
-      type(road_t), intent(in) :: road
-      integer, intent(in) :: k        !! Number of the edge, or 0
-      real(wp), intent(in) :: x
-      integer, intent(inout) :: edge  !! Number of the highest edge so far
-      real(wp), intent(inout) :: top
-
-      if (k == 0) return
-      ! of two at one height the first
-      if (height(road, k, x) < top .or. height(road, k, x) <= top .and. k > edge) return
-      top = height(road, k, x)
-      edge = k
-   end subroutine take_higher
-
    !> Height of an edge at a place
    pure real(wp) function height(road, k, x)
       type(road_t), intent(in) :: road
-      integer, intent(in) :: k
+      integer, intent(in) :: k  !! Number of the edge
       real(wp), intent(in) :: x
 
       height = road%left(2, k) + (x - road%left(1, k))/(road%right(1, k) - road%left(1, k)) &

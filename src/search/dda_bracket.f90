@@ -116,29 +116,18 @@ contains
          value = max(search%low, value/5.0_wp)
       end do
       if (answer == verdict%undecided) then
-         call ascend(family, search, value, critical, answer)
+         ! up to the first value that is decided
+         do attempt = 1, max_descent
+            call decide_at(family, value + (search%high - value)*2.0_wp**(attempt - max_descent), &
+               & critical, answer)
+            if (answer /= verdict%undecided) exit
+         end do
          return
       end if
       limit = search%low
       call decide_at(family, search%high, critical, answer)
       if (answer == verdict%stable) critical%verdict = verdict%stable
    end subroutine find_collapse
-
-   !> Go up from an undecided value to the first decided one
-   pure subroutine ascend(family, search, value, critical, answer)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      real(wp), intent(in) :: value   !! The undecided value
-      type(critical_t), intent(inout) :: critical
-      integer, intent(out) :: answer  !! One of verdict
-      integer :: attempt
-
-      do attempt = 1, max_descent
-         call decide_at(family, value + (search%high - value)*2.0_wp**(attempt - max_descent), &
-            & critical, answer)
-         if (answer /= verdict%undecided) return
-      end do
-   end subroutine ascend
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit, in_vain) result(value)
@@ -237,16 +226,20 @@ contains
    end function closed
 
    !> Decide one value and keep the decision on its side of the bracket
-   pure subroutine decide_at(family, value, critical, answer)
+   pure subroutine decide_at(family, value, critical, answer, whole)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value   !! The value
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! One of verdict
+      !> Whether the decision is kept whole, as of a run in time; otherwise its verdict will do
+      logical, intent(in), optional :: whole
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene
-      logical :: decided
+      logical :: bare, decided
 
+      bare = .true.
+      if (present(whole)) bare = .not. whole
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
       allocate (decision)
@@ -263,13 +256,13 @@ contains
             return
          end if
          critical%current = scene%settings%current
-         call decide(scene, decision, verdict_only=.true.)
+         call decide(scene, decision, verdict_only=bare)
          ! what has not fallen at the end of its time stands
          if (decision%outcome%verdict == verdict%completed) &
             & decision%outcome%verdict = verdict%stable
       end if
       answer = decision%outcome%verdict
-      if (.not. scene%settings%dynamic) call shed(decision, keeps_joints=.true.)
+      if (bare) call shed(decision, keeps_joints=.true.)
       call keep_decision(critical, value, decision)
    end subroutine decide_at
 

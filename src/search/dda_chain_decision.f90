@@ -14,8 +14,7 @@ module dda_chain_decision
    implicit none
    private
 
-   public :: decide_chain, doubtful
-   public :: fold, unfold
+   public :: decide_chain, doubtful, unfold
 
    !> Forces beyond the cones by less than so many times their rounding prove nothing
    real(wp), parameter :: doubtful = 4.0_wp
@@ -213,10 +212,10 @@ contains
       integer :: m, n
 
       if (.not. decision%halved) return
-      n = whole_joints(decision)
       decision%halved = .false.
       associate (contacts => decision%contacts, outcome => decision%outcome)
          m = size(contacts%face)
+         n = 2*m - merge(2, 1, decision%keystone)
          if (decision%keystone) then
             m = m - 1
          else
@@ -242,27 +241,6 @@ contains
          call mirror(size(outcome%motion, 2), n - 1, [-1.0_wp, 1.0_wp, -1.0_wp], outcome%motion)
       end associate
    end subroutine unfold
-
-   !> Faces of the left half of a collapse that was decided as a whole
-   pure subroutine fold(chain, decision, face)
-      type(chain_t), intent(in) :: chain                       !! Half the chain
-      type(decision_t), intent(in) :: decision
-      type(joint_face_t), allocatable, intent(out) :: face(:)  !! Faces of its joints: (m)
-      integer :: m
-
-      m = size(chain%joint)
-      allocate (face(m), source=decision%contacts%face(:m))
-      if (chain%keystone) face(m) = joint_face_t()
-   end subroutine fold
-
-   !> Number of joints that a decision is of, folded or not
-   elemental integer function whole_joints(decision)
-      type(decision_t), intent(in) :: decision
-
-      whole_joints = size(decision%contacts%face)
-      if (.not. decision%halved) return
-      whole_joints = 2*whole_joints - merge(2, 1, decision%keystone)
-   end function whole_joints
 
    !> Mirror the columns of the left half
    pure subroutine mirror(m, n, sign, value)

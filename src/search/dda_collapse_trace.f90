@@ -4,7 +4,6 @@ module dda_collapse_trace
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : begin_motion, block_system_t
-   use dda_chain_decision, only : fold
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_contact_types, only : joint_springs_t, joint_t, new_joint_springs, same_joint
    use dda_contacts, only : joint_place
@@ -172,7 +171,9 @@ contains
       associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome, &
          & chain => critical%link%chain)
          if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
-            call fold(chain, critical%fallen, face)
+            ! of a collapse that was decided as a whole, the left half
+            face = contacts%face(:size(chain%joint))
+            if (chain%keystone) face(size(face)) = joint_face_t()
             call freeze_mechanism(chain, face, mechanism%chain)
          else if (mechanism%linked) then
             call freeze_mechanism(chain, contacts%face, mechanism%chain)

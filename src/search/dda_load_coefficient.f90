@@ -31,11 +31,16 @@ contains
       type(scene_t), intent(in) :: scene  !! The scene at the high end
       real(wp), intent(in) :: largest     !! Largest size of the coefficient in the range
 
+      type(settings_t) :: dead_push
+
       associate (settings => scene%settings)
+         dead_push = settings
+         dead_push%push = full_push(settings)
+         dead_push%live_push = .false.
          can_follow = decides_as_graph(settings, scene%contacts) &
             & .and. .not. last_history_time(settings) > 0.0_wp
          ! under the associated rule the order of the loads does not matter
-         if (load /= searched_load%factor .and. bears_live_load(with_dead_push(settings))) &
+         if (load /= searched_load%factor .and. bears_live_load(dead_push)) &
             & can_follow = can_follow .and. settings%verdict_flow == flow_rule%associated
          if (load == searched_load%tilt) can_follow = can_follow &
             & .and. .not. abs(settings%push) > 0.0_wp &
@@ -71,15 +76,6 @@ contains
 
       is_push = cos(tilt) > 1.0e-6_wp .and. abs(tilt) < 2.0_wp
    end function is_push
-
-   !> Settings whose push is not live
-   pure type(settings_t) function with_dead_push(settings)
-      type(settings_t), intent(in) :: settings
-
-      with_dead_push = settings
-      with_dead_push%push = full_push(settings)
-      with_dead_push%live_push = .false.
-   end function with_dead_push
 
    !> What is searched, from where it does nothing
    pure real(wp) function coefficient(load, settings)

@@ -90,8 +90,7 @@ contains
       integer :: role(size(contacts%face)), n
       real(wp) :: largest, opening, slip
 
-      largest = largest_of(contacts)
-      if (present(motion)) largest = largest_of(contacts, motion)
+      largest = largest_of(contacts, motion)
       role = role_of_joint(contacts, largest)
       n = size(joint_angle_deg)
       associate (increment => contacts%increment)

@@ -45,7 +45,6 @@ contains
       real(wp) :: value
       integer :: answer, i, side
 
-      critical%current = .true.
       call run_value(family, search%low, runs, critical, answer)
       if (answer == verdict%undecided) return
       call run_value(family, search%high, runs, critical, answer)
@@ -71,7 +70,11 @@ contains
          end do
       end do
       call close_bracket(family, search, runs, critical)
-      call keep_decisions(family, runs, critical)
+      ! the decisions of the two neighbours may be none of the last
+      if (abs(runs%kept(1) - critical%stands) > 0.0_wp) &
+         & call run_value(family, critical%stands, runs, critical, answer)
+      if (abs(runs%kept(2) - critical%falls) > 0.0_wp) &
+         & call run_value(family, critical%falls, runs, critical, answer)
       call keep_changes(runs, critical)
    end subroutine find_critical_in_time
 
@@ -124,19 +127,6 @@ contains
       critical%verdict = verdict%found
    end subroutine close_bracket
 
-   !> Have the decisions of the two neighbours, which may be none of the last
-   pure subroutine keep_decisions(family, runs, critical)
-      class(family_t), intent(in) :: family
-      type(runs_t), intent(inout) :: runs
-      type(critical_t), intent(inout) :: critical
-      integer :: answer
-
-      if (abs(runs%kept(1) - critical%stands) > 0.0_wp) &
-         & call run_value(family, critical%stands, runs, critical, answer)
-      if (abs(runs%kept(2) - critical%falls) > 0.0_wp) &
-         & call run_value(family, critical%falls, runs, critical, answer)
-   end subroutine keep_decisions
-
    !> Keep where else the answer changes
    pure subroutine keep_changes(runs, critical)
       type(runs_t), intent(in) :: runs
@@ -161,7 +151,7 @@ contains
       integer, intent(out) :: answer  !! Stable, collapsed or undecided
       integer :: i
 
-      call decide_at(family, value, critical, answer)
+      call decide_at(family, value, critical, answer, whole=.true.)
       if (answer == verdict%undecided) return
       runs%kept(merge(2, 1, answer == verdict%collapsed)) = value
       i = count(runs%value(:runs%n) < value)
@@ -173,5 +163,4 @@ contains
       runs%falls(i + 1) = answer == verdict%collapsed
       runs%n = runs%n + 1
    end subroutine run_value
-
 end module dda_time_search

@@ -23,28 +23,16 @@ contains
       real(wp), intent(in) :: second(3)  !! Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
       !> Symmetric matrix of the unknowns u0, v0, r0, ex, ey, gxy: (6, 6)
       real(wp) :: mass(6, 6)
-      real(wp) :: sxx, syy, sxy
 
-      sxx = second(1)
-      syy = second(2)
-      sxy = second(3)
       mass = 0.0_wp
-      mass(1, 1) = area
-      mass(2, 2) = area
-      mass(3, 3) = sxx + syy
-      mass(4, 4) = sxx
-      mass(5, 5) = syy
-      mass(6, 6) = (sxx + syy)/4.0_wp
-      mass(3, 4) = -sxy
-      mass(3, 5) = sxy
-      mass(3, 6) = (sxx - syy)/2.0_wp
-      mass(4, 6) = sxy/2.0_wp
-      mass(5, 6) = sxy/2.0_wp
-      mass(4, 3) = mass(3, 4)
-      mass(5, 3) = mass(3, 5)
-      mass(6, 3) = mass(3, 6)
-      mass(6, 4) = mass(4, 6)
-      mass(6, 5) = mass(5, 6)
+      associate (sxx => second(1), syy => second(2), sxy => second(3))
+         mass(1, 1) = area
+         mass(2, 2) = area
+         mass(3, 3:) = [sxx + syy, -sxy, sxy, (sxx - syy)/2.0_wp]
+         mass(4, 3:) = [-sxy, sxx, 0.0_wp, sxy/2.0_wp]
+         mass(5, 3:) = [sxy, 0.0_wp, syy, sxy/2.0_wp]
+         mass(6, 3:) = [(sxx - syy)/2.0_wp, sxy/2.0_wp, sxy/2.0_wp, (sxx + syy)/4.0_wp]
+      end associate
       mass = density*mass
    end function mass_matrix
 
