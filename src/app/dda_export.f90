@@ -9,12 +9,11 @@ submodule (dda_verbs) dda_export
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
-   use dda_line_text, only : has_one_law, line_losses, line_text
+   use dda_block_text, only : has_one_law, line_losses, line_text, shape_losses, shape_text
    use dda_process, only : deck_stem, exit_status, make_folder
    use dda_read_deck, only : read_deck
    use dda_screen, only : print_line, screen_t
    use dda_shape_check, only : check_form
-   use dda_shape_text, only : shape_losses, shape_text
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry
    implicit none

@@ -4,11 +4,11 @@ module dda_case_rows
       & tell_total_motion
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
-   use dda_blocks_of_deck, only : movable_blocks
    use dda_case, only : case_t, searched_name
    use dda_collapse_rows, only : tell_mechanism, tell_nearest
    use dda_contacts, only : contacts_t
    use dda_deck, only : deck_t, source_of
+   use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
    use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
       & arch_thickness_ratio, joint_friction_deg, output_condition, scene_kind, vehicle_position

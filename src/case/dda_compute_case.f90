@@ -11,8 +11,7 @@ module dda_compute_case
    use dda_deck_scene, only : deck_scene
    use dda_key_names, only : arch_thickness_ratio, output_frames, vehicle_worst
    use dda_kinds, only : wp
-   use dda_limerick_decision, only : decide_limerick
-   use dda_limerick_search, only : search_limerick
+   use dda_limerick_decision, only : decide_limerick, search_limerick
    use dda_scene, only : build_once, move_scene
    use dda_worst_position, only : place_vehicle
    implicit none

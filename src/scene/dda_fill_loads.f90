@@ -138,12 +138,11 @@ contains
       type(top_chord_t), intent(in) :: chord
       real(wp), intent(out) :: weight  !! The weight [N/m]
       real(wp), intent(out) :: x       !! Where it acts along x [m]
-      real(wp) :: area, first, part(2), bend
+      real(wp) :: sums(2), part(2), bend
 
       ! all of it as fill, then what is backing is heavier or lighter by the difference
-      part = trapezium(chord%left, chord%right, fill%surface)
-      weight = fill%unit_weight(1)*part(1)
-      x = fill%unit_weight(1)*part(2)
+      sums = fill%unit_weight(1)*trapezium(chord%left, chord%right, fill%surface)
+      part = 0.0_wp
       associate (low => min(chord%left(2), chord%right(2)), &
          & high => max(chord%left(2), chord%right(2)), &
          & top => min(fill%backing, fill%surface))
@@ -157,19 +156,12 @@ contains
             else
                part = trapezium([bend, top], chord%right, top)
             end if
-         else
-            part = 0.0_wp
          end if
       end associate
-      area = part(1)
-      first = part(2)
-      weight = weight + (fill%unit_weight(2) - fill%unit_weight(1))*area
-      x = x + (fill%unit_weight(2) - fill%unit_weight(1))*first
-      if (weight > 0.0_wp) then
-         x = x/weight
-      else
-         x = 0.5_wp*(chord%left(1) + chord%right(1))
-      end if
+      sums = sums + (fill%unit_weight(2) - fill%unit_weight(1))*part
+      weight = sums(1)
+      x = 0.5_wp*(chord%left(1) + chord%right(1))
+      if (weight > 0.0_wp) x = sums(2)/weight
    end subroutine weigh
 
    !> Area below a level line above a chord, and its first moment along x

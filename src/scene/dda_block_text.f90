@@ -1,21 +1,24 @@
-!> Blocks that were cut from lines as a file of blocks, with what acts on points of them
-module dda_line_text
+!> The blocks of a deck, cut from lines or of an arch of any shape, as a file of blocks, with what
+!> acts on points of them
+module dda_block_text
+   use dda_arch_assembly, only : arch_assembly_t
+   use dda_arch_form, only : form_problem_t
    use dda_block_system, only : block_system_t
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
-   use dda_key_names, only : live_group, vehicle_group
+   use dda_key_names, only : arch_lune_deg, fill_group, live_group, vehicle_group
    use dda_kinds, only : degree, wp
    use dda_limerick_analysis, only : load_history_t
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_shape_text, only : add_bar_lines
+   use dda_shape_scene, only : shape_assembly
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
    implicit none
    private
 
-   public :: line_losses, line_text, has_one_law
+   public :: has_one_law, line_losses, line_text, shape_losses, shape_text
 
 contains
 
@@ -48,7 +51,7 @@ contains
       call line_system(deck, deck%cut, system)
       call deck_scene(deck, scene)
       call add_line(lines, "! the blocks of "//deck%file//", written by dda export")
-      call add_blocks(deck%cut, system, lines)
+      call add_cut_blocks(deck%cut, system, lines)
       call add_materials(system, lines)
       if (size(deck%cut%pair) > 0) call add_laws(law_of_joint(deck, deck%cut%pair(1)%joint), &
          & maxval(system%material), lines)
@@ -65,15 +68,14 @@ contains
       number = [law%friction, law%cohesion, law%tension, law%residual, law%slip_length]
    end function numbers_of
 
-   !> Add the blocks, each with its corners. Material 1 is that of the deck, so those of the lines
-   !> are counted from 2
-   pure subroutine add_blocks(cut, system, lines)
+   !> Add the blocks. Material 1 is that of the deck, so those of the lines are counted from 2
+   pure subroutine add_cut_blocks(cut, system, lines)
       type(cut_model_t), intent(in) :: cut
       type(block_system_t), intent(in) :: system  !! What they are made of, and how they begin
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: line
       logical :: held(size(cut%area))
-      integer :: b, v
+      integer :: b
 
       held = held_blocks(cut)
       do b = 1, size(cut%area)
@@ -81,15 +83,28 @@ contains
          if (held(b)) line = line//" fixed"
          line = line//" material "//to_text(system%material(b) + 1)
          if (any(abs(system%velocity(1:3, b)) > 0.0_wp)) line = line//" velocity " &
-            & //fields(system%velocity(1:2, b), " ")//" "//to_text(system%velocity(3, b))
+            & //fields(system%velocity(1:3, b), " ")
          if (any(abs(system%stress(:, b)) > 0.0_wp)) line = line//" stress " &
-            & //fields(system%stress(1:2, b), " ")//" "//to_text(system%stress(3, b))
-         call add_line(lines, line)
-         do v = cut%first_vertex(b), cut%first_vertex(b + 1) - 1
-            call add_line(lines, "   "//fields(cut%vertex(:, v) + cut%scale%origin, " "))
-         end do
+            & //fields(system%stress(:, b), " ")
+         associate (first => cut%first_vertex(b), last => cut%first_vertex(b + 1) - 1)
+            call add_block(line, cut%vertex(:, first:last), cut%scale%origin, lines)
+         end associate
       end do
-   end subroutine add_blocks
+   end subroutine add_cut_blocks
+
+   !> Add a block with its corners
+   pure subroutine add_block(line, vertex, origin, lines)
+      character(len=*), intent(in) :: line  !! Its first line
+      real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
+      real(wp), intent(in) :: origin(2)     !! Where the origin of their coordinates is: (2) [m]
+      type(growing_text_t), intent(inout) :: lines
+      integer :: v
+
+      call add_line(lines, line)
+      do v = 1, size(vertex, 2)
+         call add_line(lines, "   "//fields(vertex(:, v) + origin, " "))
+      end do
+   end subroutine add_block
 
    !> Add the materials of the blocks
    pure subroutine add_materials(system, lines)
@@ -182,4 +197,72 @@ contains
          & //", &live, &vehicle"
       if (len(text) > 0) text = text(3:)
    end function line_losses
-end module dda_line_text
+
+   !> The blocks of a deck's arch, with what acts on points of them
+   pure function shape_text(deck) result(text)
+      type(deck_t), intent(in) :: deck
+      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+      type(growing_text_t) :: lines
+      type(scene_t) :: scene
+      integer :: b, i
+
+      call shape_assembly(deck, assembly, problem)
+      call deck_scene(deck, scene)
+      call add_line(lines, "! the arch of "//deck%file//", written by dda export")
+      associate (plan => assembly%plan)
+         do b = 1, size(plan%fixed)
+            call add_block(trim(merge("block fixed", "block      ", plan%fixed(b))) &
+               & //trim(merge(" material 2", "           ", plan%material(b) == 2)), &
+               & plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1), &
+               & plan%origin, lines)
+         end do
+      end associate
+      call add_line(lines, "material 2")
+      do i = 1, size(assembly%plan%laws)
+         call add_line(lines, "joint 1 2 friction_deg "//to_text(assembly%plan%laws(i)%value(1)))
+      end do
+      if (allocated(scene%settings%boundary%loaded)) then
+         do i = 1, size(scene%settings%boundary%loaded)
+            associate (loaded => scene%settings%boundary%loaded(i))
+               call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
+                  & //to_text(loaded%block)//" "//fields(loaded%point + scene%origin, " ")//" " &
+                  & //fields(loaded%force%value(:, 1), " "))
+            end associate
+         end do
+      end if
+      call add_bar_lines(scene, lines)
+      text = lines_of(lines)
+   end function shape_text
+
+   !> Add the bars of a scene
+   pure subroutine add_bar_lines(scene, lines)
+      type(scene_t), intent(in) :: scene
+      type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: text
+      integer :: i
+
+      if (.not. allocated(scene%settings%boundary%bar)) return
+      do i = 1, size(scene%settings%boundary%bar)
+         associate (bar => scene%settings%boundary%bar(i), origin => scene%origin)
+            text = "bar "//fields([bar%point(:, 1) + origin, bar%point(:, 2) + origin], " ") &
+               & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)
+            if (.not. bar%pushes) text = text//" slack"
+            if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
+         end associate
+         call add_line(lines, text)
+      end do
+   end subroutine add_bar_lines
+
+   !> What a file of blocks has no place for
+   pure function shape_losses(deck) result(text)
+      type(deck_t), intent(in) :: deck
+      character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
+
+      text = ""
+      if (deck%value(arch_lune_deg)%given) text = ", arch%lune_deg"
+      if (has_group(deck, fill_group)) text = text//", pressure of the fill"
+      if (len(text) > 0) text = text(3:)
+   end function shape_losses
+end module dda_block_text
