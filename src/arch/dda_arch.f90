@@ -46,19 +46,21 @@ contains
       if (facet_deg > 0.0_wp) facet_count = max(1, ceiling(span_deg/facet_deg - 1.0e-9_wp))
    end function facet_count
 
-   !> Corners of the arch's sections from the crown to the springing
-   pure subroutine half_sections(shape, angle, is_joint)
+   !> Directions of the sections of the left half, seen from the centre, from the springing to the
+   !> crown
+   pure subroutine left_directions(shape, direction, is_joint)
       type(arch_shape_t), intent(in) :: shape
-      !> Angles of all sections from the crown, the first >= 0: (m) [rad]
-      real(wp), allocatable, intent(out) :: angle(:)
+      !> Unit vectors; the last is the crown's if there is a section: (2, m)
+      real(wp), allocatable, intent(out) :: direction(:, :)
       logical, allocatable, intent(out) :: is_joint(:)  !! Which sections are joints: (m)
-      real(wp) :: start, span
+      real(wp) :: angle(sum(shape%facets) + 1), start, span
+      logical :: joint(size(angle))
       integer :: i, k, n, crown
 
       crown = merge(0, 1, .not. shape%joint_angle(1) > 0.0_wp)
-      allocate (angle(sum(shape%facets) + 1), is_joint(sum(shape%facets) + 1))
-      is_joint = .false.
+      joint = .false.
       n = 0
+      ! from the crown to the springing
       if (crown == 1) then
          ! the crown voussoir: the sections of its right half only
          k = shape%facets(1)
@@ -73,33 +75,16 @@ contains
          do i = 0, shape%facets(k + crown) - 1
             n = n + 1
             angle(n) = start + span*real(i, wp)/real(shape%facets(k + crown), wp)
-            is_joint(n) = i == 0
+            joint(n) = i == 0
          end do
       end do
       n = n + 1
       angle(n) = shape%joint_angle(size(shape%joint_angle))
-      is_joint(n) = .true.
-      angle = angle(:n)
-      is_joint = is_joint(:n)
-   end subroutine half_sections
-
-   !> Directions of the sections of the left half, seen from the centre, from the springing to the
-   !> crown
-   pure subroutine left_directions(shape, direction, is_joint)
-      type(arch_shape_t), intent(in) :: shape
-      !> Unit vectors; the last is the crown's if there is a section: (2, m)
-      real(wp), allocatable, intent(out) :: direction(:, :)
-      logical, allocatable, intent(out) :: is_joint(:)
-      real(wp), allocatable :: angle(:)
-      logical, allocatable :: half_joint(:)
-      integer :: i, n
-
-      call half_sections(shape, angle, half_joint)
-      n = size(angle)
+      joint(n) = .true.
       allocate (direction(2, n), is_joint(n))
       do i = 1, n
          direction(:, n + 1 - i) = [-sin(angle(i)), cos(angle(i))]
-         is_joint(n + 1 - i) = half_joint(i)
+         is_joint(n + 1 - i) = joint(i)
       end do
       if (.not. angle(1) > 0.0_wp) direction(1, n) = 0.0_wp
    end subroutine left_directions

@@ -227,9 +227,8 @@ contains
       integer :: i, n
 
       n = size(corner, 2)
-      kept = reshape(pack(corner, spread([(norm2(corner(:, i) &
-         & - corner(:, 1 + modulo(i - 2, n))) > near, i=1, n)], 1, 2)), [2, &
-         & count([(norm2(corner(:, i) - corner(:, 1 + modulo(i - 2, n))) > near, i=1, n)])])
+      kept = corner(:, pack([(i, i=1, n)], [(norm2(corner(:, i) &
+         & - corner(:, 1 + modulo(i - 2, n))) > near, i=1, n)]))
    end function distinct
 
    !> The ground below a pier, as deep as half its width

@@ -1,22 +1,24 @@
 !> Blocks and joints of a case as rows: corners, how they are held and how they move; forces,
-!> openings and what joints do in the collapse; the joints of a picture
+!> openings and what joints do in the collapse of what falls or would fall next; joints of a picture
 module dda_block_rows
    use dda_block_system, only : block_system_t
+   use dda_case, only : case_t
    use dda_contact_types, only : joint_place_t, joint_t, place_joint, same_joint
    use dda_contacts, only : contacts_t, joint_place
    use dda_deformation, only : displacement_matrix
    use dda_frames, only : frame_t
    use dda_friction_cone, only : contact_state
    use dda_kinds, only : wp
-   use dda_mechanism, only : largest_of, role_of_joint, slides
-   use dda_scene, only : scene_t
+   use dda_mechanism, only : largest_of, mechanism_of, mechanism_t, role_of_joint, slides
+   use dda_scene, only : build_once, scene_t, searched_load
+   use dda_search, only : critical_t, decision_t
    use dda_write_frames, only : frame_joint_row_t
-   use dda_write_results, only : joint_row_t, some_number, told_blocks_t
+   use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
    private
 
-   public :: scale_to_one, tell_blocks, tell_mechanism_motion, tell_total_motion, joint_rows
-   public :: tell_roles, frame_joint_rows, contact_states
+   public :: contact_states, frame_joint_rows, joint_rows, scale_to_one, tell_blocks
+   public :: tell_mechanism, tell_mechanism_motion, tell_nearest, tell_roles, tell_total_motion
 
    !> Words for the roles of a joint, by their number: those of the columns state and mechanism
    character(len=14), parameter :: role_word(0:4) = [character(len=14) :: "none", "open", &
@@ -254,4 +256,83 @@ contains
          & states = contact_state%sliding
       where (frame%face(joint)%open) states = contact_state%open
    end function contact_states
+
+   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
+   pure subroutine tell_nearest(this, joint_row, blocks)
+      type(case_t), intent(in) :: this
+      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      type(told_blocks_t), intent(inout) :: blocks
+      type(scene_t) :: scene
+
+      ! a load coefficient changes no blocks
+      if (allocated(this%critical%standing) .and. this%family%load == searched_load%none) then
+         scene = this%standing
+         call build_once(this%family, this%critical%stands, scene)
+         call tell_scene(scene, this%critical, joint_row, blocks)
+      else
+         call tell_scene(this%scene, this%critical, joint_row, blocks)
+      end if
+   end subroutine tell_nearest
+
+   !> The same of its scene
+   pure subroutine tell_scene(scene, critical, joint_row, blocks)
+      type(scene_t), intent(in) :: scene
+      type(critical_t), intent(in) :: critical
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      type(told_blocks_t), intent(inout) :: blocks
+
+      if (allocated(critical%standing)) then
+         call tell_joints(scene, critical%standing%contacts, critical, joint_row)
+      else if (allocated(critical%fallen)) then
+         call tell_joints(scene, critical%fallen%contacts, critical, joint_row)
+      end if
+      if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+      if (.not. allocated(critical%fallen)) return
+      associate (fallen => critical%fallen)
+         if (allocated(fallen%outcome%motion)) then
+            call tell_mechanism_motion(scene%system, fallen%outcome%motion, blocks)
+         else if (allocated(fallen%system%moved)) then
+            if (size(fallen%system%moved) /= size(blocks%corner)) return
+            call tell_total_motion(fallen%system, .true., blocks)
+            call scale_to_one(blocks%displacement)
+         end if
+      end associate
+   end subroutine tell_scene
+
+   !> Joints of one side of the bracket, and what they do in the collapse
+   pure subroutine tell_joints(scene, contacts, critical, joint_row)
+      type(scene_t), intent(in) :: scene
+      type(contacts_t), intent(in) :: contacts  !! Contacts of the side
+      type(critical_t), intent(in) :: critical
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+
+      if (.not. allocated(contacts%joint)) return
+      joint_row = joint_rows(scene%system, contacts, scene%joint_angle_deg, scene%origin)
+      if (size(joint_row) > 0 .and. allocated(critical%fallen)) call tell_roles( &
+         & critical%fallen%contacts, scene%system, contacts, joint_row, &
+         & critical%fallen%outcome%motion)
+   end subroutine tell_joints
+
+   !> Fill the columns of a collapse
+   pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
+      type(decision_t), intent(in) :: fallen
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      type(result_row_t), intent(inout) :: row
+      type(mechanism_t) :: mechanism
+
+      associate (outcome => fallen%outcome)
+         if (allocated(outcome%fallen)) then
+            call mechanism_of(outcome%fallen, joint_angle_deg, mechanism, outcome%motion)
+         else
+            call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, outcome%motion)
+         end if
+      end associate
+      row%collapse_mode = mechanism%mode
+      row%sliding_share = some_number(mechanism%sliding_share)
+      row%intrados_hinge_deg = mechanism%intrados_deg
+      row%extrados_hinge_deg = mechanism%extrados_deg
+      row%springing_hinge = mechanism%springing
+   end subroutine tell_mechanism
 end module dda_block_rows

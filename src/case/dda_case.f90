@@ -3,7 +3,7 @@ module dda_case
    use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
    use dda_deck, only : deck_t, file_beside, has_group, parameter_name, parameter_t, source_of
    use dda_deck_check_case, only : search_bracket
-   use dda_deck_family, only : deck_family_t, new_family
+   use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
    use dda_frames, only : album_t
    use dda_key_names, only : analysis_mode, analysis_restart, arch_thickness_ratio, search_group, &

@@ -102,7 +102,7 @@ contains
       type(proof_t), intent(inout) :: proof
       type(proof_t) :: other
 
-      if (allocated(critical%limit_force)) then
+      if (critical%limit%known .and. critical%verdict == verdict%found) then
          call prove_limit(family, critical, falls, proof)
          return
       end if
@@ -222,24 +222,25 @@ contains
       type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph
       type(error_t), allocatable :: error
-      real(wp), allocatable :: live(:, :), load(:, :)
+      real(wp), allocatable :: load(:, :)
       real(wp) :: violation, power
 
       proof%scene = falls
-      call family%turn(critical%limit(1), proof%scene, error)
-      if (allocated(error)) return
-      call scene_graph(proof%scene%settings, proof%scene%system, proof%scene%contacts, graph)
-      allocate (load, source=full_loads(proof%scene%settings, proof%scene, graph))
-      allocate (proof%force, source=critical%limit_force)
-      allocate (proof%velocity, source=critical%limit_velocity)
-      proof%force_at = critical%limit(1)
-      proof%motion_at = critical%limit(2)
-      allocate (live, source=critical%limit_live)
-      call check_forces(graph, load, proof%force, proof%imbalance, proof%law_violation, &
-         & critical%limit(1)*live)
-      call check_velocities(graph, live, proof%velocity, violation, power)
-      proof%law_violation = max(proof%law_violation, violation)
-      proof%power = power/most_power(live, proof%velocity)
+      associate (limit => critical%limit)
+         call family%turn(limit%value(1), proof%scene, error)
+         if (allocated(error)) return
+         call scene_graph(proof%scene%settings, proof%scene%system, proof%scene%contacts, graph)
+         allocate (load, source=full_loads(proof%scene%settings, proof%scene, graph))
+         proof%force = limit%force
+         proof%velocity = limit%velocity
+         proof%force_at = limit%value(1)
+         proof%motion_at = limit%value(2)
+         call check_forces(graph, load, proof%force, proof%imbalance, proof%law_violation, &
+            & limit%value(1)*limit%live)
+         call check_velocities(graph, limit%live, proof%velocity, violation, power)
+         proof%law_violation = max(proof%law_violation, violation)
+         proof%power = power/most_power(limit%live, proof%velocity)
+      end associate
    end subroutine prove_limit
 
    !> Power of loads if each went along with the motion of its block

@@ -1,11 +1,10 @@
 !> A computed case as rows of the result tables
 module dda_case_rows
-   use dda_block_rows, only : joint_rows, tell_blocks, tell_mechanism_motion, tell_roles, &
-      & tell_total_motion
+   use dda_block_rows, only : joint_rows, tell_blocks, tell_mechanism, tell_mechanism_motion, &
+      & tell_nearest, tell_roles, tell_total_motion
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
-   use dda_collapse_rows, only : tell_mechanism, tell_nearest
    use dda_contacts, only : contacts_t
    use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
@@ -191,9 +190,9 @@ contains
                & //to_text(critical%stands)
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
-         if (critical%has_limit) then
-            row%exact_low = some_number(minval(critical%limit))
-            row%exact_high = some_number(maxval(critical%limit))
+         if (critical%limit%known) then
+            row%exact_low = some_number(minval(critical%limit%value))
+            row%exact_high = some_number(maxval(critical%limit%value))
          end if
          if (critical%has_other) remark = "it also collapses at "//to_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
@@ -296,23 +295,15 @@ contains
          remark = trim(merge("the blocks collapse at     ", "equilibrium is proven up to", &
             & outcome%verdict == verdict%collapsed))//place
       end if
-      remark = joined(remark, order_remark(outcome))
-   end function path_remark
-
-   !> Why forces after stages are not those of the last shape built at once
-   pure function order_remark(outcome) result(remark)
-      type(outcome_t), intent(in) :: outcome
-      character(len=:), allocatable :: remark
-
-      remark = ""
-      if (.not. (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once)) return
-      if (outcome%n_slid > 0) remark = "joints that slid between stages: " &
-         & //to_text(outcome%n_slid)//numbered(outcome%slid)
+      ! why forces after stages are not those of the last shape built at once
+      if (outcome%n_slid > 0) remark = joined(remark, "joints that slid between stages: " &
+         & //to_text(outcome%n_slid)//numbered(outcome%slid))
       if (outcome%has_built) remark = joined(remark, "blocks were built between stages")
       if (outcome%slides_at_once) remark = joined(remark, "no joint slid between stages, " &
          & //"but the last shape slides or collapses if it is built at once")
-      remark = joined(remark, "forces depend on the order of the stages")
-   end function order_remark
+      if (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once) &
+         & remark = joined(remark, "forces depend on the order of the stages")
+   end function path_remark
 
    !> Two remarks in one
    pure function joined(first, second) result(both)

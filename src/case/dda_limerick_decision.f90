@@ -6,13 +6,11 @@ module dda_limerick_decision
    use dda_contact_types, only : place_joint
    use dda_contacts, only : begin_forces, contacts_t
    use dda_deck, only : deck_t
-   use dda_deck_family, only : deck_family_t, put_value
-   use dda_deck_scene, only : deck_scene
+   use dda_deck_scene, only : deck_family_t, deck_scene, put_value
    use dda_error, only : error_t
    use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_key_names, only : output_frames, scene_kind
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
@@ -45,10 +43,18 @@ contains
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run
       type(limerick_outcome_t) :: outcome
+      integer :: frames
 
       call limerick_scene(deck, scene, model)
       if (present(album)) then
-         call plan_pictures(nint(deck%value(output_frames)%number), model%constants, album)
+         album%interval = 0.0_wp
+         frames = nint(deck%value(output_frames)%number)
+         ! evenly in the steps of a dynamic run, in displacement in a static one
+         if (frames > 0 .and. model%constants%dynamic) then
+            album%every = max(1, model%constants%max_steps/frames)
+         else if (frames > 0) then
+            album%spacing = model%constants%collapse_displacement/real(frames, wp)
+         end if
          call run_with_pictures(deck, scene, model, run, outcome, album)
          if (size(album%point) > 0) then
             album%n_track = outcome%steps + 1
@@ -70,21 +76,6 @@ contains
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
    end subroutine decide_limerick
-
-   !> When pictures are due: evenly in the steps of a dynamic run, in displacement in a static one
-   pure subroutine plan_pictures(frames, constants, album)
-      integer, intent(in) :: frames  !! How many are asked for
-      type(limerick_constants_t), intent(in) :: constants
-      type(album_t), intent(inout) :: album
-
-      album%interval = 0.0_wp
-      if (frames == 0) return
-      if (constants%dynamic) then
-         album%every = max(1, constants%max_steps/frames)
-      else
-         album%spacing = constants%collapse_displacement/real(frames, wp)
-      end if
-   end subroutine plan_pictures
 
    !> Run a model and keep its pictures
    pure subroutine run_with_pictures(deck, scene, model, run, outcome, album)

@@ -118,16 +118,6 @@ contains
          & merge(1, 0, settings%current), merge(1, 0, contacts%searched)]
    end function owner_of
 
-   !> How many whole numbers and numbers a file has
-   pure function lengths(count) result(n)
-      integer(int32), intent(in) :: count(n_count)  !! Its first whole numbers: (n_count)
-      integer(int64) :: n(2)                        !! How many: (2)
-
-      n(1) = n_count + n_joint_whole*int(count(6), int64)
-      n(2) = n_march + 16*int(count(1), int64) + 2*int(count(2), int64) + count(7) &
-         & + n_joint_number*int(count(6), int64)
-   end function lengths
-
    !> Check what a file says of its owner and of its lengths
    pure subroutine check_counts(settings, system, contacts, whole, n_number, fault)
       type(settings_t), intent(in) :: settings
@@ -136,12 +126,18 @@ contains
       integer(int32), intent(in) :: whole(:)  !! Whole numbers of the file: (:)
       integer, intent(in) :: n_number         !! How many other numbers it has
       character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
+      integer(int64) :: wanted(2)
       logical :: same(5)
 
       if (size(whole) < n_count) then
          fault = "too few numbers"
          return
       end if
+      associate (n_block => int(whole(1), int64), n_vertex => int(whole(2), int64), &
+         & n_joint => int(whole(6), int64))
+         wanted = [n_count + n_joint_whole*n_joint, n_march + 16*n_block + 2*n_vertex &
+            & + whole(7) + n_joint_number*n_joint]
+      end associate
       same = whole(:5) == owner_of(settings, system, contacts)
       if (.not. all(same(:2))) then
          fault = "that of other blocks"
@@ -149,7 +145,7 @@ contains
          fault = "that of a run with other unknowns or another geometry"
       else if (any(whole(6:n_count) < 0)) then
          fault = "counts below zero"
-      else if (any(lengths(whole(:n_count)) /= [size(whole), n_number])) then
+      else if (any(wanted /= [size(whole), n_number])) then
          fault = "counts that do not fit the length of the file"
       end if
    end subroutine check_counts

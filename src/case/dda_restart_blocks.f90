@@ -149,9 +149,9 @@ contains
       march%passes = state%count(9)
       march%time = state%march(1)
       march%dt = state%march(2)
-      march%energy = energy_t(state%march(3), state%march(4), state%march(5), state%march(6), &
-         & state%march(7), state%march(8), state%march(9), state%march(10), state%march(11), &
-         & state%march(12))
+      associate (e => state%march(3:))
+         march%energy = energy_t(e(1), e(2), e(3), e(4), e(5), e(6), e(7), e(8), e(9), e(10))
+      end associate
       march%held_force = state%held_force
       if (contacts%searched .and. settings%current .and. march%steps > 0) march%reach = state%reach
       if (march%steps > 0 .and. (march%dt < shortest .or. march%dt > longest)) then

@@ -100,6 +100,8 @@ contains
       type(scene_t), intent(in) :: scene
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
+      integer :: floating
+      logical :: static
 
       select case (deck%value(scene_kind)%text)
       case ("lines")
@@ -108,18 +110,22 @@ contains
          if (allocated(error)) return
          if (deck%value(analysis_mode)%text /= "limerick") call check_line_scene(deck, error)
       case ("blocks")
+         static = deck%value(analysis_mode)%text == "static"
          if (deck%value(analysis_mode)%text == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
+         if (allocated(deck%plan%boundary%change) .and. .not. allocated(error)) &
+            & call check_stages(deck, error)
          if (allocated(error)) return
-         if (allocated(deck%plan%boundary%change)) call check_stages(deck, error)
-         if (allocated(error)) return
-         if (deck%value(analysis_mode)%text == "static") call check_support(deck, scene, error)
+         floating = floating_block(scene)
+         if (static .and. floating > 0) call fatal_error(error, "block "//to_text(floating) &
+            & //" has no support: no chain of joints ties it to a fixed block, as "// &
+            & "mode = 'static' needs; add a joint or remove it", geometry_file(deck), &
+            & deck%plan%line(floating))
          if (.not. allocated(error)) call check_widths(deck, scene, error)
-         if (deck%value(analysis_mode)%text == "static" .and. .not. allocated(error)) &
-            & call check_loads(deck, scene, error)
-         if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
-         if (allocated(deck%plan%boundary%absorbing) .and. .not. allocated(error) &
-            & .and. deck%value(analysis_mode)%text == "static") call add_warning(warnings, &
+         if (static .and. .not. allocated(error)) call check_loads(deck, scene, error)
+         if (allocated(error)) return
+         if (warns) call doubt_scene(deck, scene, floating, warnings)
+         if (static .and. allocated(deck%plan%boundary%absorbing)) call add_warning(warnings, &
             & "absorb has no effect: mode = 'static' has no time", geometry_file(deck), &
             & deck%plan%boundary%absorbing(1)%line)
       end select
@@ -152,19 +158,6 @@ contains
          & "unit_weight, and no point has a load or a prescribed displacement; add one", &
          & geometry_file(deck), 1)
    end subroutine check_loads
-
-   !> Check that a static scene can come to rest at all
-   pure subroutine check_support(deck, scene, error)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      integer :: b
-
-      b = floating_block(scene)
-      if (b > 0) call fatal_error(error, "block "//to_text(b)//" has no support: no chain of "// &
-         & "joints ties it to a fixed block, as mode = 'static' needs; add a joint or remove it", &
-         & geometry_file(deck), deck%plan%line(b))
-   end subroutine check_support
 
    !> Check that a deck can be run in stages
    pure subroutine check_stages(deck, error)
@@ -217,21 +210,21 @@ contains
    end subroutine check_widths
 
    !> Warn of blocks that will fall, and of units that are no metres
-   pure subroutine doubt_scene(deck, scene, warnings)
+   pure subroutine doubt_scene(deck, scene, floating, warnings)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
+      integer, intent(in) :: floating  !! A block without support, or 0
       type(warnings_t), intent(inout) :: warnings
-      integer :: b
+      integer :: n_held
 
       call doubt_units(deck, scene, warnings)
-      b = floating_block(scene)
-      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
-         & //to_text(b)//" has no support and falls freely", geometry_file(deck), &
-         & deck%plan%line(b))
+      if (floating > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
+         & //to_text(floating)//" has no support and falls freely", geometry_file(deck), &
+         & deck%plan%line(floating))
       if (any(deck%plan%fixed)) return
-      b = 0
-      if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
-      if (b == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
+      n_held = 0
+      if (allocated(deck%plan%boundary%held)) n_held = size(deck%plan%boundary%held)
+      if (n_held == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
    end subroutine doubt_scene
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are

@@ -1,36 +1,65 @@
-!> From a deck of any kind to its scene
+!> From a deck of any kind to its scene, and to the scenes that differ by one number
 module dda_deck_scene
    use dda_arch_assembly, only : arch_assembly_t, n_movable
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_form, only : arch_form_t, form_problem_t
-   use dda_arch_scene, only : arch_scene, joint_angles_deg, material_of, settings_of, unit_weight
+   use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
+      & material_of, set_loads, settings_of, unit_weight
    use dda_block_input, only : block_plan_t
    use dda_block_scene, only : base_t, block_scene
    use dda_boundary, only : history_t
-   use dda_deck, only : deck_t, has_group, source_of
+   use dda_chain, only : chain_t
+   use dda_deck, only : deck_t, has_group, parameter_t, put_number, source_of
+   use dda_deck_keys, only : deck_key
+   use dda_error, only : error_t, fatal_error
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
-   use dda_key_names, only : arch_lune_deg, fill_group, ground_amplitude, ground_direction_deg, &
-      & ground_duration, ground_frequency, ground_pulse, ground_quantity, ground_record, &
-      & ground_scale, ground_unit, joint_cohesion, joint_friction_deg, joint_residual_deg, &
-      & joint_slip_length, joint_tension, load_displacement_factor, load_gravity, &
-      & load_water_rise, scene_kind, tie_group
+   use dda_key_names, only : arch_half_angle_deg, arch_lune_deg, arch_thickness_ratio, &
+      & fill_group, ground_amplitude, ground_direction_deg, ground_duration, ground_frequency, &
+      & ground_pulse, ground_quantity, ground_record, ground_scale, ground_unit, joint_cohesion, &
+      & joint_friction_deg, joint_residual_deg, joint_slip_length, joint_tension, &
+      & load_displacement_factor, load_gravity, load_gravity_direction_deg, &
+      & load_horizontal_coefficient, load_load_factor, load_water_rise, scene_kind, tie_group
+   use dda_key_value, only : number_fits
    use dda_kinds, only : degree, pi, wp
    use dda_line_scene, only : held_blocks, line_scene
-   use dda_live_loads, only : add_live_loads
-   use dda_scene, only : scene_t
+   use dda_live_loads, only : add_live_loads, check_live_points
+   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene_plan, only : plan_scene, scene_plan_t
+   use dda_settings, only : load_direction, settings_t
    use dda_shape_check, only : add_ties
    use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    implicit none
    private
 
-   public :: deck_scene, movable_blocks, move_ground
+   public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family, put_value
 
    !> Points of a period of a sine
    integer, parameter :: points = 360
 
    !> Length of the jump at the end of a pulse, over its duration
    real(wp), parameter :: jump = 1.0e-9_wp
+
+   !> The scenes of one deck whose searched parameter varies
+   type, extends(family_t) :: deck_family_t
+      type(deck_t), allocatable :: deck  !! The deck of one case
+      !> The parameter
+      type(parameter_t) :: parameter
+      !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
+      logical :: chains = .false.
+      type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
+      type(settings_t) :: settings     !! Settings of their runs
+      !> What does not depend on the thickness; made by the one who searches
+      type(arch_rays_t) :: rays
+   contains
+      !> Make the chain of one value
+      procedure :: link => link_arch
+      !> Make the scene of one value
+      procedure :: build => build_deck_scene
+      !> Make the scene of one value from that of another one
+      procedure :: turn => turn_deck_scene
+   end type deck_family_t
 
 contains
 
@@ -208,4 +237,99 @@ contains
          movable_blocks = size(joint_angles_deg(deck)) - 1
       end if
    end function movable_blocks
+
+   !> Make a deck a family, its numbers read
+   pure subroutine new_family(parameter, family)
+      type(parameter_t), intent(in) :: parameter
+      type(deck_family_t), intent(inout) :: family  !! New but for the deck
+      type(scene_plan_t) :: plan
+
+      plan = plan_scene(family%deck)
+      family%parameter = parameter
+      if (parameter%key == load_horizontal_coefficient) family%load = searched_load%push
+      if (parameter%key == load_gravity_direction_deg) family%load = searched_load%tilt
+      if (parameter%key == load_load_factor) family%load = searched_load%factor
+      family%chains = plan%row .and. parameter%key == arch_thickness_ratio
+      family%decides_chains = family%chains .and. plan%chain
+      if (.not. family%chains) return
+      associate (deck => family%deck)
+         family%settings = settings_of(deck, degree*deck%value(arch_half_angle_deg)%number, &
+            & size(half_joints_deg(deck)))
+         family%numbers = arch_numbers(deck)
+         family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
+         family%numbers%halved = family%decides_chains .and. plan%halved
+      end associate
+   end subroutine new_family
+
+   !> Make the chain of one thickness ratio
+   pure subroutine link_arch(family, value, settings, chain, linked)
+      class(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value  !! The thickness ratio
+      type(settings_t), intent(out) :: settings
+      !> Any chain in, whose arrays are used again where they fit
+      type(chain_t), intent(inout) :: chain
+      logical, intent(out) :: linked  !! Whether the scenes are chains, and one has this value
+
+      linked = family%chains
+      if (linked) linked = number_fits(deck_key(family%parameter%key), value)
+      if (.not. linked) return
+      settings = family%settings
+      call arch_chain(family%numbers, family%rays, value, chain)
+   end subroutine link_arch
+
+   !> Put one value of the parameter into a deck
+   pure subroutine put_value(family, value, deck, error)
+      class(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value        !! The value
+      type(deck_t), intent(inout) :: deck  !! That of the family, or its values alone
+      type(error_t), allocatable, intent(out) :: error
+
+      if (number_fits(deck_key(family%parameter%key), value)) then
+         call put_number(deck, family%parameter, value, &
+            & deck%value(family%parameter%key)%place, error)
+      else
+         call fatal_error(error, "the searched parameter cannot have this value")
+      end if
+   end subroutine put_value
+
+   !> Make the scene of one value of the parameter
+   pure subroutine build_deck_scene(family, value, scene, error)
+      class(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value  !! Value of its parameter
+      type(scene_t), intent(out) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: deck
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+
+      deck = family%deck
+      call put_value(family, value, deck, error)
+      if (allocated(error)) return
+      if (source_of(deck) == "shape") call shape_assembly(deck, assembly, problem)
+      if (len_trim(problem%text) > 0) call fatal_error(error, &
+         & "the searched parameter makes no arch of this value")
+      if (allocated(error)) return
+      call deck_scene(deck, scene)
+      call check_live_points(deck, scene, error)
+   end subroutine build_deck_scene
+
+   !> Make the scene of one value from that of another one: where a load coefficient is the
+   !> parameter, nothing else differs
+   pure subroutine turn_deck_scene(family, value, scene, error)
+      class(deck_family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      type(scene_t), intent(inout) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: deck
+
+      if (family%load == searched_load%none .or. .not. allocated(scene%contacts%joint)) then
+         call family%build(value, scene, error)
+      else
+         ! numbers alone are asked for: blocks may be many
+         deck%file = family%deck%file
+         deck%value = family%deck%value
+         call put_value(family, value, deck, error)
+         if (.not. allocated(error)) call set_loads(deck, scene%settings)
+      end if
+   end subroutine turn_deck_scene
 end module dda_deck_scene

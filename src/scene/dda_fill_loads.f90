@@ -43,20 +43,15 @@ module dda_fill_loads
 
 contains
 
-   !> Whether the arch of a deck can lean against its fill
-   pure logical function fill_leans(deck)
-      type(deck_t), intent(in) :: deck
-
-      fill_leans = deck%value(fill_passive_coefficient)%number > 0.0_wp &
-         & .or. deck%value(fill_passive_share)%number > 0.0_wp &
-         & .or. deck%value(fill_backing_height)%given
-   end function fill_leans
-
-   !> Whether it does so where blocks move, or joints have strength: else limit analysis decides
+   !> Whether the arch of a deck leans against its fill where blocks move, or joints have strength:
+   !> else limit analysis decides
    pure logical function fill_yields(deck)
       type(deck_t), intent(in) :: deck
 
-      fill_yields = fill_leans(deck) .and. (deck%value(analysis_mode)%text /= "static" &
+      fill_yields = deck%value(fill_passive_coefficient)%number > 0.0_wp &
+         & .or. deck%value(fill_passive_share)%number > 0.0_wp &
+         & .or. deck%value(fill_backing_height)%given
+      fill_yields = fill_yields .and. (deck%value(analysis_mode)%text /= "static" &
          & .or. deck%value(analysis_geometry)%text /= "reference" &
          & .or. deck%value(analysis_collapse_displacement)%given &
          & .or. deck%value(joint_cohesion)%number > 0.0_wp &

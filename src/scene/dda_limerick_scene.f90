@@ -91,7 +91,12 @@ contains
             end do
          end associate
       end do
-      call set_laws(scene, n, nv, model)
+      ! the first law is for all joints, the second for springings that cannot slide: the abutments'
+      ! faces, and the voussoirs' edges upon them
+      allocate (model%law(1, 2))
+      model%law(1, :) = finite_law(scene%contacts%law(scene%contacts%joint([2, 1])%law))
+      i = model%first_vertex(n)
+      model%edge_law([nv + 4, nv + 8, model%first_vertex(2) - 1, i + (nv + 1 - i)/2 - 1]) = 2
    end subroutine arch_model
 
    !> Depth of the abutments, away from the springing joint [m]
@@ -118,23 +123,6 @@ contains
       vertex(:, 2) = vertex(:, 1) + outward
       vertex(:, 3) = vertex(:, 4) + outward
    end subroutine widen
-
-   !> Laws of the edges: the first for all joints, the second for springings that cannot slide
-   pure subroutine set_laws(scene, n, nv, model)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: n                        !! Number of voussoirs
-      integer, intent(in) :: nv                       !! Number of their vertices
-      type(limerick_model_t), intent(inout) :: model  !! The model; its laws are set
-      integer :: i
-
-      allocate (model%law(1, 2))
-      model%law(1, :) = finite_law(scene%contacts%law(scene%contacts%joint([2, 1])%law))
-      ! the abutments' faces, and the voussoirs' edges upon them
-      model%edge_law([nv + 4, nv + 8]) = 2
-      model%edge_law(model%first_vertex(2) - 1) = 2
-      i = model%first_vertex(n)
-      model%edge_law(i + (nv + 1 - i)/2 - 1) = 2
-   end subroutine set_laws
 
    !> Constants of the scheme that the deck gives
    pure subroutine set_constants(deck, constants)

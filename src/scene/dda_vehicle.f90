@@ -158,16 +158,21 @@ contains
       end do
    end function axle_loads
 
-   !> Half the length over which an axle is spread [m]
+   !> Half the length over which an axle is spread [m]. It spreads from the lower end of the upper
+   !> edge below it, of blocks that move; beside them all, of the nearest end
    pure real(wp) function half_length(vehicle, road, origin, x) result(half)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
       real(wp), intent(in) :: x  !! Where the axle is, in these coordinates [m]
+      real(wp) :: top
+      integer :: edge
 
       half = 0.5_wp*vehicle%length
-      if (vehicle%spread > 0.0_wp) half = half + vehicle%spread &
-         & *max(0.0_wp, vehicle%surface - origin(2) - top_below(road, x))
+      if (.not. vehicle%spread > 0.0_wp) return
+      call find_top(road, min(max(x, road%reach(1)), road%reach(2)), edge, top)
+      if (edge > 0) top = min(road%left(2, edge), road%right(2, edge))
+      half = half + vehicle%spread*max(0.0_wp, vehicle%surface - origin(2) - top)
    end function half_length
 
    !> Positions between which the loads of all axles change smoothly: where an end of one passes a
@@ -201,19 +206,6 @@ contains
       end do
       at = at(sorted_order(spread(0, 1, size(at)), at))
    end function passages
-
-   !> Height of the lower end of the upper edge below an axle, of blocks that move; beside them all,
-   !> of the nearest end
-   pure real(wp) function top_below(road, x) result(lower_end)
-      type(road_t), intent(in) :: road
-      real(wp), intent(in) :: x  !! The place [m]
-      real(wp) :: top
-      integer :: edge
-
-      call find_top(road, min(max(x, road%reach(1)), road%reach(2)), edge, top)
-      lower_end = top
-      if (edge > 0) lower_end = min(road%left(2, edge), road%right(2, edge))
-   end function top_below
 
    !> The highest edge at a place
    pure subroutine find_top(road, x, edge, top)

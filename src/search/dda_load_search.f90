@@ -14,7 +14,7 @@ module dda_load_search
    use dda_path_event, only : path_end
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
-   use dda_search, only : critical_t, search_t, shed
+   use dda_search, only : critical_t, limit_t, search_t, shed
    use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : verdict
    implicit none
@@ -28,13 +28,7 @@ module dda_load_search
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
       real(wp) :: half = 0.0_wp  !! How far it may be off
-      !> The associated limit from below and from above, with the sign of the side
-      real(wp) :: limit(2) = 0.0_wp
-      logical :: has_limit = .false.        !! Whether it is known
-      real(wp), allocatable :: force(:, :)  !! Forces that carry it from below: (3, n_joint) [N/m]
-      !> Velocities that stop it from above: (3, n_block)
-      real(wp), allocatable :: velocity(:, :)
-      real(wp), allocatable :: live(:, :)  !! What grows: (3, n_block) [N/m, N/m, N]
+      type(limit_t) :: limit  !! The associated limit, with the sign of the side
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
       logical :: stands_upright = .true.  !! Whether the path leads further than its dead loads
@@ -143,7 +137,7 @@ contains
       if (side%end /= path_end%collapsed .or. side%proof%flow /= flow_rule%associated) return
       if (.not. allocated(side%beyond)) return
       if (side%proof%is_told) then
-         call slide_along(settings, graph, side%beyond, side%force, side%proof)
+         call slide_along(settings, graph, side%beyond, side%limit%force, side%proof)
       else
          call see_fall(settings, graph, side%beyond, side%proof)
       end if
@@ -170,21 +164,21 @@ contains
       call find_associated(family%load, scene, graph, origin, last - origin, search, side, limit)
       side%falls_dead = limit%state == limit_state%no_dead_equilibrium
       far = last
-      if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
+      if (side%limit%known .and. abs(side%limit%value(1)) < abs(last)) far = side%limit%value(1)
       associate (proof => side%proof)
          proof%n_factorisation = limit%n_factorisation
          side%stands_upright = knows_no_order(scene%settings, graph)
          if (side%stands_upright .or. side%falls_dead) then
             call take_associated(last - origin, search, limit, side)
             side%value = origin + side%value
-            side%limit = origin + side%limit
+            side%limit%value = origin + side%limit%value
             return
          end if
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, family%load, far)
          stations = load_stations(settings, .true.)
          call follow_from_rest(family, search%high, settings, stations, &
-            & side%has_limit .or. limit%state == limit_state%unbounded, scene, graph, proof)
+            & side%limit%known .or. limit%state == limit_state%unbounded, scene, graph, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%falls_dead = proof%no_start
          side%stands_upright = .not. proof%no_start
@@ -196,7 +190,7 @@ contains
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed
             side%value = far
-            proof%mechanism = side%velocity
+            proof%mechanism = side%limit%velocity
             proof%is_told = .true.
             proof%flow = flow_rule%associated
          end if
@@ -211,8 +205,8 @@ contains
       type(side_t), intent(in) :: side
 
       is_at_limit = .false.
-      if (side%falls_dead .or. .not. side%has_limit .or. side%end == path_end%reached) return
-      is_at_limit = product(side%limit) <= 0.0_wp .or. abs(side%value - side%limit(2)) &
+      if (side%falls_dead .or. .not. side%limit%known .or. side%end == path_end%reached) return
+      is_at_limit = product(side%limit%value) <= 0.0_wp .or. abs(side%value - side%limit%value(2)) &
          & <= merge(10.0_wp, 100.0_wp, side%end == path_end%collapsed)*path_resolution &
          & *abs(side%value)
    end function is_at_limit
@@ -235,19 +229,19 @@ contains
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
-      call move_alloc(limit%force, side%force)
-      call move_alloc(limit%velocity, side%velocity)
-      side%has_limit = limit%state == limit_state%found
+      call move_alloc(limit%force, side%limit%force)
+      call move_alloc(limit%velocity, side%limit%velocity)
+      side%limit%known = limit%state == limit_state%found
       if (limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
-      if (.not. side%has_limit) return
+      if (.not. side%limit%known) return
       side%beyond = dead + (1.0_wp + nudge)*limit%upper*live
-      side%limit = sign(1.0_wp, last)*[limit%lower, limit%upper]
-      allocate (side%live, source=live)
+      side%limit%value = sign(1.0_wp, last)*[limit%lower, limit%upper]
+      side%limit%live = live
       if (load /= searched_load%tilt) return
       ! gravity that tilts is as large as before
-      side%limit = atan(side%limit)
-      side%force = cos(side%limit(1))*side%force
-      side%beyond = cos(side%limit(1))*side%beyond
+      side%limit%value = atan(side%limit%value)
+      side%limit%force = cos(side%limit%value(1))*side%limit%force
+      side%beyond = cos(side%limit%value(1))*side%beyond
    end subroutine find_associated
 
    !> Take the associated limit as the answer
@@ -260,18 +254,18 @@ contains
       associate (proof => side%proof)
          proof%flow = flow_rule%associated
          side%end = path_end%collapsed
-         side%value = 0.5_wp*sum(side%limit)
-         side%half = max(0.5_wp*abs(side%limit(2) - side%limit(1)), &
+         side%value = 0.5_wp*sum(side%limit%value)
+         side%half = max(0.5_wp*abs(side%limit%value(2) - side%limit%value(1)), &
             & 4.0_wp*epsilon(1.0_wp)*abs(side%value), &
             & 0.5_wp*min(search%tolerance, path_resolution)*abs(side%value))
          ! a limit that may be nothing is nothing
-         if (product(side%limit) <= 0.0_wp) then
+         if (product(side%limit%value) <= 0.0_wp) then
             side%value = 0.0_wp
-            side%half = maxval(abs(side%limit))
+            side%half = maxval(abs(side%limit%value))
          end if
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
-            proof%mechanism = side%velocity
+            proof%mechanism = side%limit%velocity
             proof%is_told = limit%state == limit_state%found
          case (limit_state%unbounded)
             side%end = path_end%reached
@@ -283,7 +277,7 @@ contains
             & side%end = path_end%reached
          if (side%end == path_end%reached) side%value = last
          proof%end = side%end
-         proof%force = side%force
+         proof%force = side%limit%force
          ! the path has left this state before the limit
          if (allocated(proof%state)) deallocate (proof%state)
       end associate
@@ -372,13 +366,8 @@ contains
 
       scale = (search%high - search%low)/(high - low)
       critical%undecided_at = search%low + (side%value - low)*scale
-      critical%has_limit = side%has_limit
-      critical%limit = search%low + (side%limit - low)*scale
-      if (side%has_limit .and. critical%verdict == verdict%found) then
-         critical%limit_force = side%force
-         critical%limit_velocity = side%velocity
-         critical%limit_live = side%live
-      end if
+      critical%limit = side%limit
+      critical%limit%value = search%low + (side%limit%value - low)*scale
       critical%jumps = side%proof%n_jump
       critical%largest_jump = side%proof%largest_jump
    end subroutine keep_limit

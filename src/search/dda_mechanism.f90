@@ -9,6 +9,7 @@ module dda_mechanism
    use dda_scene_graph, only : decides_as_graph
    use dda_search, only : decision_t
    use dda_settings, only : flow_rule
+   use dda_sort, only : sorted_order
    use dda_verdict, only : verdict
    implicit none
    private
@@ -161,18 +162,9 @@ contains
    pure function each_once(numbers) result(once)
       real(wp), intent(in) :: numbers(:)  !! Any numbers: (:)
       real(wp), allocatable :: once(:)    !! The numbers: (:)
-      real(wp) :: sorted(size(numbers)), smallest
-      integer :: n
+      integer :: i
 
-      n = 0
-      smallest = -huge(smallest)
-      do while (any(numbers > smallest))
-         smallest = minval(numbers, mask=numbers > smallest)
-         n = n + 1
-         sorted(n) = smallest
-         smallest = smallest + 1.0e-9_wp
-      end do
-      allocate (once(n))
-      once = sorted(:n)
+      once = numbers(sorted_order(spread(0, 1, size(numbers)), numbers))
+      once = pack(once, [(i == 1 .or. once(i) > once(max(1, i - 1)) + 1.0e-9_wp, i=1, size(once))])
    end function each_once
 end module dda_mechanism

@@ -11,7 +11,7 @@ module dda_search
    implicit none
    private
 
-   public :: search_t, critical_t, decision_t, proof_t, keep_decision, shed
+   public :: search_t, critical_t, decision_t, limit_t, proof_t, keep_decision, shed
 
    !> What is searched
    type :: search_t
@@ -29,6 +29,18 @@ module dda_search
       !> stand
       logical :: check_far_end = .true.
    end type search_t
+
+   !> An associated limit with its proofs
+   type :: limit_t
+      logical :: known = .false.     !! Whether it is known
+      real(wp) :: value(2) = 0.0_wp  !! The limit from below and from above
+      !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Velocities of the mechanism that does not let pass the second: (3, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
+      real(wp), allocatable :: live(:, :)
+   end type limit_t
 
    !> What was found
    type :: critical_t
@@ -54,15 +66,7 @@ module dda_search
       integer :: others = 0           !! Values that a search in time has run beside its bracket
       !> Neighbours between which the answer of a search in time changes too: (2, n)
       real(wp), allocatable :: other_change(:, :)
-      !> The associated limit of a load coefficient, from below and from above
-      real(wp) :: limit(2) = 0.0_wp
-      logical :: has_limit = .false.  !! Whether it is known
-      !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
-      real(wp), allocatable :: limit_force(:, :)
-      !> Velocities of the mechanism that does not let pass the second: (3, n_block)
-      real(wp), allocatable :: limit_velocity(:, :)
-      !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
-      real(wp), allocatable :: limit_live(:, :)
+      type(limit_t) :: limit               !! The associated limit of a load coefficient
       type(scene_t), allocatable :: scene  !! The scene of a value of the coefficient, whichever
       integer :: jumps = 0                 !! Jumps on the loading path, at fixed load
       real(wp) :: largest_jump = 0.0_wp    !! The largest of them [m]

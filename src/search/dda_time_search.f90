@@ -82,19 +82,11 @@ contains
    !> where both agree
    pure integer function first_change(runs)
       type(runs_t), intent(in) :: runs  !! What has been run; not all alike
-      integer :: i, n
 
-      n = runs%n
-      if (runs%falls(1) .and. .not. runs%falls(n)) then
-         do i = n - 1, 1, -1
-            if (runs%falls(i) .neqv. runs%falls(i + 1)) exit
-         end do
-      else
-         do i = 1, n - 1
-            if (runs%falls(i) .neqv. runs%falls(i + 1)) exit
-         end do
-      end if
-      first_change = i
+      associate (falls => runs%falls(:runs%n))
+         first_change = findloc(falls(:runs%n - 1) .neqv. falls(2:), .true., dim=1, &
+            & back=falls(1) .and. .not. falls(runs%n))
+      end associate
    end function first_change
 
    !> Halve the first change till its neighbours are as near as was asked for

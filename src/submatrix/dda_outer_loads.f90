@@ -2,7 +2,7 @@
 !> (Shi: df09, df15, df16)
 module dda_outer_loads
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : history_t, loaded_point_t, mean_over, value_at
+   use dda_boundary, only : history_t, mean_over, value_at
    use dda_deformation, only : moved_point
    use dda_kinds, only : wp
    use dda_settings, only : factor_of, settings_t
@@ -25,7 +25,7 @@ contains
       real(wp), intent(in) :: weight(:, :)  !! Weight of the blocks: (n_dof, n_equation)
       real(wp), intent(out) :: load(:, :)   !! Sum of all loads: (n_dof, n_equation)
       real(wp), intent(out) :: felt(:, :)   !! Sum of their sizes: (n_dof, n_equation)
-      real(wp) :: of_block(6), shaking(2)
+      real(wp) :: force(2), of_block(6), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
@@ -43,11 +43,19 @@ contains
       end if
       if (.not. allocated(settings%boundary%loaded)) return
       do i = 1, size(settings%boundary%loaded)
-         associate (loaded => settings%boundary%loaded(i))
+         associate (loaded => settings%boundary%loaded(i), &
+            & centre => system%centroid(:, settings%boundary%loaded(i)%block))
             e = system%equation(loaded%block)
             if (e == 0) cycle
-            of_block = load_at(loaded, factor_of(settings, loaded)*now(loaded%force), system, &
-               & settings%current)
+            force = factor_of(settings, loaded)*now(loaded%force)
+            if (settings%current) then
+               associate (motion => system%motion(:, loaded%block))
+                  of_block = point_load(force, moved_point(loaded%point, centre, motion), &
+                     & centre + motion(1:2), motion)
+               end associate
+            else
+               of_block = point_load(force, loaded%point, centre)
+            end if
             load(:, e) = load(:, e) + of_block(:nd)
             felt(:, e) = felt(:, e) + abs(of_block(:nd))
          end associate
@@ -67,23 +75,4 @@ contains
          end if
       end function now
    end subroutine outer_loads
-
-   !> What a force at a point of a block is to its unknowns
-   pure function load_at(loaded, force, system, current) result(of_block)
-      type(loaded_point_t), intent(in) :: loaded
-      real(wp), intent(in) :: force(2)  !! The force: (2) [N/m]
-      type(block_system_t), intent(in) :: system
-      logical, intent(in) :: current    !! Whether the point has moved with its block
-      real(wp) :: of_block(6)           !! Load on the unknowns: (6)
-
-      associate (centre => system%centroid(:, loaded%block), &
-         & motion => system%motion(:, loaded%block))
-         if (current) then
-            of_block = point_load(force, moved_point(loaded%point, centre, motion), &
-               & centre + motion(1:2), motion)
-         else
-            of_block = point_load(force, loaded%point, centre)
-         end if
-      end associate
-   end function load_at
 end module dda_outer_loads
