@@ -64,6 +64,7 @@ contains
       type(march_t), intent(out) :: march
       !> Allocated if the file is missing, broken, of another scene or made up
       type(error_t), allocatable, intent(out) :: error
+      integer(int64), parameter :: all_ones = int(z"7FF0000000000000", int64)
       type(state_t) :: state
       integer(int32), allocatable :: whole(:)
       real(wp), allocatable :: number(:)
@@ -74,7 +75,9 @@ contains
       if (allocated(error)) return
       fault = ""
       call check_counts(settings, system, contacts, whole, size(number), fault)
-      if (fault == "" .and. .not. are_finite(number)) fault = "numbers that are none"
+      ! told from the bits of what is infinite or none: a signalling NaN may not be touched
+      if (fault == "" .and. any(iand(transfer(number, [0_int64]), all_ones) == all_ones)) &
+         & fault = "numbers that are none"
       if (fault == "") call take_state(whole, number, state)
       if (fault == "") call take_blocks(settings, state, system, fault)
       if (fault == "") call take_march(settings, contacts, state, march, fault)
@@ -87,15 +90,6 @@ contains
       if (fault /= "") call fatal_error(error, "expected the end of a run of these blocks, got "// &
          & trim(fault)//"; write the file again", file, 1)
    end subroutine load_restart
-
-   !> Whether numbers are neither infinite nor none, told from their bits: a signalling NaN may not
-   !> be touched
-   pure logical function are_finite(number)
-      real(wp), intent(in) :: number(:)  !! The numbers: (n)
-      integer(int64), parameter :: all_ones = int(z"7FF0000000000000", int64)
-
-      are_finite = all(iand(transfer(number, [0_int64]), all_ones) /= all_ones)
-   end function are_finite
 
    !> Check that a file is whole and a restart file, whatever its blocks
    subroutine check_restart(file, error)

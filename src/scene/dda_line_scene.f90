@@ -13,8 +13,8 @@ module dda_line_scene
       & load_gravity, material_density, material_plane, material_poisson, material_unit_weight, &
       & material_young, scene_geometry
    use dda_kinds, only : pi, wp
-   use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
-   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_limerick_analysis, only : limerick_joint_t
+   use dda_material, only : friction_coefficient, joint_law_t
    use dda_scene, only : scene_t
    implicit none
    private
@@ -185,7 +185,15 @@ contains
          deallocate (system%materials)
          allocate (system%materials(size(list)))
          do m = 1, size(list)
-            system%materials(m) = file_material(deck, list(m))
+            system%materials(m) = material_of(deck)
+            ! keys that the deck gives go before
+            associate (material => system%materials(m))
+               if (.not. deck%value(material_density)%given) material%density = list(m)%density
+               if (.not. deck%value(material_young)%given) material%young = list(m)%young
+               if (.not. deck%value(material_poisson)%given) material%poisson = list(m)%poisson
+               if (.not. deck%value(material_plane)%given) material%plane_strain = &
+                  & deck%file_analysis%plane_strain
+            end associate
          end do
          system%material = cut%material
          do b = 1, size(cut%area)
@@ -198,19 +206,6 @@ contains
          end do
       end associate
    end subroutine line_system
-
-   !> A material of the analysis file; keys that the deck gives go before
-   pure type(material_t) function file_material(deck, listed) result(material)
-      type(deck_t), intent(in) :: deck
-      type(analysis_material_t), intent(in) :: listed
-
-      material = material_of(deck)
-      if (.not. deck%value(material_density)%given) material%density = listed%density
-      if (.not. deck%value(material_young)%given) material%young = listed%young
-      if (.not. deck%value(material_poisson)%given) material%poisson = listed%poisson
-      if (.not. deck%value(material_plane)%given) material%plane_strain = &
-         & deck%file_analysis%plane_strain
-   end function file_material
 
    !> The law of a joint; keys that the deck gives go before the analysis file
    pure type(joint_law_t) function law_of_joint(deck, number) result(law)

@@ -87,15 +87,8 @@ contains
          plan%reason = strain_reason%forced
          plan%unknowns = nint(deck%value(analysis_unknowns)%number)
       end if
-      call see_chain(deck, plan)
-   end function plan_scene
-
-   !> Whether an arch is a chain but for strain, and whether it needs no more: the condition number
-   !> is one of the equations with a pattern, and a displacement that means collapse one of corners
-   pure subroutine see_chain(deck, plan)
-      type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(inout) :: plan
-
+      ! the condition number is one of the equations with a pattern, and a displacement that means
+      ! collapse one of corners: neither is known of a chain
       plan%row = source_of(deck) == "arch" .and. deck%value(analysis_mode)%text == "static" &
          & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, live_group) &
          & .or. has_group(deck, vehicle_group))
@@ -106,5 +99,5 @@ contains
       plan%halved = plan%chain &
          & .and. .not. abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp &
          & .and. .not. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
-   end subroutine see_chain
+   end function plan_scene
 end module dda_scene_plan

@@ -150,9 +150,12 @@ contains
          return
       end if
       if (.not. mechanism%linked) call refine_noise(family, mechanism, next, critical, noise)
-      ! the stop may be off by the one, a decision beside it by the other
-      proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope) &
-         & + rest_resolution(critical, next))
+      ! the stop may be off by the one; beside it, by the other, a mechanism becomes too slow for a
+      ! decision to tell it from rest
+      associate (outcome => critical%fallen%outcome)
+         proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope) &
+            & + 2.0_wp*abs(next - critical%falls)*outcome%rest_tolerance/outcome%acceleration_ratio)
+      end associate
       proposal%reach = proposal%half
       if (proposal%half > search%tolerance*abs(next)) &
          & call average_root(family, mechanism, coarse_slope, critical, proposal)
@@ -242,17 +245,6 @@ contains
       end do
       noise = max(noise, noise_margin*(maxval(power) - minval(power)))
    end subroutine refine_noise
-
-   !> How near to its stop a mechanism becomes too slow for a decision to tell it from rest
-   pure real(wp) function rest_resolution(critical, stop)
-      type(critical_t), intent(in) :: critical
-      real(wp), intent(in) :: stop  !! Value at which the last collapse stops
-
-      associate (outcome => critical%fallen%outcome)
-         rest_resolution = 2.0_wp*abs(stop - critical%falls)*outcome%rest_tolerance &
-            & /outcome%acceleration_ratio
-      end associate
-   end function rest_resolution
 
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)

@@ -174,7 +174,13 @@ contains
             at_once = stage
             at_once%settings = settings
             call decide(at_once, decision)
-            slides = has_slipped(decision)
+            ! forces are those of the way without slip, whatever the order of the stages, only where
+            ! the last shape stands without any
+            slides = decision%outcome%verdict /= verdict%stable
+            associate (contacts => decision%contacts)
+               if (.not. slides) slides = any(contacts%face%slip /= 0 .and. &
+                  & sum(contacts%force(:2, :), dim=1) > slip_share*maxval(abs(contacts%force)))
+            end associate
          end if
          if (in_order .or. slides) call record_rest(stage, proof, decision)
          decision%outcome%slides_at_once = slides
@@ -184,18 +190,6 @@ contains
          decision%outcome%reason = proof%reason
       end if
    end subroutine record_stage
-
-   !> Whether what was decided does not stand without any slip: its forces are not those of the way
-   !> without slip, which are one whatever the order of the stages
-   pure logical function has_slipped(decision)
-      type(decision_t), intent(in) :: decision  !! What was decided of the last shape at once
-
-      has_slipped = decision%outcome%verdict /= verdict%stable
-      associate (contacts => decision%contacts)
-         if (.not. has_slipped) has_slipped = any(contacts%face%slip /= 0 &
-            & .and. sum(contacts%force(:2, :), dim=1) > slip_share*maxval(abs(contacts%force)))
-      end associate
-   end function has_slipped
 
    !> Which joints have slid against friction since a state, or since there was no load
    pure function has_slid(after, n, before) result(slid)

@@ -75,7 +75,13 @@ contains
          & call run_value(family, critical%stands, runs, critical, answer)
       if (abs(runs%kept(2) - critical%falls) > 0.0_wp) &
          & call run_value(family, critical%falls, runs, critical, answer)
-      call keep_changes(runs, critical)
+      ! where else the answer changes
+      allocate (critical%other_change(2, 0))
+      do i = 1, runs%n - 1
+         if (i == first_change(runs) .or. (runs%falls(i) .eqv. runs%falls(i + 1))) cycle
+         critical%other_change = reshape([critical%other_change, runs%value(i:i + 1)], &
+            & [2, size(critical%other_change, 2) + 1])
+      end do
    end subroutine find_critical_in_time
 
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
@@ -118,21 +124,6 @@ contains
       end do
       critical%verdict = verdict%found
    end subroutine close_bracket
-
-   !> Keep where else the answer changes
-   pure subroutine keep_changes(runs, critical)
-      type(runs_t), intent(in) :: runs
-      type(critical_t), intent(inout) :: critical
-      integer :: i, first
-
-      first = first_change(runs)
-      allocate (critical%other_change(2, 0))
-      do i = 1, runs%n - 1
-         if (i == first .or. (runs%falls(i) .eqv. runs%falls(i + 1))) cycle
-         critical%other_change = reshape([critical%other_change, runs%value(i:i + 1)], &
-            & [2, size(critical%other_change, 2) + 1])
-      end do
-   end subroutine keep_changes
 
    !> Run one value
    pure subroutine run_value(family, value, runs, critical, answer)
