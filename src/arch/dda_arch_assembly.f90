@@ -2,13 +2,20 @@
 module dda_arch_assembly
    use dda_arch, only : springing
    use dda_arch_form, only : arch_form_t, form_problem_t
-   use dda_arch_sections, only : arch_sections, arch_sections_t
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: arch_assembly_t, assemble_arch, n_movable, top_chord_t
+   public :: arch_assembly_t, arch_sections, arch_sections_t, assemble_arch, n_movable, top_chord_t
+
+   !> Sections of one span, from left to right
+   type :: arch_sections_t
+      real(wp), allocatable :: intrados(:, :)  !! Intrados: (2, n) [m]
+      real(wp), allocatable :: extrados(:, :)  !! Extrados: (2, n) [m]
+      logical, allocatable :: is_joint(:)      !! Which sections are joints: (n)
+      real(wp) :: crown_x = 0.0_wp             !! Where the crown is along x [m]
+   end type arch_sections_t
 
    !> A chord of an upper face, which fill may lie on
    type :: top_chord_t
@@ -36,6 +43,17 @@ module dda_arch_assembly
    real(wp), parameter :: no_slip_deg = 90.0_wp
    !> Corners nearer than this share of a pier's width are one
    real(wp), parameter :: same = 1.0e-9_wp
+
+   interface
+
+      !> The sections of a form
+      pure module subroutine arch_sections(form, sections, problem)
+         type(arch_form_t), intent(in) :: form
+         type(arch_sections_t), intent(out) :: sections
+         type(form_problem_t), intent(out) :: problem
+      end subroutine arch_sections
+
+   end interface
 
 contains
 

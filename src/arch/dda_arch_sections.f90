@@ -1,21 +1,10 @@
 !> Sections of an arch: where its joints are, and the corners of its chords between them
-module dda_arch_sections
+submodule (dda_arch_assembly) dda_arch_sections
    use dda_arch_curve, only : curve_length, curve_t, station_at, station_t
-   use dda_arch_form, only : arch_form_t, form_curve, form_problem_t
-   use dda_kinds, only : degree, wp
+   use dda_arch_form, only : form_curve
+   use dda_kinds, only : degree
    use dda_vector, only : cross
    implicit none
-   private
-
-   public :: arch_sections, arch_sections_t
-
-   !> Sections of one span, from left to right
-   type :: arch_sections_t
-      real(wp), allocatable :: intrados(:, :)  !! Intrados: (2, n) [m]
-      real(wp), allocatable :: extrados(:, :)  !! Extrados: (2, n) [m]
-      logical, allocatable :: is_joint(:)      !! Which sections are joints: (n)
-      real(wp) :: crown_x = 0.0_wp             !! Where the crown is along x [m]
-   end type arch_sections_t
 
    !> Lengths closer than this share of the whole are one
    real(wp), parameter :: same = 1.0e-9_wp
@@ -23,10 +12,7 @@ module dda_arch_sections
 contains
 
    !> The sections of a form
-   pure subroutine arch_sections(form, sections, problem)
-      type(arch_form_t), intent(in) :: form
-      type(arch_sections_t), intent(out) :: sections
-      type(form_problem_t), intent(out) :: problem
+   module procedure arch_sections
       type(curve_t) :: curve
       type(station_t) :: crown
       real(wp), allocatable :: at(:)
@@ -42,7 +28,7 @@ contains
       crown = station_at(curve, curve%crown, .false.)
       sections%crown_x = crown%point(1)
       call check_sections(sections, problem)
-   end subroutine arch_sections
+   end procedure arch_sections
 
    !> Lengths at which there are sections: joints of equal voussoirs, a bend, chords in between
    pure subroutine place_sections(form, curve, at, is_joint)
@@ -192,4 +178,4 @@ contains
       end do
    end subroutine check_sections
 
-end module dda_arch_sections
+end submodule dda_arch_sections

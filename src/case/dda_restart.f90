@@ -11,8 +11,6 @@ module dda_restart
    use dda_contacts, only : contacts_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_restart_blocks, only : beyond_all, n_count, n_joint_number, n_joint_whole, n_march, &
-      & pack_joints, state_t, take_blocks, take_march, unpack_joints
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t
    use dda_table_file, only : part_name, rename_part
@@ -25,6 +23,86 @@ module dda_restart
    !> First bytes of the file; another layout wants another number
    character(len=*), parameter :: title = "voussoir restart 4"
 
+   !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
+   !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
+   !> passes
+   integer, parameter :: n_count = 9
+   !> Numbers of the march: time, length of the next step, energies with their time
+   integer, parameter :: n_march = 12
+
+   !> What a file holds
+   type :: state_t
+      integer(int32) :: count(n_count) = 0  !! The whole numbers: (n_count)
+      !> The joints as whole numbers: (n_joint_whole, n_joint)
+      integer(int32), allocatable :: joint_whole(:, :)
+      !> The joints as numbers: (n_joint_number, n_joint)
+      real(wp), allocatable :: joint_number(:, :)
+      real(wp), allocatable :: vertex(:, :)    !! Corners in the reference shape: (2, n_vertex) [m]
+      real(wp), allocatable :: motion(:, :)    !! Motion of the blocks: (6, n_block)
+      real(wp), allocatable :: velocity(:, :)  !! Rates of the same: (6, n_block)
+      real(wp), allocatable :: stress(:, :)    !! Stress of the blocks: (3, n_block) [Pa]
+      !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
+      real(wp), allocatable :: reach(:)
+      real(wp), allocatable :: held_force(:)  !! Forces at held points: (n_spring) [N/m]
+      real(wp) :: march(n_march) = 0.0_wp     !! The march: (n_march)
+   end type state_t
+
+   !> Larger than any number of a run, and small enough to be squared twice
+   real(wp), parameter :: beyond_all = 1.0e60_wp
+
+   !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
+   !> whether it is open; direction of sliding
+   integer, parameter :: n_joint_whole = 10
+
+   !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
+   !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts
+   integer, parameter :: n_joint_number = 24
+
+   interface
+
+      !> Joints as numbers
+      pure module subroutine pack_joints(system, contacts, whole, number)
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         !> Their whole numbers: (n_joint_whole, n_joint)
+         integer(int32), allocatable, intent(out) :: whole(:, :)
+         !> Their numbers: (n_joint_number, n_joint)
+         real(wp), allocatable, intent(out) :: number(:, :)
+      end subroutine pack_joints
+
+      !> Put the blocks where they were; where blocks move, their corners and stresses are made from
+      !> their motion, as each step makes them
+      pure module subroutine take_blocks(settings, state, system, fault)
+         type(settings_t), intent(in) :: settings
+         type(state_t), intent(in) :: state
+         !> The blocks at their beginning in, where they were out
+         type(block_system_t), intent(inout) :: system
+         character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
+      end subroutine take_blocks
+
+      !> The march of a file
+      pure module subroutine take_march(settings, contacts, state, march, fault)
+         type(settings_t), intent(in) :: settings
+         type(contacts_t), intent(in) :: contacts
+         type(state_t), intent(in) :: state
+         type(march_t), intent(out) :: march
+         character(len=*), intent(inout) :: fault
+      end subroutine take_march
+
+      !> Joints from numbers that are finite: found ones made anew where blocks move, given ones
+      !> with the state that they had
+      pure module subroutine unpack_joints(settings, system, whole, number, contacts, sound)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         integer(int32), intent(in) :: whole(:, :)
+         real(wp), intent(in) :: number(:, :)
+         !> The contacts at their beginning in, with these joints out
+         type(contacts_t), intent(inout) :: contacts
+         !> Whether the numbers are those of joints between the blocks
+         logical, intent(out) :: sound
+      end subroutine unpack_joints
+
+   end interface
 
 contains
 

@@ -1,56 +1,14 @@
 !> The blocks of a restart file, and what a run carries from step to step; its joints: corners,
 !> edges and states as whole numbers, the rest as numbers
-module dda_restart_blocks
-   use, intrinsic :: iso_fortran_env, only : int32
-   use dda_block_system, only : begin_motion, block_system_t
+submodule (dda_restart) dda_restart_blocks
+   use dda_block_system, only : begin_motion
    use dda_block_update, only : displace_blocks
    use dda_contact_search, only : law_between
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
-   use dda_contacts, only : begin_memory, contacts_t, set_joints
-   use dda_kinds, only : wp
+   use dda_contacts, only : begin_memory, set_joints
    use dda_outline, only : outline_of, outline_t
-   use dda_settings, only : settings_t
-   use dda_step_context, only : energy_t, march_t
+   use dda_step_context, only : energy_t
    implicit none
-   private
-
-   public :: beyond_all, n_count, n_joint_number, n_joint_whole, n_march, state_t
-   public :: pack_joints, take_blocks, take_march, unpack_joints
-
-   !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
-   !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
-   !> passes
-   integer, parameter :: n_count = 9
-   !> Numbers of the march: time, length of the next step, energies with their time
-   integer, parameter :: n_march = 12
-
-   !> What a file holds
-   type :: state_t
-      integer(int32) :: count(n_count) = 0  !! The whole numbers: (n_count)
-      !> The joints as whole numbers: (n_joint_whole, n_joint)
-      integer(int32), allocatable :: joint_whole(:, :)
-      !> The joints as numbers: (n_joint_number, n_joint)
-      real(wp), allocatable :: joint_number(:, :)
-      real(wp), allocatable :: vertex(:, :)    !! Corners in the reference shape: (2, n_vertex) [m]
-      real(wp), allocatable :: motion(:, :)    !! Motion of the blocks: (6, n_block)
-      real(wp), allocatable :: velocity(:, :)  !! Rates of the same: (6, n_block)
-      real(wp), allocatable :: stress(:, :)    !! Stress of the blocks: (3, n_block) [Pa]
-      !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
-      real(wp), allocatable :: reach(:)
-      real(wp), allocatable :: held_force(:)  !! Forces at held points: (n_spring) [N/m]
-      real(wp) :: march(n_march) = 0.0_wp     !! The march: (n_march)
-   end type state_t
-
-   !> Larger than any number of a run, and small enough to be squared twice
-   real(wp), parameter :: beyond_all = 1.0e60_wp
-
-   !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
-   !> whether it is open; direction of sliding
-   integer, parameter :: n_joint_whole = 10
-
-   !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
-   !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts
-   integer, parameter :: n_joint_number = 24
 
    !> Larger than any displacement over the size of the model, any rotation and any strain
    real(wp), parameter :: far = 1.0e12_wp
@@ -69,14 +27,8 @@ module dda_restart_blocks
 
 contains
 
-   !> Put the blocks where they were; where blocks move, their corners and stresses are made from
-   !> their motion, as each step makes them
-   pure subroutine take_blocks(settings, state, system, fault)
-      type(settings_t), intent(in) :: settings
-      type(state_t), intent(in) :: state
-      !> The blocks at their beginning in, where they were out
-      type(block_system_t), intent(inout) :: system
-      character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
+   !> Put the blocks where they were
+   module procedure take_blocks
       real(wp) :: no_motion(settings%n_dof, maxval(system%equation)), size_of_all
       integer :: b
 
@@ -108,7 +60,7 @@ contains
       if (.not. settings%current) return
       call displace_blocks(settings, no_motion, system)
       if (.not. are_blocks(system)) fault = "strains that leave no block"
-   end subroutine take_blocks
+   end procedure take_blocks
 
    !> Whether strain has left blocks their shapes: no edge is gone, none is turned inside out
    pure logical function are_blocks(system)
@@ -138,13 +90,7 @@ contains
    end function edge_lengths
 
    !> The march of a file
-   pure subroutine take_march(settings, contacts, state, march, fault)
-      type(settings_t), intent(in) :: settings
-      type(contacts_t), intent(in) :: contacts
-      type(state_t), intent(in) :: state
-      type(march_t), intent(out) :: march
-      character(len=*), intent(inout) :: fault
-
+   module procedure take_march
       march%steps = state%count(8)
       march%passes = state%count(9)
       march%time = state%march(1)
@@ -162,16 +108,10 @@ contains
       else if (any(abs(state%held_force) > beyond_all)) then
          fault = "forces that no point has"
       end if
-   end subroutine take_march
+   end procedure take_march
 
    !> Joints as numbers
-   pure subroutine pack_joints(system, contacts, whole, number)
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Their whole numbers: (n_joint_whole, n_joint)
-      integer(int32), allocatable, intent(out) :: whole(:, :)
-      !> Their numbers: (n_joint_number, n_joint)
-      real(wp), allocatable, intent(out) :: number(:, :)
+   module procedure pack_joints
       integer :: j, k
 
       allocate (whole(n_joint_whole, size(contacts%joint)))
@@ -188,19 +128,10 @@ contains
                & contacts%increment(:, j), contacts%intact(:, j)]
          end associate
       end do
-   end subroutine pack_joints
+   end procedure pack_joints
 
-   !> Joints from numbers that are finite: found ones made anew where blocks move, given ones
-   !> with the state that they had
-   pure subroutine unpack_joints(settings, system, whole, number, contacts, sound)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      integer(int32), intent(in) :: whole(:, :)
-      real(wp), intent(in) :: number(:, :)
-      !> The contacts at their beginning in, with these joints out
-      type(contacts_t), intent(inout) :: contacts
-      !> Whether the numbers are those of joints between the blocks
-      logical, intent(out) :: sound
+   !> Joints from numbers that are finite
+   module procedure unpack_joints
       type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)
       real(wp), allocatable :: ignored(:, :)
@@ -238,7 +169,7 @@ contains
          contacts%intact(:, j) = number(23:24, j)
       end do
       contacts%springs = joint_springs_t()
-   end subroutine unpack_joints
+   end procedure unpack_joints
 
    !> Joints that a search had found, where the blocks are
    pure subroutine make_joints(system, contacts, whole, number, joint, sound)
@@ -310,4 +241,4 @@ contains
       block(whole(1 + k)) = outline%block(whole(5 + k))
       block(3 - whole(1 + k)) = outline%block(whole(3 + k))
    end function blocks_of
-end module dda_restart_blocks
+end submodule dda_restart_blocks

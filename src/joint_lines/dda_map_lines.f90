@@ -4,23 +4,59 @@
 module dda_map_lines
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
-   use dda_joint_map, only : bolts_t, joint_map_t, map_line_t, map_role
+   use dda_joint_map, only : bolts_t, joint_map_t, joint_set_t, length_t, map_line_t, map_role
    use dda_kinds, only : wp
    use dda_line_model, only : add_bolt, add_entity, line_model_t, new_line_model
    use dda_polygon, only : contains_point
+   use dda_random, only : random_t
    use dda_segment, only : crossing_parameters
-   use dda_set_traces, only : joint_count, set_traces
    use dda_sort, only : sorted_order
    use dda_text, only : to_text
    implicit none
    private
 
-   public :: clip_line, inner_point, outlines_cross, ray_exit, map_lines
+   public :: clip_line, draw_covering_length, draw_length, inner_point, joint_count
+   public :: map_lines, outlines_cross, ray_exit, set_traces
 
    !> Most traces of a map
    integer, parameter :: most_traces = 1000000
    !> Parts shorter than this share of the line are none
    real(wp), parameter :: least_share = 1.0e-12_wp
+
+   interface
+
+      !> How many joints a set has across a circle, about
+      pure real(wp) module function joint_count(set, radius)
+         type(joint_set_t), intent(in) :: set
+         real(wp), intent(in) :: radius  !! Radius of the circle [m]
+      end function joint_count
+
+      !> Traces of a set that meet a circle
+      pure module subroutine set_traces(set, centre, radius, trace, n)
+         type(joint_set_t), intent(in) :: set
+         real(wp), intent(in) :: centre(2)  !! Centre of the circle: (2) [m]
+         real(wp), intent(in) :: radius
+         !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
+         real(wp), allocatable, intent(out) :: trace(:, :)
+         integer, intent(out) :: n  !! Their number
+      end subroutine set_traces
+
+      !> A length by its law
+      pure module subroutine draw_length(length, random, value)
+         type(length_t), intent(in) :: length
+         type(random_t), intent(inout) :: random  !! Random numbers
+         real(wp), intent(out) :: value           !! The length [m]
+      end subroutine draw_length
+
+      !> A length that covers a given point: long ones do so more often. With such a one over the
+      !> origin, which lies evenly in it, no place of an axis is special: means hold in any window
+      pure module subroutine draw_covering_length(length, random, value)
+         type(length_t), intent(in) :: length
+         type(random_t), intent(inout) :: random
+         real(wp), intent(out) :: value
+      end subroutine draw_covering_length
+
+   end interface
 
 contains
 

@@ -2,15 +2,10 @@
 !>
 !> Joints are numbered from the anchor of the set outwards, and each has its own random numbers:
 !> a larger outline has more joints and the same ones where the smaller one was.
-module dda_set_traces
-   use dda_growth, only : make_room
-   use dda_joint_map, only : joint_set_t, length_law, length_t
-   use dda_kinds, only : wp
-   use dda_random, only : draw, draw_normal, new_random, random_t
+submodule (dda_map_lines) dda_set_traces
+   use dda_joint_map, only : length_law
+   use dda_random, only : draw, draw_normal, new_random
    implicit none
-   private
-
-   public :: draw_covering_length, draw_length, joint_count, set_traces
 
    !> What of a set has a sequence of numbers of its own
    integer, parameter :: n_kind = 6
@@ -29,23 +24,14 @@ module dda_set_traces
 contains
 
    !> How many joints a set has across a circle, about
-   pure real(wp) function joint_count(set, radius)
-      type(joint_set_t), intent(in) :: set
-      real(wp), intent(in) :: radius  !! Radius of the circle [m]
-
+   module procedure joint_count
       joint_count = 2.0_wp*radius/set%spacing%mean
       if (set%trace%mean > 0.0_wp) joint_count = joint_count*max(1.0_wp, &
          & 2.0_wp*radius/(set%trace%mean + set%bridge%mean))
-   end function joint_count
+   end procedure joint_count
 
    !> Traces of a set that meet a circle
-   pure subroutine set_traces(set, centre, radius, trace, n)
-      type(joint_set_t), intent(in) :: set
-      real(wp), intent(in) :: centre(2)  !! Centre of the circle: (2) [m]
-      real(wp), intent(in) :: radius
-      !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
-      real(wp), allocatable, intent(out) :: trace(:, :)
-      integer, intent(out) :: n  !! Their number
+   module procedure set_traces
       type(random_t) :: random
       real(wp) :: place(2), step, reach
       integer :: way, number
@@ -73,7 +59,7 @@ contains
             place(way) = place(way) + merge(step, -step, way == 2)
          end do
       end do
-   end subroutine set_traces
+   end procedure set_traces
 
    !> Add the traces of one joint
    pure subroutine add_joint(set, centre, radius, distance, number, trace, n)
@@ -168,10 +154,7 @@ contains
    end subroutine add_part
 
    !> A length by its law
-   pure subroutine draw_length(length, random, value)
-      type(length_t), intent(in) :: length
-      type(random_t), intent(inout) :: random  !! Random numbers
-      real(wp), intent(out) :: value           !! The length [m]
+   module procedure draw_length
       real(wp) :: number
 
       value = length%mean
@@ -189,14 +172,10 @@ contains
          end do
          value = value*(1.0_wp + length%randomness*number)
       end select
-   end subroutine draw_length
+   end procedure draw_length
 
-   !> A length that covers a given point: long ones do so more often. With such a one over the
-   !> origin, which lies evenly in it, no place of an axis is special: means hold in any window
-   pure subroutine draw_covering_length(length, random, value)
-      type(length_t), intent(in) :: length
-      type(random_t), intent(inout) :: random
-      real(wp), intent(out) :: value
+   !> A length that covers a given point
+   module procedure draw_covering_length
       real(wp) :: more, number
 
       if (length%law == length_law%exponential) then
@@ -211,6 +190,6 @@ contains
          ! no law but the exponential one goes beyond twice the mean
          if (2.0_wp*length%mean*number <= value) exit
       end do
-   end subroutine draw_covering_length
+   end procedure draw_covering_length
 
-end module dda_set_traces
+end submodule dda_set_traces
