@@ -10,6 +10,7 @@ module dda_compute_case
    use dda_chain_decision, only : decide_chain, unfold
    use dda_contacts, only : contacts_t, place_all_joints
    use dda_critical, only : find_critical
+   use dda_decision, only : decide_in_stages, enter_stage
    use dda_deck, only : source_of
    use dda_deck_scene, only : deck_scene
    use dda_forward, only : run_to_verdict
@@ -25,7 +26,6 @@ module dda_compute_case
    use dda_scene, only : build_once, move_scene, scene_t, searched_load
    use dda_search, only : decision_t
    use dda_settings, only : settings_t
-   use dda_stages, only : decide_in_stages, enter_stage
    use dda_verdict, only : outcome_t, verdict
    use dda_worst_position, only : place_vehicle
    implicit none

@@ -1,0 +1,157 @@
+!> Decision by the joint graph: its verdict, with the forces or the motion that its blocks have
+submodule (dda_decision) dda_decide_by_graph
+   use dda_block_system, only : begin_motion
+   use dda_contacts, only : begin_forces
+   use dda_coulomb_law, only : coulomb_state_t, face
+   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
+   use dda_frames, only : keep_pictures
+   use dda_graph_decision, only : decide_graph
+   use dda_graph_report, only : show_mechanism, show_state
+   use dda_path_event, only : path_end
+   use dda_step_context, only : run_t
+   implicit none
+
+   !> A joint slides against friction if its force is more than this share of the largest
+   real(wp), parameter :: felt = 1.0e-9_wp
+
+contains
+
+   !> Decide by the joint graph
+   module procedure decide_by_graph
+      type(graph_verdict_t) :: proof
+      type(coulomb_state_t), allocatable :: start
+      integer :: n
+      logical :: slides
+
+      associate (settings => scene%settings, system => scene%system, contacts => scene%contacts)
+         call decide_graph(settings, system, contacts, bare, proof)
+         if (proof%no_start) then
+            call rest_under_dead_loads(scene, start, slides, n)
+            if (allocated(start) .and. .not. proof%unproven) &
+               & call decide_graph(settings, system, contacts, bare, proof, start)
+            if (slides) call fall_at_once(proof)
+            proof%n_factorisation = proof%n_factorisation + n
+         end if
+      end associate
+      if (proof%end == path_end%collapsed) then
+         call record_collapse(scene, proof, decision, album)
+      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
+         & .or. has_slid(proof) .or. .not. may_run(scene))) then
+         call record_rest(scene, proof, decision)
+      else if (proof%end == path_end%reached) then
+         call share_forces(scene, proof, decision, album)
+      else if (proof%unproven .and. may_run(scene)) then
+         call decide_by_steps(scene, decision, album)
+      else
+         decision%system = scene%system
+         decision%contacts = scene%contacts
+         call begin_forces(decision%contacts)
+         decision%outcome%reason = proof%reason
+      end if
+      call begin_motion(decision%system)
+      call move_alloc(proof%limit, decision%limit)
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + proof%n_event + 1
+         outcome%jumps = outcome%jumps + proof%n_jump
+         outcome%largest_jump = max(outcome%largest_jump, proof%largest_jump)
+         outcome%factorisations = outcome%factorisations + proof%n_factorisation
+         if (.not. allocated(outcome%motion)) allocate (outcome%motion(scene%settings%n_dof, &
+            & maxval(scene%system%equation)), source=0.0_wp)
+      end associate
+   end procedure decide_by_graph
+
+   !> Whether joints slide in the state that Coulomb's law has led to, or have strength, of which
+   !> the path alone knows what is lost: no elastic sharing without slip is looked for then
+   pure logical function has_slid(proof)
+      type(graph_verdict_t), intent(in) :: proof
+
+      has_slid = .false.
+      if (.not. allocated(proof%state)) return
+      has_slid = allocated(proof%state%whole)
+      if (has_slid) return
+      associate (force => proof%state%force)
+         ! where two corners touch without force nothing resists
+         has_slid = any(abs(proof%state%face(3, :)) == face%slides &
+            & .and. sum(force(1:2, :), dim=1) > felt*maxval(abs(force)))
+      end associate
+   end function has_slid
+
+   !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
+   !> strength
+   pure logical function may_run(scene)
+      type(scene_t), intent(in) :: scene
+
+      may_run = .not. (allocated(scene%settings%boundary%bounded) .or. any( &
+         & scene%contacts%law(scene%contacts%joint%law)%strength < huge(1.0_wp)))
+   end function may_run
+
+   !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
+   !> slide under Coulomb friction, as the loading path leaves them
+   pure subroutine share_forces(scene, proof, decision, album)
+      type(scene_t), intent(in) :: scene
+      type(graph_verdict_t), intent(in) :: proof
+      type(decision_t), intent(inout) :: decision
+      type(album_t), intent(inout), optional :: album
+      logical :: shared
+
+      associate (outcome => decision%outcome)
+         call run_under(flow_rule%associated, scene%settings, scene%system, scene%contacts, &
+            & decision, album)
+         shared = outcome%verdict == verdict%stable .and. &
+            & .not. (scene%settings%verdict_flow == flow_rule%coulomb &
+            & .and. any(decision%contacts%face%slip /= 0))
+         outcome%verdict = verdict%stable
+         if (allocated(outcome%reason)) deallocate (outcome%reason)
+      end associate
+      if (shared) return
+      call record_rest(scene, proof, decision)
+      if (present(album)) call show_end(scene%settings, decision, album)
+   end subroutine share_forces
+
+   !> Blocks and contacts of what stands, as its proof has them
+   module procedure record_rest
+
+      decision%outcome%verdict = verdict%stable
+      decision%flow = proof%flow
+      decision%system = scene%system
+      decision%contacts = scene%contacts
+      call show_state(scene%settings, proof, decision%system, decision%contacts)
+   end procedure record_rest
+
+   !> Blocks and contacts of what falls
+   module procedure record_collapse
+
+      associate (outcome => decision%outcome, settings => scene%settings)
+         if (proof%flow == flow_rule%associated .and. .not. proof%is_told .and. may_run(scene)) then
+            call run_under(proof%flow, settings, scene%system, scene%contacts, decision, album)
+            if (outcome%verdict == verdict%collapsed) return
+            if (allocated(outcome%reason)) deallocate (outcome%reason)
+         end if
+         decision%flow = proof%flow
+         decision%system = scene%system
+         decision%contacts = scene%contacts
+         decision%by_graph = .true.
+         outcome%verdict = verdict%collapsed
+         if (allocated(outcome%motion)) deallocate (outcome%motion)
+         allocate (outcome%motion(settings%n_dof, maxval(scene%system%equation)), source=0.0_wp)
+         outcome%motion(:3, :) = proof%mechanism(:, :maxval(scene%system%equation))
+         call show_mechanism(settings, scene%system, proof, decision%contacts)
+         if (present(album)) call show_end(settings, decision, album)
+      end associate
+   end procedure record_collapse
+
+   !> Where the measured points are in a state that no run has led to
+   pure subroutine show_end(settings, decision, album)
+      type(settings_t), intent(in) :: settings
+      type(decision_t), intent(in) :: decision
+      type(album_t), intent(inout) :: album
+      type(run_t) :: run
+
+      album = blank_album(album)
+      run%settings = settings
+      run%system = decision%system
+      call begin_motion(run%system)
+      run%contacts = decision%contacts
+      call keep_pictures(run, .false., album)
+   end subroutine show_end
+end submodule dda_decide_by_graph
