@@ -4,7 +4,6 @@
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_bracket
    use dda_chain_decision, only : decide_chain
-   use dda_chain_foresight, only : foresee
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide
    use dda_error, only : error_t
@@ -29,6 +28,20 @@ module dda_bracket
    integer, parameter :: patience = 3
    !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
    real(wp), parameter :: widest = 1.0e-4_wp
+
+   interface
+
+      !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
+      pure module subroutine foresee(family, search, critical, proposal, face)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         type(critical_t), intent(inout) :: critical  !! New in; its chain and their forces out
+         type(proposal_t), intent(out) :: proposal    !! Where it stops, usable if that is known
+         !> Faces of the joints of that collapse, where it is known: (n + 1)
+         type(joint_face_t), allocatable, intent(out) :: face(:)
+      end subroutine foresee
+
+   end interface
 
 contains
 

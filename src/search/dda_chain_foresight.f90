@@ -3,21 +3,13 @@
 !> What the forces of a chain lack, over the parameter, is zero where it ceases to fall; the joints
 !> that break their bounds near there are its last mechanism. No proof rests on what is foreseen:
 !> two decisions beside it tell whether it is so.
-module dda_chain_foresight
+submodule (dda_bracket) dda_chain_foresight
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, rounding_of_forces, sum_loads
    use dda_chain_decision, only : doubtful
    use dda_chain_lack, only : faces_of, find_lack, lack_t
-   use dda_collapse_trace, only : proposal_t, trace
-   use dda_friction_cone, only : joint_face_t
-   use dda_kinds, only : wp
-   use dda_scene, only : family_t, link_once
-   use dda_search, only : critical_t, decision_t, search_t
    use dda_settings, only : flow_rule
    implicit none
-   private
-
-   public :: foresee
 
    !> Most values that are looked at
    integer, parameter :: max_values = 12
@@ -32,14 +24,8 @@ module dda_chain_foresight
 
 contains
 
-   !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-   pure subroutine foresee(family, search, critical, proposal, face)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(inout) :: critical  !! New in; its chain and their forces out
-      type(proposal_t), intent(out) :: proposal    !! Where it stops, usable if that is known
-      !> Faces of the joints of that collapse, where it is known: (n + 1)
-      type(joint_face_t), allocatable, intent(out) :: face(:)
+   !> Foresee where the collapse of a chain stops
+   module procedure foresee
       type(lack_t) :: lack
       real(wp) :: before, last, next, value
       integer :: i
@@ -71,7 +57,7 @@ contains
          call move_alloc(critical%fallen%contacts%face, face)
       end if
       deallocate (critical%fallen)
-   end subroutine foresee
+   end procedure foresee
 
    !> What would be a collapse if it were proven
    pure subroutine bind_faces(chain, lack, acceleration, fallen)
@@ -96,4 +82,4 @@ contains
          & *rounding_of_forces(chain, force)/max(abs(lack%least), tiny(1.0_wp))
    end subroutine bind_faces
 
-end module dda_chain_foresight
+end submodule dda_chain_foresight

@@ -7,22 +7,41 @@ module dda_critical
    use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_load_search, only : find_critical_load
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph
    use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
-   use dda_time_search, only : find_critical_in_time
    use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: find_critical
+   public :: find_critical, find_critical_in_time
 
    !> Values between two ends, as shares of what is left, that may rule out nothing before the ends
    !> are held to agree
    real(wp), parameter :: share(7) = [4, 2, 6, 1, 3, 5, 7]/8.0_wp
    !> Part of the range in which nothing is looked for any more
    real(wp), parameter :: narrow = 1.0e-6_wp
+
+   interface
+
+      !> Search the critical value
+      pure module subroutine find_critical_in_time(family, search, critical)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         type(critical_t), intent(out) :: critical
+      end subroutine find_critical_in_time
+
+      !> Search a family whose parameter is a load coefficient
+      pure module subroutine find_critical_load(family, search, critical, done)
+         class(family_t), intent(in) :: family
+         !> What is searched; where it is not done its low end may become a value that may stand
+         !> between others that fall
+         type(search_t), intent(inout) :: search
+         type(critical_t), intent(inout) :: critical
+         logical, intent(out) :: done  !! Whether the search could be done so
+      end subroutine find_critical_load
+
+   end interface
 
 contains
 

@@ -1,26 +1,19 @@
 !> Critical value of a load coefficient: the first collapse on the loading path, with the associated
 !> limit beside it. The coefficient comes last on the path, so one path finds its critical value
-module dda_load_search
+submodule (dda_critical) dda_load_search
    use dda_dead_rest, only : follow_from_rest
    use dda_decision, only : record_collapse, record_rest
-   use dda_error, only : error_t
    use dda_graph_decision, only : see_fall, slide_along
    use dda_joint_graph, only : breaks, joint_graph_t
-   use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
       & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_path_event, only : path_end
-   use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
-   use dda_search, only : critical_t, limit_t, search_t, shed
+   use dda_search, only : limit_t
    use dda_settings, only : flow_rule, settings_t
-   use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: find_critical_load
 
    !> Where a structure falls on one side of the unloaded state
    type :: side_t
@@ -46,13 +39,7 @@ module dda_load_search
 contains
 
    !> Search a family whose parameter is a load coefficient
-   pure subroutine find_critical_load(family, search, critical, done)
-      class(family_t), intent(in) :: family
-      !> What is searched; where it is not done its low end may become a value that may stand
-      !> between others that fall
-      type(search_t), intent(inout) :: search
-      type(critical_t), intent(inout) :: critical
-      logical, intent(out) :: done  !! Whether the search could be done so
+   module procedure find_critical_load
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
       type(scene_t), allocatable :: scene
@@ -92,7 +79,7 @@ contains
       if (done) call move_alloc(scene, critical%scene)
       search%low = search%low + (origin - low)*(search%high - search%low)/(high - low)
       search%start = search%low
-   end subroutine find_critical_load
+   end procedure find_critical_load
 
    !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
    pure subroutine look_elsewhere(family, scene, graph, search, low, high, right, left, origin, &
@@ -317,11 +304,11 @@ contains
          critical%falls = search%high
          call keep_collapse(scene, left, critical)
       else if (falls_right) then
-         call close_bracket(search, low, high, scene, right, 1.0_wp, critical)
+         call keep_bracket(search, low, high, scene, right, 1.0_wp, critical)
          critical%has_other = falls_left
          critical%other = search%low + (left%value - low)*(search%high - search%low)/(high - low)
       else if (falls_left) then
-         call close_bracket(search, low, high, scene, left, -1.0_wp, critical)
+         call keep_bracket(search, low, high, scene, left, -1.0_wp, critical)
       else
          critical%verdict = verdict%stable
          critical%stands = merge(search%high, search%low, high > 0.0_wp)
@@ -333,7 +320,7 @@ contains
    end subroutine conclude
 
    !> The bracket about the value at which it falls to one side
-   pure subroutine close_bracket(search, low, high, scene, side, outward, critical)
+   pure subroutine keep_bracket(search, low, high, scene, side, outward, critical)
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
@@ -354,7 +341,7 @@ contains
       call record_rest(scene, side%proof, critical%standing)
       call shed(critical%standing, keeps_joints=.false.)
       call keep_limit(search, low, high, side, critical)
-   end subroutine close_bracket
+   end subroutine keep_bracket
 
    !> Keep the associated limit of a side, and how far its path was followed
    pure subroutine keep_limit(search, low, high, side, critical)
@@ -383,4 +370,4 @@ contains
       call shed(critical%fallen, keeps_joints=.false.)
    end subroutine keep_collapse
 
-end module dda_load_search
+end submodule dda_load_search

@@ -3,16 +3,9 @@
 !> What falls in time need not fall for all that is more, so values on both sides are run too. The
 !> critical value is the first change from the end that stands, or from the low end where both ends
 !> agree; what changes beyond it is kept for the log.
-module dda_time_search
+submodule (dda_critical) dda_time_search
    use dda_bracket, only : decide_at
-   use dda_kinds, only : wp
-   use dda_scene, only : family_t
-   use dda_search, only : critical_t, search_t
-   use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: find_critical_in_time
 
    !> Most runs of a search
    integer, parameter :: max_runs = 200
@@ -37,10 +30,7 @@ module dda_time_search
 contains
 
    !> Search the critical value
-   pure subroutine find_critical_in_time(family, search, critical)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical
+   module procedure find_critical_in_time
       type(runs_t) :: runs
       real(wp) :: value
       integer :: answer, i, side
@@ -59,7 +49,7 @@ contains
          critical%verdict = merge(verdict%collapsed, verdict%stable, runs%falls(1))
          return
       end if
-      call close_bracket(family, search, runs, critical)
+      call halve_change(family, search, runs, critical)
       if (critical%verdict /= verdict%found) return
       value = (critical%falls + critical%stands)/2.0_wp
       do side = 1, 2
@@ -69,7 +59,7 @@ contains
             critical%others = critical%others + 1
          end do
       end do
-      call close_bracket(family, search, runs, critical)
+      call halve_change(family, search, runs, critical)
       ! the decisions of the two neighbours may be none of the last
       if (abs(runs%kept(1) - critical%stands) > 0.0_wp) &
          & call run_value(family, critical%stands, runs, critical, answer)
@@ -82,7 +72,7 @@ contains
          critical%other_change = reshape([critical%other_change, runs%value(i:i + 1)], &
             & [2, size(critical%other_change, 2) + 1])
       end do
-   end subroutine find_critical_in_time
+   end procedure find_critical_in_time
 
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
    !> where both agree
@@ -96,7 +86,7 @@ contains
    end function first_change
 
    !> Halve the first change till its neighbours are as near as was asked for
-   pure subroutine close_bracket(family, search, runs, critical)
+   pure subroutine halve_change(family, search, runs, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(runs_t), intent(inout) :: runs
@@ -123,7 +113,7 @@ contains
          try = merge(try + 1, 1, answer == verdict%undecided)
       end do
       critical%verdict = verdict%found
-   end subroutine close_bracket
+   end subroutine halve_change
 
    !> Run one value
    pure subroutine run_value(family, value, runs, critical, answer)
@@ -146,4 +136,4 @@ contains
       runs%falls(i + 1) = answer == verdict%collapsed
       runs%n = runs%n + 1
    end subroutine run_value
-end module dda_time_search
+end submodule dda_time_search
