@@ -3,29 +3,22 @@
 !> Both are of limit analysis: forces prove that a load can be carried, a mechanism that it cannot
 !> be under any law of friction. A collapse on the loading path below the associated limit has no
 !> proof of this kind, and none is told.
-module dda_case_proof
+submodule (dda_compute_case) dda_case_proof
    use dda_bar_joints, only : bar_joint
-   use dda_case, only : case_t
-   use dda_contacts, only : place_all_joints
    use dda_deck, only : deck_t
    use dda_error, only : error_t
    use dda_joint_graph, only : joint_graph_t, keep_joints
    use dda_key_names, only : output_thrust_bar, output_thrust_joint
-   use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, find_thrust_range, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
-   use dda_scene, only : build_once, family_t, scene_t, searched_load
+   use dda_scene, only : family_t
    use dda_scene_graph, only : has_limit_analysis, scene_graph
-   use dda_search, only : critical_t, decision_t, proof_t
+   use dda_search, only : critical_t, proof_t
    use dda_settings, only : settings_t
-   use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: prove_case
 
    !> Relative gap of the limit of a load factor beside a decision
    real(wp), parameter :: limit_gap = 1.0e-13_wp
@@ -35,9 +28,7 @@ module dda_case_proof
 contains
 
    !> Prove the verdict of a case by limit analysis
-   pure subroutine prove_case(this)
-      type(case_t), intent(inout) :: this
-
+   module procedure prove_case
       if (this%searches) then
          call prove_search(this%family, this%critical, this%standing, this%scene, this%proof)
          return
@@ -50,7 +41,7 @@ contains
          end if
       end associate
       call prove_decision(this%family%deck, this%scene, this%decision, this%proof)
-   end subroutine prove_case
+   end procedure prove_case
 
    !> Prove a decision
    pure subroutine prove_decision(deck, scene, decision, proof)
@@ -253,4 +244,4 @@ contains
       most_power = max(most_power, tiny(most_power))
    end function most_power
 
-end module dda_case_proof
+end submodule dda_case_proof

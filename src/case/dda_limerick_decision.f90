@@ -1,16 +1,14 @@
 !> Shi's scheme in a case: a run as a decision of ours, with its verdict and the joints at its end;
 !> the critical value by a bracket of two runs, halved
-module dda_limerick_decision
+submodule (dda_compute_case) dda_limerick_decision
    use dda_block_system, only : begin_motion, block_system_t
-   use dda_case, only : case_t
    use dda_contact_types, only : place_joint
-   use dda_contacts, only : begin_forces, contacts_t
+   use dda_contacts, only : begin_forces
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_family_t, deck_scene, put_value
    use dda_error, only : error_t
    use dda_frames, only : album_t, frame_is_due, keep_frame
-   use dda_key_names, only : output_frames, scene_kind
-   use dda_kinds, only : wp
+   use dda_key_names, only : scene_kind
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
@@ -18,13 +16,8 @@ module dda_limerick_decision
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
-   use dda_scene, only : scene_t
-   use dda_search, only : critical_t, decision_t, keep_decision, search_t
-   use dda_verdict, only : verdict
+   use dda_search, only : critical_t, keep_decision, search_t
    implicit none
-   private
-
-   public :: decide_limerick, search_limerick
 
    !> First step away from the start, over the start; the steps double
    real(wp), parameter :: first_stride = 0.02_wp
@@ -33,8 +26,14 @@ module dda_limerick_decision
 
 contains
 
+   !> Decide the scene under Shi's scheme
+   module procedure decide_limerick
+      call deck_scene(this%family%deck, this%scene)
+      call run_scheme(this%family%deck, this%scene, this%decision, this%album)
+   end procedure decide_limerick
+
    !> Run what a deck describes under Shi's scheme
-   pure subroutine decide_limerick(deck, scene, decision, album)
+   pure subroutine run_scheme(deck, scene, decision, album)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       type(decision_t), intent(out) :: decision
@@ -75,7 +74,7 @@ contains
          if (allocated(outcome%reason)) told%reason = outcome%reason
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
-   end subroutine decide_limerick
+   end subroutine run_scheme
 
    !> Run a model and keep its pictures
    pure subroutine run_with_pictures(deck, scene, model, run, outcome, album)
@@ -264,10 +263,8 @@ contains
       end if
    end function contact_force
 
-   !> Search the critical value of Shi's scheme, with pictures of the run nearest to it that was
-   !> found to fall, else to stand
-   pure subroutine search_limerick(this)
-      type(case_t), intent(inout) :: this
+   !> Search the critical value of Shi's scheme
+   module procedure search_limerick
       type(decision_t) :: decision
       type(error_t), allocatable :: error
 
@@ -281,7 +278,7 @@ contains
       if (.not. (allocated(this%critical%fallen) .or. allocated(this%critical%standing))) return
       call run_at(this%family, merge(this%critical%falls, this%critical%stands, &
          & allocated(this%critical%fallen)), decision, error, this%album)
-   end subroutine search_limerick
+   end procedure search_limerick
 
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)
@@ -383,6 +380,6 @@ contains
       call put_value(family, value, deck, error)
       if (allocated(error)) return
       call deck_scene(deck, scene)
-      call decide_limerick(deck, scene, decision, album)
+      call run_scheme(deck, scene, decision, album)
    end subroutine run_at
-end module dda_limerick_decision
+end submodule dda_limerick_decision

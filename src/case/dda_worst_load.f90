@@ -5,33 +5,11 @@
 !> factor still. That none has been missed is proven by forces, arc by arc: the loads of an arc lie
 !> within the triangle of its ends and the point where its tangents meet, and what carries these
 !> three carries all of them.
-module dda_worst_load
-   use dda_interior_state, only : no_limit
-   use dda_joint_graph, only : joint_graph_t
-   use dda_kinds, only : wp
+submodule (dda_compute_case) dda_worst_load
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : begin_walk, find_limit, limit_load_t, limit_state, load_walk_t, &
       & walk_to
    implicit none
-   private
-
-   public :: least_factor_t, load_arc_t, seek_least_factor
-
-   !> Live loads that are quadratic in the share of the way from one place to another
-   type :: load_arc_t
-      !> The two places [m]
-      real(wp) :: from = 0.0_wp, to = 0.0_wp
-      !> Blocks with a load, by their numbers in the graph: (n)
-      integer, allocatable :: block(:)
-      !> Loads at the beginning, half way and at the end: (3, n, 3) [N/m, N/m, N]
-      real(wp), allocatable :: load(:, :, :)
-   end type load_arc_t
-
-   !> The least factor found, and where
-   type :: least_factor_t
-      real(wp) :: factor = no_limit  !! The factor
-      real(wp) :: place = 0.0_wp     !! The place [m]
-   end type least_factor_t
 
    !> What a search works on
    type :: chase_t
@@ -51,16 +29,8 @@ module dda_worst_load
 
 contains
 
-   !> Seek the least factor of the loads of all arcs: none where the dead load falls by itself
-   pure subroutine seek_least_factor(graph, dead, arc, stands, near, least)
-      type(joint_graph_t), intent(in) :: graph
-      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: dead(:, :)
-      type(load_arc_t), intent(in) :: arc(:)  !! The live loads: (n)
-      logical, intent(in) :: stands           !! Whether the dead load is known to stand
-      real(wp), intent(in) :: near            !! How near the place is to be [m]
-      !> The least factor so far in, with these arcs out
-      type(least_factor_t), intent(inout) :: least
+   !> Seek the least factor of the loads of all arcs
+   module procedure seek_least_factor
       type(chase_t) :: chase
       type(load_decision_t) :: decision
       integer :: k, stride
@@ -95,7 +65,7 @@ contains
          call pass(arc, k, 1.0_wp, chase, least)
          call pass_between(arc, k, 0.0_wp, 1.0_wp, chase, least)
       end do
-   end subroutine seek_least_factor
+   end procedure seek_least_factor
 
    !> Whether an arc begins with the load that the arc before ends with
    pure logical function goes_on(arc, k)
@@ -279,4 +249,4 @@ contains
          & share*(2.0_wp*share - 1.0_wp)]
    end function weights
 
-end module dda_worst_load
+end submodule dda_worst_load

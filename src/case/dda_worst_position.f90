@@ -4,32 +4,23 @@
 !> Which of all these is carried at the least factor, under the associated rule, is a question of
 !> the joint graph; the pressure of fill, which the arch leans against on the side away from the
 !> vehicle, makes as many graphs as there are sides.
-module dda_worst_position
+submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t, value_at
-   use dda_case, only : case_t
    use dda_deck, only : deck_t, has_group, parameter_t, put_number
    use dda_deck_scene, only : deck_scene
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
-   use dda_interior_state, only : no_limit
-   use dda_joint_graph, only : joint_graph_t
    use dda_key_names, only : fill_group, vehicle_position
-   use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
-   use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
    use dda_submatrices, only : point_load
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
-   use dda_worst_load, only : least_factor_t, load_arc_t, seek_least_factor
    implicit none
-   private
-
-   public :: place_vehicle
 
    !> How far beside a passage an axle is on the next block, and how near the least is closed in,
    !> over the size of all
@@ -54,8 +45,7 @@ module dda_worst_position
 contains
 
    !> Put the vehicle where the least load factor is carried
-   pure subroutine place_vehicle(this)
-      type(case_t), intent(inout) :: this
+   module procedure place_vehicle
       type(bridge_t) :: bridge
       type(error_t), allocatable :: error
       type(least_factor_t) :: least
@@ -85,7 +75,7 @@ contains
       associate (deck => this%family%deck)
          call put_number(deck, position, least%place, deck%value(position%key)%place, error)
       end associate
-   end subroutine place_vehicle
+   end procedure place_vehicle
 
    !> Whether there is fill that the bridge can lean against
    pure logical function leans(bridge)
@@ -271,4 +261,4 @@ contains
       arc%load = live(:, arc%block, :)
    end function arc_of
 
-end module dda_worst_position
+end submodule dda_worst_position
