@@ -1,23 +1,126 @@
-!> Decision by the joint graph: its verdict, with the forces or the motion that its blocks have
-submodule (dda_decision) dda_decide_by_graph
+!> The ways to a decision: by the joint graph, by steps to rest or collapse, or in time
+submodule (dda_decision) dda_decide
    use dda_block_system, only : begin_motion
+   use dda_boundary, only : held_at_start
    use dda_contacts, only : begin_forces
    use dda_coulomb_law, only : coulomb_state_t, face
    use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
-   use dda_frames, only : keep_pictures
+   use dda_forward, only : run_to_verdict
+   use dda_frames, only : blank_album, keep_pictures
    use dda_graph_decision, only : decide_graph
    use dda_graph_report, only : show_mechanism, show_state
+   use dda_material, only : weakens
    use dda_path_event, only : path_end
+   use dda_scene_graph, only : decides_as_graph
+   use dda_settings, only : flow_rule
    use dda_step_context, only : run_t
+   use dda_verdict, only : outcome_t, verdict
    implicit none
+
+   !> Steps that the static beginning of a dynamic run may take, at the least
+   integer, parameter :: least_static_steps = 400
 
    !> A joint slides against friction if its force is more than this share of the largest
    real(wp), parameter :: felt = 1.0e-9_wp
 
 contains
 
+   !> Decide a static structure, or run a dynamic one
+   module procedure decide
+      logical :: bare
+
+      bare = .false.
+      if (present(verdict_only)) bare = verdict_only
+      if (scene%settings%dynamic) then
+         call run_in_time(scene, decision, album, onward)
+      else if (decides_as_graph(scene%settings, scene%contacts)) then
+         call decide_by_graph(scene, bare, decision, album)
+      else
+         call decide_by_steps(scene, decision, album)
+      end if
+   end procedure decide
+
+   !> Decide by steps to rest or collapse
+   module procedure decide_by_steps
+      associate (settings => scene%settings, system => scene%system, contacts => scene%contacts)
+         ! what slides as it opens wears another way, so that its fall proves nothing
+         if (.not. any(weakens(contacts%law(contacts%joint%law)))) then
+            call run_under(flow_rule%associated, settings, system, contacts, decision, album)
+            if (decision%outcome%verdict /= verdict%stable) return
+            if (settings%verdict_flow == flow_rule%associated) return
+            if (.not. any(decision%contacts%face%slip /= 0)) return
+            if (present(album)) album = blank_album(album)
+         end if
+         call run_under(flow_rule%coulomb, settings, system, contacts, decision, album)
+      end associate
+   end procedure decide_by_steps
+
+   !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
+   !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
+   !> that the blocks were given
+   module procedure run_in_time
+      type(settings_t) :: static
+      type(decision_t) :: settled
+      type(march_t) :: rest, march
+      logical :: begins
+
+      begins = scene%settings%settles
+      if (present(onward)) begins = begins .and. onward%steps == 0
+      if (.not. begins) then
+         call run_under(flow_rule%coulomb, scene%settings, scene%system, scene%contacts, decision, &
+            & album, onward)
+         return
+      end if
+      static = scene%settings
+      static%dynamic = .false.
+      static%time_step = 0.0_wp
+      static%duration = 0.0_wp
+      static%collapse_displacement = 0.0_wp
+      static%max_steps = max(least_static_steps, static%max_steps)
+      static%boundary = held_at_start(scene%settings%boundary)
+      call run_under(flow_rule%coulomb, static, scene%system, scene%contacts, settled, onward=rest)
+      if (settled%outcome%verdict /= verdict%stable) then
+         decision = settled
+         if (.not. allocated(decision%outcome%reason)) decision%outcome%reason = &
+            & "the blocks collapse under their loads at time 0"
+         decision%outcome%reason = "start = 'static' found no rest: "//decision%outcome%reason
+         decision%outcome%verdict = verdict%undecided
+         return
+      end if
+      if (allocated(scene%system%velocity)) settled%system%velocity = scene%system%velocity
+      decision%outcome = settled%outcome
+      march%held_force = rest%held_force
+      call run_under(flow_rule%coulomb, scene%settings, settled%system, settled%contacts, &
+         & decision, album, march)
+      if (present(onward)) onward = march
+   end procedure run_in_time
+
+   !> Run a structure under a flow rule to its verdict
+   module procedure run_under
+      type(settings_t) :: ruled
+      type(outcome_t) :: before
+
+      before = decision%outcome
+      ruled = settings
+      ruled%flow = flow
+      decision%flow = flow
+      decision%system = system
+      decision%contacts = contacts
+      call run_to_verdict(ruled, decision%system, decision%contacts, decision%outcome, album, &
+         & onward)
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + before%steps
+         outcome%passes = outcome%passes + before%passes
+         outcome%factorisations = outcome%factorisations + before%factorisations
+      end associate
+   end procedure run_under
+
    !> Decide by the joint graph
-   module procedure decide_by_graph
+   pure subroutine decide_by_graph(scene, bare, decision, album)
+      type(scene_t), intent(in) :: scene
+      logical, intent(in) :: bare  !! Whether forces and motions of what stands are not asked for
+      type(decision_t), intent(out) :: decision
+      type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
       integer :: n
@@ -58,7 +161,7 @@ contains
          if (.not. allocated(outcome%motion)) allocate (outcome%motion(scene%settings%n_dof, &
             & maxval(scene%system%equation)), source=0.0_wp)
       end associate
-   end procedure decide_by_graph
+   end subroutine decide_by_graph
 
    !> Whether joints slide in the state that Coulomb's law has led to, or have strength, of which
    !> the path alone knows what is lost: no elastic sharing without slip is looked for then
@@ -154,4 +257,5 @@ contains
       run%contacts = decision%contacts
       call keep_pictures(run, .false., album)
    end subroutine show_end
-end submodule dda_decide_by_graph
+
+end submodule dda_decide
