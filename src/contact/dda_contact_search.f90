@@ -10,7 +10,7 @@
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_box_tree, only : box_pairs, box_tree_t, find_boxes, new_box_tree
+   use dda_box_tree, only : box_pairs, box_tree_t, least_nearby, least_values, new_box_tree
    use dda_contact_types, only : joint_t
    use dda_contacts, only : joint_search_t
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t, take_joints
@@ -190,9 +190,9 @@ contains
       real(wp), intent(in) :: reach(:)  !! How far each block can reach: (n_block) [m]
       real(wp) :: least(size(reach))    !! The least reach: (n_block) [m]
       real(wp) :: high(2, size(reach)), low(2, size(reach))
+      real(wp), allocatable :: least_below(:)
       type(box_tree_t) :: tree
-      integer, allocatable :: near(:)
-      integer :: b, n
+      integer :: b
 
       do b = 1, size(reach)
          associate (vertex => system%vertex(:, &
@@ -202,9 +202,10 @@ contains
          end associate
       end do
       call new_box_tree(low, high, tree)
+      call least_values(tree, reach, least_below)
+      least = reach
       do b = 1, size(reach)
-         call find_boxes(tree, low(:, b), high(:, b), near, n)
-         least(b) = minval(reach(near(:n)))
+         call least_nearby(tree, least_below, low(:, b), high(:, b), least(b))
       end do
    end function least_beside
 

@@ -8,8 +8,8 @@ module dda_box_tree
    implicit none
    private
 
-   public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, max_levels
-   public :: new_box_tree, segment_tree
+   public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, least_nearby
+   public :: least_values, max_levels, new_box_tree, segment_tree
 
    !> Levels that a tree can have
    integer, parameter :: max_levels = 64
@@ -114,6 +114,46 @@ contains
          found(n) = tree%box(node - tree%n_leaf + 1)
       end do
    end subroutine find_boxes
+
+   !> The least value of the boxes that overlap or touch another one, of which it is the first guess
+   pure subroutine least_nearby(tree, least, low, high, value)
+      type(box_tree_t), intent(in) :: tree
+      real(wp), intent(in) :: least(:)  !! Least value below each node: (2*n_leaf - 1)
+      real(wp), intent(in) :: low(2), high(2)
+      real(wp), intent(inout) :: value  !! The guess in, the least of all out
+      integer :: stack(max_levels), top, node
+
+      top = 1
+      stack(1) = 1
+      do while (top > 0)
+         node = stack(top)
+         top = top - 1
+         if (least(node) >= value) cycle
+         if (any(tree%low(:, node) > high .or. tree%high(:, node) < low)) cycle
+         if (node < tree%n_leaf) then
+            stack(top + 1:top + 2) = [2*node + 1, 2*node]
+            top = top + 2
+         else
+            value = least(node)
+         end if
+      end do
+   end subroutine least_nearby
+
+   !> Least value of the boxes below each node; huge where there is none
+   pure subroutine least_values(tree, value, least)
+      type(box_tree_t), intent(in) :: tree
+      real(wp), intent(in) :: value(:)                !! Value of each box: (n)
+      real(wp), allocatable, intent(out) :: least(:)  !! The least values: (2*n_leaf - 1)
+      integer :: i
+
+      allocate (least(2*tree%n_leaf - 1), source=huge(1.0_wp))
+      do i = 1, tree%n_leaf
+         if (tree%box(i) > 0) least(tree%n_leaf - 1 + i) = value(tree%box(i))
+      end do
+      do i = tree%n_leaf - 1, 1, -1
+         least(i) = min(least(2*i), least(2*i + 1))
+      end do
+   end subroutine least_values
 
    !> Boxes that a segment meets, or a point where both its ends are one, in rising order
    pure function boxes_along(tree, segment) result(box)
