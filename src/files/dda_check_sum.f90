@@ -17,51 +17,9 @@ module dda_check_sum
 
 contains
 
-   !> CRC-32 of a text
+   !> CRC-32 of a text, half a byte at a time
    pure integer(int64) function crc_32(text)
       character(len=*), intent(in) :: text  !! Any bytes
-      integer(int32) :: remainder
-      integer :: i
-
-      remainder = not(0_int32)
-      do i = 1, len(text)
-         remainder = next_remainder(remainder, text(i:i))
-      end do
-      crc_32 = of_remainder(remainder)
-   end function crc_32
-
-   !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
-   pure integer(int64) function line_sum(text)
-      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
-      integer(int32) :: remainder
-      integer :: i
-
-      line_sum = 0
-      remainder = not(0_int32)
-      do i = 1, len(text)
-         if (text(i:i) == new_line("a")) then
-            line_sum = add_sums(line_sum, of_remainder(remainder))
-            remainder = not(0_int32)
-         else
-            remainder = next_remainder(remainder, text(i:i))
-         end if
-      end do
-      ! nothing is left behind the end of a line
-      line_sum = add_sums(line_sum, of_remainder(remainder))
-   end function line_sum
-
-   !> Two sums as one
-   elemental integer(int64) function add_sums(first, second)
-      integer(int64), intent(in) :: first   !! One sum; a negative one is taken away
-      integer(int64), intent(in) :: second  !! The other
-
-      add_sums = modulo(first + second, shiftl(1_int64, bits))
-   end function add_sums
-
-   !> The remainder after one more byte, half a byte at a time
-   pure integer(int32) function next_remainder(remainder, byte) result(next)
-      integer(int32), intent(in) :: remainder  !! The remainder so far
-      character(len=1), intent(in) :: byte     !! The byte
       integer :: i
       ! what four bits do to a remainder, one after the other
       integer(int32), parameter :: half_byte(0:15) = [(int(i, int32), i=0, 15)]
@@ -73,16 +31,37 @@ contains
          & merge(polynomial, 0_int32, btest(bits_2, 0)))
       integer(int32), parameter :: bits_4(0:15) = ieor(shiftr(bits_3, 1), &
          & merge(polynomial, 0_int32, btest(bits_3, 0)))
+      integer(int32) :: rest
 
-      next = ieor(remainder, ichar(byte, int32))
-      next = ieor(shiftr(next, 4), bits_4(iand(next, 15_int32)))
-      next = ieor(shiftr(next, 4), bits_4(iand(next, 15_int32)))
-   end function next_remainder
+      rest = not(0_int32)
+      do i = 1, len(text)
+         rest = ieor(rest, ichar(text(i:i), int32))
+         rest = ieor(shiftr(rest, 4), bits_4(iand(rest, 15_int32)))
+         rest = ieor(shiftr(rest, 4), bits_4(iand(rest, 15_int32)))
+      end do
+      crc_32 = iand(int(not(rest), int64), shiftl(1_int64, bits) - 1)
+   end function crc_32
 
-   !> A remainder as CRC-32
-   pure integer(int64) function of_remainder(remainder)
-      integer(int32), intent(in) :: remainder
+   !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
+   pure integer(int64) function line_sum(text)
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
+      integer :: first, length
 
-      of_remainder = iand(int(not(remainder), int64), shiftl(1_int64, bits) - 1)
-   end function of_remainder
+      line_sum = 0
+      first = 1
+      do while (first <= len(text))
+         length = index(text(first:), new_line("a")) - 1
+         if (length < 0) length = len(text) - first + 1
+         line_sum = add_sums(line_sum, crc_32(text(first:first + length - 1)))
+         first = first + length + 1
+      end do
+   end function line_sum
+
+   !> Two sums as one
+   elemental integer(int64) function add_sums(first, second)
+      integer(int64), intent(in) :: first   !! One sum; a negative one is taken away
+      integer(int64), intent(in) :: second  !! The other
+
+      add_sums = modulo(first + second, shiftl(1_int64, bits))
+   end function add_sums
 end module dda_check_sum
