@@ -9,6 +9,7 @@ module dda_block_plan
       & products
    use dda_block_order, only : dissected_order, smallest_part
    use dda_kinds, only : small, wp
+   use dda_sort, only : list_by_owner
    implicit none
    private
 
@@ -193,30 +194,23 @@ contains
       integer, intent(in) :: panel(:)
       !> The plan with its rows; receives the sources
       type(elimination_plan_t), intent(inout) :: plan
-      integer :: next(size(plan%first)), i, k, pass
+      integer :: above(size(plan%row)), target(size(plan%row)), i, k
+      integer, allocatable :: row(:)
 
-      allocate (plan%first_source(size(next)))
-      next = 0
-      do pass = 1, 2
-         do i = 1, size(next) - 1
-            do k = plan%first_row(i), plan%first_row(i + 1) - 1
-               if (k > plan%first_row(i)) then
-                  if (panel(plan%row(k)) == panel(plan%row(k - 1))) cycle
-               end if
-               associate (target => panel(plan%row(k)))
-                  if (pass == 2) plan%source(:, next(target)) = [i, k]
-                  next(target) = next(target) + 1
-               end associate
-            end do
+      target = 0
+      do i = 1, size(plan%first) - 1
+         do k = plan%first_row(i), plan%first_row(i + 1) - 1
+            above(k) = i
+            target(k) = panel(plan%row(k))
+            if (k == plan%first_row(i)) cycle
+            if (target(k) == panel(plan%row(k - 1))) target(k) = 0
          end do
-         if (pass == 2) exit
-         plan%first_source(1) = 1
-         do i = 1, size(next) - 1
-            plan%first_source(i + 1) = plan%first_source(i) + next(i)
-         end do
-         next = plan%first_source
-         allocate (plan%source(2, next(size(next)) - 1))
       end do
+      allocate (plan%first_source(size(plan%first)))
+      call list_by_owner(target, plan%first_source, row)
+      allocate (plan%source(2, size(row)))
+      plan%source(1, :) = above(row)
+      plan%source(2, :) = row
    end subroutine list_sources
 
    !> Turn blocks into triples, and lay out the numbers
@@ -246,25 +240,15 @@ contains
       integer, intent(in) :: place(:)                  !! Place of each block: (n_block)
       integer, intent(in) :: panel(:)                  !! Panel of each place: (n_block)
       type(elimination_plan_t), intent(inout) :: plan  !! The plan; receives the couplings
-      integer :: next(size(plan%first)), at(size(place)), e, g, i, p, width, height
+      integer :: at(size(place)), g, i, p, width, height
+      integer, allocatable :: coupling(:)
 
-      next = 0
-      do e = 1, size(pair, 2)
-         p = panel(minval(place(pair(:, e))))
-         next(p) = next(p) + 1
-      end do
-      allocate (plan%first_given(size(next)), plan%given(2, size(pair, 2)))
-      plan%first_given(1) = 1
-      do p = 1, size(next) - 1
-         plan%first_given(p + 1) = plan%first_given(p) + next(p)
-      end do
-      next = plan%first_given
-      do e = 1, size(pair, 2)
-         p = panel(minval(place(pair(:, e))))
-         plan%given(1, next(p)) = merge(e, -e, place(pair(1, e)) > place(pair(2, e)))
-         next(p) = next(p) + 1
-      end do
-      do p = 1, size(next) - 1
+      allocate (plan%first_given(size(plan%first)), plan%given(2, size(pair, 2)))
+      call list_by_owner(panel(min(place(pair(1, :)), place(pair(2, :)))), plan%first_given, &
+         & coupling)
+      plan%given(1, :) = merge(coupling, -coupling, &
+         & place(pair(1, coupling)) > place(pair(2, coupling)))
+      do p = 1, size(plan%first) - 1
          width = plan%first(p + 1) - plan%first(p)
          height = width + plan%first_row(p + 1) - plan%first_row(p)
          associate (n => plan%n_triple, first => (plan%first(p) - 1)/plan%n_triple)
