@@ -52,7 +52,7 @@ contains
             case_and_frame = to_text(number)//","//to_text(i - 1)
             ! the steps of a static run have lengths, but no time passes in them
             moment = merge(real(i - 1, wp), frame%time, album%spacing > 0.0_wp)
-            row = frame_joint_rows(system, frame)
+            row = frame_joint_rows(frame)
             do j = 1, size(row)
                row(j)%point = row(j)%point + origin
                row(j)%contact = row(j)%contact + spread(origin, 2, 2)

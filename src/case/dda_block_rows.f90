@@ -222,8 +222,7 @@ contains
    end function number_in
 
    !> Rows of all joints of a picture
-   pure function frame_joint_rows(system, frame) result(row)
-      type(block_system_t), intent(in) :: system
+   pure function frame_joint_rows(frame) result(row)
       type(frame_t), intent(in) :: frame
       type(frame_joint_row_t) :: row(size(frame%joint))  !! The rows: (n_joint)
       type(joint_place_t) :: place
@@ -231,7 +230,7 @@ contains
       integer :: j, states(2)
 
       do j = 1, size(row)
-         call place_joint(system, frame%moved, frame%joint(j), place, gap)
+         call place_joint(frame%moved, frame%joint(j), place, gap)
          row(j)%joint = j
          row(j)%contact(:, 1) = place%point(:, 1)
          row(j)%contact(:, 2) = place%point(:, frame%joint(j)%n_contact)

@@ -123,7 +123,7 @@ contains
       contacts = scene%contacts
       call begin_forces(contacts)
       call place_corners(deck%value(scene_kind)%text, run, system)
-      call tell_joints(scene, model, run, system%moved, contacts)
+      call tell_joints(model, run, system%moved, contacts)
       ! blocks of the scheme are those of the scene, in their order
       n = min(size(system%area), size(run%blocks%area))
       system%stress(:, :n) = run%blocks%stress(:, :n)
@@ -156,11 +156,10 @@ contains
 
    !> Joints at the end of a run: openings and slips from the corners, forces from the contacts.
    !> The increments are those of the whole run, for single steps of this scheme jitter
-   pure subroutine tell_joints(scene, model, run, now, contacts)
-      type(scene_t), intent(in) :: scene  !! The scene at the beginning
+   pure subroutine tell_joints(model, run, now, contacts)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(in) :: run
-      real(wp), intent(in) :: now(:, :)   !! The corners at the end: (2, n_vertex) [m]
+      real(wp), intent(in) :: now(:, :)  !! The corners at the end: (2, n_vertex) [m]
       !> The joints: at the beginning in, at the end out
       type(contacts_t), intent(inout) :: contacts
       type(joint_law_t) :: law
@@ -170,8 +169,7 @@ contains
       deepest = max(0.0_wp, -minval(run%contacts%item(:run%contacts%n)%gap))
       allocate (contacts%place(size(contacts%joint)))
       do j = 1, size(contacts%joint)
-         call place_joint(scene%system, now, contacts%joint(j), contacts%place(j), &
-            & contacts%gap(:, j))
+         call place_joint(now, contacts%joint(j), contacts%place(j), contacts%gap(:, j))
       end do
       call tell_forces(model, run, contacts)
       do j = 1, size(contacts%joint)

@@ -61,8 +61,7 @@ module dda_restart
    interface
 
       !> Joints as numbers
-      pure module subroutine pack_joints(system, contacts, whole, number)
-         type(block_system_t), intent(in) :: system
+      pure module subroutine pack_joints(contacts, whole, number)
          type(contacts_t), intent(in) :: contacts
          !> Their whole numbers: (n_joint_whole, n_joint)
          integer(int32), allocatable, intent(out) :: whole(:, :)
@@ -121,7 +120,7 @@ contains
       if (allocated(march%held_force)) held_force = march%held_force
       allocate (reach(size(system%area)), source=0.0_wp)
       if (allocated(march%reach)) reach = march%reach
-      call pack_joints(system, contacts, joint_whole, joint_number)
+      call pack_joints(contacts, joint_whole, joint_number)
       associate (e => march%energy, all => .true.)
          call write_numbers(file, title, [owner_of(settings, system, contacts), &
             & size(contacts%joint), size(held_force), march%steps, march%passes, &

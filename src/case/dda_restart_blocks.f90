@@ -4,7 +4,7 @@ submodule (dda_restart) dda_restart_blocks
    use dda_block_system, only : begin_motion
    use dda_block_update, only : displace_blocks
    use dda_contact_search, only : law_between
-   use dda_contact_types, only : joint_springs_t, joint_t, place_joint, vertex_number
+   use dda_contact_types, only : joint_springs_t, joint_t, place_joint
    use dda_contacts, only : begin_memory, set_joints
    use dda_outline, only : outline_of, outline_t
    use dda_step_context, only : energy_t
@@ -112,16 +112,14 @@ contains
 
    !> Joints as numbers
    module procedure pack_joints
-      integer :: j, k
+      integer :: j
 
       allocate (whole(n_joint_whole, size(contacts%joint)))
       allocate (number(n_joint_number, size(contacts%joint)))
       do j = 1, size(contacts%joint)
          associate (joint => contacts%joint(j), face => contacts%face(j))
             whole(:, j) = [joint%n_contact, joint%contact%edge_side, &
-               & (vertex_number(system, joint%contact(k)%vertex_block, joint%contact(k)%vertex), &
-               & k=1, 2), (vertex_number(system, joint%contact(k)%edge_block, &
-               & joint%contact(k)%edge), k=1, 2), merge(1, 0, face%open), face%slip]
+               & joint%contact%vertex, joint%contact%edge, merge(1, 0, face%open), face%slip]
             number(:, j) = [joint%length, joint%contact%length, joint%contact%share, &
                & joint%contact%lock, joint%contact%closed_at, contacts%past_slip(j), &
                & contacts%trial(:, j), contacts%force(:, j), contacts%gap(:, j), &
@@ -149,12 +147,12 @@ contains
          call begin_memory(contacts)
          allocate (contacts%place(size(contacts%joint)))
          do j = 1, size(contacts%joint)
-            call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
+            call place_joint(system%moved, contacts%joint(j), contacts%place(j), gap)
          end do
       else
          call begin_memory(contacts)
          sound = size(contacts%joint) == size(whole, 2)
-         if (sound) call pack_joints(system, contacts, given, ignored)
+         if (sound) call pack_joints(contacts, given, ignored)
          if (sound) sound = all(given(:7, :) == whole(:7, :))
       end if
       if (.not. sound) return
@@ -180,21 +178,16 @@ contains
       type(joint_t), intent(out) :: joint(:)  !! The joints: (n_joint)
       logical, intent(out) :: sound
       type(outline_t) :: outline
-      integer :: j, k
+      integer :: j
 
       outline = outline_of(system)
       sound = .true.
       do j = 1, size(joint)
          sound = is_joint(system, outline, whole(:, j), number(:, j))
          if (.not. sound) return
-         do k = 1, 2
-            joint(j)%contact(k)%vertex_block = outline%block(whole(3 + k, j))
-            joint(j)%contact(k)%vertex = whole(3 + k, j) &
-               & - system%first_vertex(outline%block(whole(3 + k, j))) + 1
-            joint(j)%contact(k)%edge_block = outline%block(whole(5 + k, j))
-            joint(j)%contact(k)%edge = whole(5 + k, j) &
-               & - system%first_vertex(outline%block(whole(5 + k, j))) + 1
-         end do
+         joint(j)%contact%vertex = whole(4:5, j)
+         joint(j)%contact%edge = whole(6:7, j)
+         joint(j)%contact%edge_end = outline%next(whole(6:7, j))
          joint(j)%found = .true.
          joint(j)%n_contact = whole(1, j)
          joint(j)%block = blocks_of(outline, whole(:, j), 1)

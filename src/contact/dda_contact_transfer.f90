@@ -5,7 +5,7 @@ module dda_contact_transfer
    use dda_block_system, only : block_system_t
    use dda_contact_search, only : look_around, near_joints, touching_joints
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
-      & place_joint, slip_at, vertex_number
+      & place_joint, slip_at
    use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
    use dda_entrance, only : contact_key
    use dda_kinds, only : wp
@@ -13,12 +13,13 @@ module dda_contact_transfer
    implicit none
    private
 
-   public :: search_contacts, renew_contacts, past_contact_t, contact_keys, match_contacts
+   public :: search_contacts, renew_contacts, past_contact_t, match_contacts
 
    !> One contact of the step before
    type :: past_contact_t
       type(contact_t) :: contact  !! The contact
       integer :: joint = 0        !! The joint that it belonged to
+      integer :: block(2) = 0     !! The two blocks of the joint
       integer :: place = 0        !! Which of the joint's contacts it was
       !> Normal force, and its part of the joint's shear force: (2) [N/m]
       real(wp) :: force(2) = 0.0_wp
@@ -45,8 +46,8 @@ contains
       contacts%law = pack(contacts%search%law, .true.)
       call touching_joints(contacts%search, system, joint)
       do j = 1, size(joint)
-         call lock_joint(system, system%vertex, joint(j))
-         call place_joint(system, system%vertex, joint(j), place, gap)
+         call lock_joint(system%vertex, joint(j))
+         call place_joint(system%vertex, joint(j), place, gap)
          joint(j)%contact%closed_at = gap(1:2)
       end do
       call set_joints(joint, contacts)
@@ -95,7 +96,7 @@ contains
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))
-         call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
+         call place_joint(system%moved, contacts%joint(j), contacts%place(j), gap)
          if (.not. contacts%remember) call stay_inside(contacts%joint(j), gap)
          contacts%gap(:, j) = gap
          contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
@@ -125,10 +126,11 @@ contains
                n = n + 1
                list(n)%contact = joint%contact(k)
                list(n)%joint = j
+               list(n)%block = joint%block
                list(n)%place = k
                list(n)%force = [force(k), force(3)*joint%contact(k)%share]
                if (sum(force(1:2)) > 0.0_wp) list(n)%force(2) = force(3)*force(k)/sum(force(1:2))
-               list(n)%slip = slip_at(system, system%moved, joint%contact(k)) &
+               list(n)%slip = slip_at(system%moved, joint%contact(k)) &
                   & - contacts%past_slip(j)
                list(n)%stiffness = contacts%springs%stiffness(j)
                list(n)%tension = contacts%springs%shift(k, j)
@@ -136,7 +138,8 @@ contains
             end do
          end associate
       end do
-      allocate (key, source=contact_keys(system, list%contact))
+      allocate (key, source=contact_key(list%contact%vertex, list%contact%edge, &
+         & size(system%vertex, 2)))
       allocate (order, source=rising_order(key))
       allocate (past(n))
       past = list(order)
@@ -157,8 +160,8 @@ contains
       real(wp) :: gap(3), apart(2), length
       integer :: k
 
-      call lock_joint(system, system%moved, joint)
-      call place_joint(system, system%moved, joint, place, gap)
+      call lock_joint(system%moved, joint)
+      call place_joint(system%moved, joint, place, gap)
       do k = 1, joint%n_contact
          if (source(k) == 0) then
             ! what begins inside, as a corner that meets a corner does, is not pushed out
@@ -166,7 +169,7 @@ contains
             cycle
          end if
          associate (contact => joint%contact(k))
-            length = edge_size(system, system%moved, contact)
+            length = edge_size(system%moved, contact)
             contact%lock = contact%lock - past(source(k))%slip/length
             contact%closed_at = past(source(k))%contact%closed_at
             if (in_time) contact%closed_at = max(0.0_wp, contact%closed_at)
@@ -176,7 +179,7 @@ contains
          apart = max(gap(1:2), 0.0_wp) + closeness*joint%length
          joint%contact%share = apart([2, 1])/sum(apart)
       end if
-      call place_joint(system, system%moved, joint, place, gap)
+      call place_joint(system%moved, joint, place, gap)
    end subroutine take_over_slip
 
    !> Let the shear force stay the same where the stiffness does not
@@ -192,7 +195,7 @@ contains
          if (source(k) == 0) cycle
          associate (contact => joint%contact(k), old => past(source(k)))
             contact%lock = contact%lock + old%slip*(1.0_wp - old%stiffness/stiffness) &
-               & /edge_size(system, system%moved, contact)
+               & /edge_size(system%moved, contact)
          end associate
       end do
    end subroutine keep_shear
@@ -212,8 +215,7 @@ contains
    end subroutine stay_inside
 
    !> Let a joint have no slip where it is
-   pure subroutine lock_joint(system, vertex, joint)
-      type(block_system_t), intent(in) :: system
+   pure subroutine lock_joint(vertex, joint)
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(joint_t), intent(inout) :: joint
       integer :: k
@@ -221,19 +223,17 @@ contains
       do k = 1, joint%n_contact
          associate (c => joint%contact(k))
             c%lock = 0.0_wp
-            c%lock = slip_at(system, vertex, c)/edge_size(system, vertex, c)
+            c%lock = slip_at(vertex, c)/edge_size(vertex, c)
          end associate
       end do
    end subroutine lock_joint
 
    !> Length of a contact's edge [m]
-   pure real(wp) function edge_size(system, vertex, contact)
-      type(block_system_t), intent(in) :: system
+   pure real(wp) function edge_size(vertex, contact)
       real(wp), intent(in) :: vertex(:, :)
       type(contact_t), intent(in) :: contact
 
-      edge_size = norm2(vertex(:, vertex_number(system, contact%edge_block, contact%edge + 1)) &
-         & - vertex(:, vertex_number(system, contact%edge_block, contact%edge)))
+      edge_size = norm2(vertex(:, contact%edge_end) - vertex(:, contact%edge))
    end function edge_size
 
    !> Forces, strength and direction of sliding of the contacts that go on
@@ -275,20 +275,6 @@ contains
       end associate
    end subroutine guess_face
 
-   !> Keys of contacts
-   pure function contact_keys(system, contact) result(key)
-      type(block_system_t), intent(in) :: system
-      type(contact_t), intent(in) :: contact(:)  !! The contacts: (n)
-      integer(int64) :: key(size(contact))       !! Their keys: (n)
-      integer :: i
-
-      do i = 1, size(contact)
-         key(i) = contact_key(vertex_number(system, contact(i)%vertex_block, contact(i)%vertex), &
-            & vertex_number(system, contact(i)%edge_block, contact(i)%edge), &
-            & size(system%vertex, 2))
-      end do
-   end function contact_keys
-
    !> Find for each contact the one of the step before that it goes on: the same corner and edge,
    !> or else the nearest of the same two blocks
    pure subroutine match_contacts(system, joint, reach, past, source)
@@ -303,24 +289,25 @@ contains
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k
 
-      past_key = contact_keys(system, past%contact)
+      past_key = contact_key(past%contact%vertex, past%contact%edge, size(system%vertex, 2))
       source = 0
       do j = 1, size(joint)
-         key = contact_keys(system, joint(j)%contact)
+         key = contact_key(joint(j)%contact%vertex, joint(j)%contact%edge, size(system%vertex, 2))
          do k = 1, joint(j)%n_contact
             source(k, j) = same_contact(past, past_key, key(k))
             if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
          end do
       end do
-      past_key = pair_keys(past%contact, size(system%area))
+      do k = 1, size(past)
+         past_key(k) = pair_key(past(k)%block, size(system%area))
+      end do
       order = rising_order(past_key)
       past_key = past_key(order)
       do j = 1, size(joint)
-         key = pair_keys(joint(j)%contact, size(system%area))
          do k = 1, joint(j)%n_contact
             if (source(k, j) > 0) cycle
             source(k, j) = next_contact(system, past, order, past_key, joint(j)%contact(k), &
-               & key(k), sum(reach(joint(j)%block)))
+               & pair_key(joint(j)%block, size(system%area)), sum(reach(joint(j)%block)))
             if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
          end do
       end do
@@ -352,33 +339,30 @@ contains
       type(contact_t), intent(in) :: contact
       integer(int64), intent(in) :: pair          !! Key of its blocks
       real(wp), intent(in) :: reach               !! How far away it may lie [m]
-      real(wp) :: least, distance, here(2), there(2)
+      real(wp) :: least, distance
       integer :: m
 
       next_contact = 0
       least = reach
-      here = system%moved(:, vertex_number(system, contact%vertex_block, contact%vertex))
       do m = place_in(past_pair, pair), size(past)
          if (past_pair(m) /= pair) exit
          associate (old => past(order(m)))
             if (old%passed_on .or. .not. old%force(1) + old%tension > 0.0_wp) cycle
-            there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
-               & old%contact%vertex))
+            distance = norm2(system%moved(:, old%contact%vertex) &
+               & - system%moved(:, contact%vertex))
          end associate
-         distance = norm2(there - here)
          if (distance > least) cycle
          least = distance
          next_contact = order(m)
       end do
    end function next_contact
 
-   !> Numbers that tell pairs of blocks apart
-   elemental integer(int64) function pair_keys(contact, n_block) result(key)
-      type(contact_t), intent(in) :: contact  !! A contact of the pair
-      integer, intent(in) :: n_block          !! Number of all blocks
+   !> Number that tells pairs of blocks apart
+   pure integer(int64) function pair_key(block, n_block)
+      integer, intent(in) :: block(2)  !! The pair, in either order
+      integer, intent(in) :: n_block   !! Number of all blocks
 
-      key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
-         & + int(max(contact%vertex_block, contact%edge_block), int64)
-   end function pair_keys
+      pair_key = int(minval(block), int64)*int(n_block + 1, int64) + int(maxval(block), int64)
+   end function pair_key
 
 end module dda_contact_transfer

@@ -16,16 +16,14 @@ module dda_contact_types
    private
 
    public :: contact_t, joint_t, joint_place_t, edge_to_edge_joint, place_joint, same_joint, slip_at
-   public :: vertex_number, joint_springs_t, rows_of_joint, new_joint_springs, place_rows
+   public :: joint_springs_t, rows_of_joint, new_joint_springs, place_rows
    public :: mohr_coulomb, unbounded
 
    !> A vertex of one block against an edge of another
    type :: contact_t
-      integer :: vertex_block = 0  !! Block that owns the vertex
-      integer :: vertex = 0        !! Number of the vertex within its block
-      integer :: edge_block = 0    !! Block that owns the edge
-      !> Number of the edge within its block; edge k runs from vertex k to vertex k + 1
-      integer :: edge = 0
+      integer :: vertex = 0        !! Number of the vertex among all vertices
+      integer :: edge = 0          !! Number of the edge, that of the vertex it begins at
+      integer :: edge_end = 0      !! Vertex that it ends at
       integer :: edge_side = 1     !! Which of the joint's two blocks owns the edge
       real(wp) :: length = 0.0_wp  !! Part of the joint's length that the contact stands for [m]
       !> Part of the joint's shear force that is felt here; the parts of a joint make one
@@ -116,11 +114,8 @@ contains
       type(joint_t), intent(in) :: a  !! One joint
       type(joint_t), intent(in) :: b
 
-      same_joint = all(a%block == b%block) .and. a%n_contact == b%n_contact &
-         & .and. all(a%contact%vertex_block == b%contact%vertex_block &
-         & .and. a%contact%vertex == b%contact%vertex &
-         & .and. a%contact%edge_block == b%contact%edge_block &
-         & .and. a%contact%edge == b%contact%edge)
+      same_joint = all(a%block == b%block) .and. a%n_contact == b%n_contact .and. all( &
+         & a%contact%vertex == b%contact%vertex .and. a%contact%edge == b%contact%edge)
    end function same_joint
 
    !> Joint of two edges that coincide and run against each other: both vertices of the second
@@ -130,26 +125,24 @@ contains
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
       integer, intent(in) :: law  !! Number of its law
-      real(wp) :: start(2), finish(2)
+      integer :: edge(2), k
 
-      start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
-      finish = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2) + 1))
+      edge = [(vertex_number(system, edge_pair(1), edge_pair(2) + k), k=0, 1)]
       joint%block = edge_pair([1, 3])
       joint%law = law
-      joint%length = norm2(finish - start)
+      joint%length = norm2(system%vertex(:, edge(2)) - system%vertex(:, edge(1)))
       joint%n_contact = 2
-      joint%contact%vertex_block = edge_pair(3)
-      joint%contact%vertex = edge_pair(4) + [1, 0]
-      joint%contact%edge_block = edge_pair(1)
-      joint%contact%edge = edge_pair(2)
+      joint%contact%vertex = &
+         & [(vertex_number(system, edge_pair(3), edge_pair(4) + k), k=1, 0, -1)]
+      joint%contact%edge = edge(1)
+      joint%contact%edge_end = edge(2)
       joint%contact%length = joint%length/2.0_wp
       joint%contact%lock = [0.0_wp, 1.0_wp]
    end function edge_to_edge_joint
 
    !> Where a joint is, and how far it is open
-   pure subroutine place_joint(system, vertex, joint, place, gap)
-      type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: vertex(:, :)  !! Their corners: (2, n_vertex) [m]
+   pure subroutine place_joint(vertex, joint, place, gap)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners of the blocks: (2, n_vertex) [m]
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(out) :: place
       !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
@@ -161,15 +154,15 @@ contains
       gap = 0.0_wp
       do k = 1, joint%n_contact
          associate (c => joint%contact(k), point => place%point(:, k), across => place%across(:, k))
-            start = vertex(:, vertex_number(system, c%edge_block, c%edge))
-            finish = vertex(:, vertex_number(system, c%edge_block, c%edge + 1))
+            start = vertex(:, c%edge)
+            finish = vertex(:, c%edge_end)
             tangent = along(start, finish)
             across = right_normal(tangent)
-            point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
+            point = vertex(:, c%vertex)
             gap(k) = dot_product(across, point - start)
             place%foot(:, k) = point - gap(k)*across
             gap(k) = gap(k) - c%closed_at
-            slip = slip_at(system, vertex, c)
+            slip = slip_at(vertex, c)
             gap(3) = gap(3) + c%share*slip
             ! both blocks feel the shear force on the line of the edge: off it, an open joint would
             ! turn them
@@ -190,16 +183,13 @@ contains
    end subroutine place_joint
 
    !> How far the joint's second block has slipped at a contact, along the edges of the first
-   pure real(wp) function slip_at(system, vertex, contact)
-      type(block_system_t), intent(in) :: system
+   pure real(wp) function slip_at(vertex, contact)
       real(wp), intent(in) :: vertex(:, :)
       type(contact_t), intent(in) :: contact
       real(wp) :: edge(2), way(2)
 
-      associate (start => vertex(:, vertex_number(system, contact%edge_block, contact%edge)))
-         edge = vertex(:, vertex_number(system, contact%edge_block, contact%edge + 1)) - start
-         way = vertex(:, vertex_number(system, contact%vertex_block, contact%vertex)) - start
-      end associate
+      edge = vertex(:, contact%edge_end) - vertex(:, contact%edge)
+      way = vertex(:, contact%vertex) - vertex(:, contact%edge)
       slip_at = dot_product(edge, way - contact%lock*edge)/norm2(edge)
    end function slip_at
 

@@ -92,7 +92,7 @@ contains
       if (allocated(contacts%place)) then
          place = contacts%place(j)
       else
-         call place_joint(system, system%vertex, contacts%joint(j), place, gap)
+         call place_joint(system%vertex, contacts%joint(j), place, gap)
       end if
    end function joint_place
 
@@ -254,7 +254,7 @@ contains
       integer :: j
 
       do j = 1, size(contacts%joint)
-         call place_joint(system, system%moved, contacts%joint(j), contacts%place(j), gap)
+         call place_joint(system%moved, contacts%joint(j), contacts%place(j), gap)
          contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
       end do
       before = contacts%springs

@@ -129,8 +129,8 @@ contains
       do k = 1, 2
          view = view_corner(near%outline, near%vertex, corner(k), edge(k), reach)
          if (abs(view%gap) > reach) return
-         joint%contact(k) = new_contact(near, corner(k), edge(k), &
-            & merge(1, 2, edge(k) == pair(1)), length/2.0_wp)
+         joint%contact(k) = contact_t(corner(k), edge(k), near%outline%next(edge(k)), &
+            & edge_side=merge(1, 2, edge(k) == pair(1)), length=length/2.0_wp)
          key(k) = contact_key(corner(k), edge(k), size(near%vertex, 2))
       end do
       call add_key(taken, key(1))
@@ -284,7 +284,7 @@ contains
       integer :: pair(2)
 
       joint%n_contact = 1
-      joint%contact(1) = new_contact(near, corner, edge, edge_side, 0.0_wp)
+      joint%contact(1) = contact_t(corner, edge, near%outline%next(edge), edge_side=edge_side)
       joint%contact(1)%share = 1.0_wp
       joint%contact(2) = joint%contact(1)
       joint%contact(2)%share = 0.0_wp
@@ -292,22 +292,6 @@ contains
       pair = merge([edge, corner], [corner, edge], edge_side == 1)
       call add_joint(near, pair, joint, list)
    end subroutine add_single
-
-   !> A contact of a corner and an edge
-   pure type(contact_t) function new_contact(near, corner, edge, edge_side, length) result(contact)
-      type(neighbourhood_t), intent(in) :: near
-      integer, intent(in) :: corner, edge, edge_side
-      real(wp), intent(in) :: length  !! Part of the joint's length that the contact stands for [m]
-
-      associate (block => near%outline%block, first => near%first_vertex)
-         contact%vertex_block = block(corner)
-         contact%vertex = corner - first(block(corner)) + 1
-         contact%edge_block = block(edge)
-         contact%edge = edge - first(block(edge)) + 1
-      end associate
-      contact%edge_side = edge_side
-      contact%length = length
-   end function new_contact
 
    !> Put a joint into the list
    pure subroutine add_joint(near, pair, joint, list)

@@ -89,7 +89,7 @@ contains
          step%end_gap = 0.0_wp*run%contacts%gap
          error = 0.0_wp
          do j = 1, size(step%place)
-            call place_joint(step%after, step%after%moved, run%contacts%joint(j), &
+            call place_joint(step%after%moved, run%contacts%joint(j), &
                & step%place(j), step%end_gap(:, j))
             do k = 1, run%contacts%joint(j)%n_contact
                told = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
