@@ -13,7 +13,7 @@ module dda_limit_load
    use dda_joint_rays, only : bound_rays, forces_of_rays, scale_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
-      & check_velocities, crushing_power, flow_margin, stopping_factor
+      & crushing_power, flow_margin, stopping_factor
    use dda_limit_decision, only : crush_tolerance, decide_load, drives, go_to_load, &
       & keep_velocities, load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
@@ -66,14 +66,8 @@ module dda_limit_load
       real(wp), allocatable :: force(:, :)
       !> Velocities of the mechanism, the largest one: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
-      !> Largest force that is left on a block, over the largest load [1]
-      real(wp) :: imbalance = 0.0_wp
       !> Largest violation of the law of a joint by the forces, over the largest load [1]
       real(wp) :: cone_violation = 0.0_wp
-      !> Largest violation of the flow rule by the velocities, over the largest of them [1]
-      real(wp) :: flow_violation = 0.0_wp
-      !> Power on the mechanism of the live load; without dead equilibrium, of the dead load [W/m]
-      real(wp) :: power = 0.0_wp
       !> Factorisations
       integer :: n_factorisation = 0
    end type limit_load_t
@@ -315,37 +309,36 @@ contains
       unit = unit_of_force(live)
    end subroutine try_live_load_alone
 
-   !> Factors and figures from forces and velocities alone
+   !> Factors from forces and velocities alone
    pure subroutine certify(graph, dead, live, limit)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :), live(:, :)
       type(limit_load_t), intent(inout) :: limit  !! State, forces and velocities in, the rest out
-      real(wp) :: rounding
+      real(wp) :: imbalance, power, rounding
 
       select case (limit%state)
       case (limit_state%no_dead_equilibrium)
          limit%force = 0.0_wp
          limit%lower = -no_limit
          limit%upper = -no_limit
-         call check_velocities(graph, dead, limit%velocity, limit%flow_violation, limit%power)
       case (limit_state%unbounded)
          limit%velocity = 0.0_wp
          limit%lower = no_limit
          limit%upper = no_limit
-         call check_forces(graph, live, limit%force, limit%imbalance, limit%cone_violation)
+         call check_forces(graph, live, limit%force, imbalance, limit%cone_violation)
       case default
          limit%lower = carried_factor(graph, dead, live, limit%force)
          limit%upper = stopping_factor(dead, live, limit%velocity)
          if (crushes(graph)) limit%upper = limit%upper + crushing_power(graph, limit%velocity) &
             & /max(sum(live*limit%velocity), tiny(1.0_wp))
-         call check_forces(graph, dead + limit%lower*live, limit%force, limit%imbalance, &
+         call check_forces(graph, dead + limit%lower*live, limit%force, imbalance, &
             & limit%cone_violation)
-         call check_velocities(graph, live, limit%velocity, limit%flow_violation, limit%power)
          if (limit%state /= limit_state%found) return
          ! what rounding leaves of the proofs moves the factors apart
+         power = sum(live*limit%velocity)
          limit%lower = limit%lower - balance_margin(graph, dead + limit%lower*live, limit%force, &
-            & limit%velocity)/limit%power
-         limit%upper = limit%upper + flow_margin(graph, limit%force, limit%velocity)/limit%power
+            & limit%velocity)/power
+         limit%upper = limit%upper + flow_margin(graph, limit%force, limit%velocity)/power
          rounding = 8.0_wp*spacing(max(abs(limit%lower), abs(limit%upper)))
          limit%lower = limit%lower - rounding
          ! the dead load stands, but for rounding

@@ -1,8 +1,8 @@
 !> Limits of joint graphs that are read from the standard input, and decisions around them
 !>
 !> A graph is what Assembly.text of tests/bench/assembly.py writes. A line of output is its name,
-!> blocks, joints, state, lower and upper factor, imbalance, cone violation, flow violation,
-!> factorisations, milliseconds, then for each share of the limit state and factorisations of the
+!> blocks, joints, state, lower and upper factor, cone violation, factorisations,
+!> milliseconds, then for each share of the limit state and factorisations of the
 !> decision, the worst figure of what proves them, and the milliseconds of the slowest.
 program limit_of_graphs
    use, intrinsic :: iso_fortran_env, only : int64, iostat_end
@@ -85,9 +85,9 @@ contains
          state(i) = decision%state
          count(i) = decision%n_factorisation
       end do
-      print '(a, 3i5, 2es25.15e3, 3es9.1, i5, f10.3, 9(i3, i4), es9.1, f10.3)', name, &
+      print '(a, 3i5, 2es25.15e3, es9.1, i5, f10.3, 9(i3, i4), es9.1, f10.3)', name, &
          & graph%n_block, size(graph%kind), limit%state, limit%lower, limit%upper, &
-         & limit%imbalance, limit%cone_violation, limit%flow_violation, limit%n_factorisation, &
+         & limit%cone_violation, limit%n_factorisation, &
          & took, (state(i), count(i), i=1, size(share)), worst, slowest
    end subroutine report
 end program limit_of_graphs
