@@ -7,7 +7,7 @@
 submodule (dda_loading_path) dda_coulomb_start
    use dda_coulomb_equations, only : path_damping, solve_equations, use_faces
    use dda_coulomb_interior, only : coulomb_interior_t, enough, interior_motion, sharp
-   use dda_coulomb_law, only : apply_law, force_faces, unloaded_state
+   use dda_coulomb_law, only : apply_law, force_faces, imbalance, unloaded_state
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : small
    use dda_load_jump, only : jump_to_balance

@@ -18,7 +18,7 @@ module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, set_force_unit, take_coulomb_joints
-   use dda_coulomb_law, only : coulomb_state_t, imbalance, unloaded_state
+   use dda_coulomb_law, only : coulomb_state_t, unloaded_state
    use dda_event_rates, only : find_rates, rates_t, undamp_rates
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
@@ -83,8 +83,6 @@ module dda_loading_path
       real(wp) :: largest_jump = 0.0_wp
       !> Factorisations
       integer :: n_factorisation = 0
-      !> What the joint forces leave of the load at the end, by the mean weight of a block
-      real(wp) :: imbalance = 0.0_wp
       !> Velocities of the collapse, the largest 1: (3, n_block) [1, 1, 1/m]; without
       !> entries if there is none
       real(wp), allocatable :: mechanism(:, :)
@@ -355,20 +353,17 @@ contains
       if (allocated(jump%mechanism)) result%mechanism = jump%mechanism
    end subroutine note_fall
 
-   !> Counts, the last imbalance, and SI units
+   !> Counts and SI units
    pure subroutine finish(path, state, result)
       type(loading_path_t), intent(in) :: path
       type(coulomb_state_t), intent(inout) :: state
       type(path_result_t), intent(inout) :: result
-      real(wp) :: rest(size(state%load, 1), size(state%load, 2))
 
-      call imbalance(path%joints, state%load, state%force, rest)
-      result%imbalance = maxval(abs(rest))
       result%n_factorisation = path%equations%base%n_factorisation
       if (result%end == path_end%undecided .and. result%n_factorisation &
          & >= path%most_factorisations) result%reason = path_reason%too_costly
       result%largest_jump = result%largest_jump*path%joints%motion_unit
-      if (.not. allocated(result%mechanism)) allocate (result%mechanism(size(rest, 1), 0))
+      if (.not. allocated(result%mechanism)) allocate (result%mechanism(size(state%load, 1), 0))
       if (size(result%mechanism) > 0) then
          result%mechanism = in_metres(path%joints, result%mechanism)
          result%mechanism = result%mechanism/maxval(abs(result%mechanism(:2, :)))
