@@ -13,8 +13,9 @@ module dda_case_rows
       & arch_thickness_ratio, joint_friction_deg, output_condition, scene_kind, vehicle_position
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
+   use dda_settings, only : verdict
    use dda_text, only : to_text
-   use dda_verdict, only : outcome_t, verdict
+   use dda_verdict, only : outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
    private

@@ -14,7 +14,7 @@ module dda_compute_case
    use dda_mechanism, only : follow_collapse
    use dda_scene, only : build_once, move_scene, scene_t, searched_load
    use dda_search, only : decision_t
-   use dda_verdict, only : verdict
+   use dda_settings, only : verdict
    implicit none
    private
 

@@ -10,9 +10,8 @@ module dda_force_rows
    use dda_load_stations, only : last_history_time
    use dda_reactions, only : forces_of_blocks, supports_of
    use dda_search, only : proof_t
-   use dda_settings, only : settings_t
+   use dda_settings, only : settings_t, verdict
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
-   use dda_verdict, only : verdict
    use dda_write_results, only : reaction_lines
    implicit none
    private

@@ -11,8 +11,8 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_key_names, only : scene_kind
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law, limerick_model_t, limerick_state
-   use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
-      & next_step, run_limerick
+   use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, next_step, &
+      & run_limerick
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
@@ -68,9 +68,7 @@ contains
          told%steps = outcome%steps
          told%passes = outcome%passes
          told%factorisations = outcome%passes
-         if (outcome%verdict == limerick_verdict%stable) told%verdict = verdict%stable
-         if (outcome%verdict == limerick_verdict%collapsed) told%verdict = verdict%collapsed
-         if (outcome%verdict == limerick_verdict%completed) told%verdict = verdict%completed
+         told%verdict = outcome%verdict
          if (allocated(outcome%reason)) told%reason = outcome%reason
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate

@@ -7,28 +7,17 @@ module dda_limerick_run
    use dda_limerick_model, only : limerick_model_t, limerick_state, loads_end, new_blocks, new_march
    use dda_limerick_step, only : advance_limerick, limerick_run_t
    use dda_material, only : friction_coefficient
+   use dda_settings, only : verdict
    implicit none
    private
 
-   public :: limerick_outcome_t, limerick_verdict, limerick_verdict_enum
-   public :: begin_outcome, begin_run, next_step, run_limerick
-
-   !> How a run can end
-   type :: limerick_verdict_enum
-      integer :: undecided = 0  !! Not known
-      !> At rest, or still below the collapse displacement when the steps are spent
-      integer :: stable = 1
-      integer :: collapsed = 2  !! A vertex moved by the collapse displacement
-      integer :: completed = 3  !! A dynamic run that reached its last step
-   end type limerick_verdict_enum
-
-   !> Names of the verdicts
-   type(limerick_verdict_enum), parameter :: limerick_verdict = limerick_verdict_enum()
+   public :: begin_outcome, begin_run, limerick_outcome_t, next_step, run_limerick
 
    !> How a run ended
    type :: limerick_outcome_t
-      !> One of limerick_verdict
-      integer :: verdict = limerick_verdict%undecided
+      !> One of verdict; stable is what rests, or is still below the collapse displacement when the
+      !> steps are spent, collapsed what has moved by it
+      integer :: verdict = 0
       !> Why the verdict is undecided; unallocated otherwise
       character(len=:), allocatable :: reason
       !> Whether the steps were spent while something still moved
@@ -127,7 +116,7 @@ contains
       else if (allocated(outcome%reason)) then
          continue
       else if (model%constants%dynamic) then
-         outcome%verdict = limerick_verdict%completed
+         outcome%verdict = verdict%completed
       else
          call spend_steps(run%march%time, end, outcome)
       end if
@@ -138,14 +127,14 @@ contains
       outcome%displacement = sqrt(maxval(sum((run%blocks%vertex - model%vertex)**2, dim=1)))
       if (model%constants%dynamic) return
       if (outcome%displacement > model%constants%collapse_displacement) &
-         & outcome%verdict = limerick_verdict%collapsed
+         & outcome%verdict = verdict%collapsed
       if (mod(run%march%steps, rest_steps) == 0 .and. .not. run%march%time < end) then
          rests = abs(outcome%displacement - outcome%displacement_before) &
             & < rest_share*run%march%half_size
-         if (rests) outcome%verdict = limerick_verdict%stable
+         if (rests) outcome%verdict = verdict%stable
          outcome%displacement_before = outcome%displacement
       end if
-      ended = outcome%verdict /= limerick_verdict%undecided
+      ended = outcome%verdict /= verdict%undecided
    end subroutine next_step
 
    !> The phase that turns gravity on: steps from rest, in joints that cannot slide, until contact
@@ -226,7 +215,7 @@ contains
          outcome%reason = "step limit reached before the last record of a load; raise "// &
             & "analysis%steps"
       else
-         outcome%verdict = limerick_verdict%stable
+         outcome%verdict = verdict%stable
          outcome%still_moving = .true.
       end if
    end subroutine spend_steps

@@ -1,4 +1,4 @@
-!> Settings of a run
+!> Settings of a run, and how it can end
 module dda_settings
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_kinds, only : wp
@@ -6,7 +6,7 @@ module dda_settings
    private
 
    public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
-   public :: factor_of, full_push
+   public :: factor_of, full_push, verdict
 
    !> How a sliding joint moves
    type :: flow_rule_enum
@@ -18,6 +18,18 @@ module dda_settings
 
    !> Names of the flow rules
    type(flow_rule_enum), parameter :: flow_rule = flow_rule_enum()
+
+   !> Answers of an analysis
+   type :: verdict_enum
+      integer :: undecided = 0  !! Not known
+      integer :: stable = 1     !! At rest under the full load
+      integer :: collapsed = 2  !! A mechanism that gains speed without end
+      integer :: completed = 3  !! A dynamic run that reached its end
+      integer :: found = 4      !! A search that closed its bracket
+   end type verdict_enum
+
+   !> Names of the verdicts
+   type(verdict_enum), parameter :: verdict = verdict_enum()
 
    !> Settings of an analysis; never changed while it runs
    type :: settings_t

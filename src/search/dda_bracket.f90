@@ -11,7 +11,7 @@ module dda_bracket
    use dda_kinds, only : wp
    use dda_scene, only : family_t, link_once, scene_t
    use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
-   use dda_verdict, only : verdict
+   use dda_settings, only : verdict
    implicit none
    private
 

@@ -9,8 +9,7 @@ module dda_chain_decision
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
    use dda_search, only : decision_t
-   use dda_settings, only : flow_rule, settings_t
-   use dda_verdict, only : verdict
+   use dda_settings, only : flow_rule, settings_t, verdict
    implicit none
    private
 

@@ -10,7 +10,7 @@ module dda_critical
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph
    use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
-   use dda_verdict, only : verdict
+   use dda_settings, only : verdict
    implicit none
    private
 

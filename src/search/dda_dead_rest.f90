@@ -19,8 +19,8 @@ module dda_dead_rest
    use dda_path_verdict, only : follow_stations
    use dda_scene, only : family_t, scene_t
    use dda_scene_graph, only : graph_verdict_t, scene_graph
-   use dda_settings, only : flow_rule, settings_t
-   use dda_verdict, only : outcome_t, verdict
+   use dda_settings, only : flow_rule, settings_t, verdict
+   use dda_verdict, only : outcome_t
    implicit none
    private
 

@@ -12,9 +12,9 @@ submodule (dda_decision) dda_decide
    use dda_material, only : weakens
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph
-   use dda_settings, only : flow_rule
+   use dda_settings, only : flow_rule, verdict
    use dda_step_context, only : run_t
-   use dda_verdict, only : outcome_t, verdict
+   use dda_verdict, only : outcome_t
    implicit none
 
    !> Steps that the static beginning of a dynamic run may take, at the least

@@ -8,9 +8,8 @@ module dda_mechanism
    use dda_scene, only : scene_t
    use dda_scene_graph, only : decides_as_graph
    use dda_search, only : decision_t
-   use dda_settings, only : flow_rule
+   use dda_settings, only : flow_rule, verdict
    use dda_sort, only : sorted_order
-   use dda_verdict, only : verdict
    implicit none
    private
 

@@ -7,7 +7,8 @@ module dda_search
    use dda_kinds, only : wp
    use dda_limit_decision, only : load_decision_t
    use dda_scene, only : link_t, scene_t
-   use dda_verdict, only : outcome_t, verdict
+   use dda_settings, only : verdict
+   use dda_verdict, only : outcome_t
    implicit none
    private
 

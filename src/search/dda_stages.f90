@@ -14,7 +14,8 @@ submodule (dda_decision) dda_stages
    use dda_joint_graph, only : add_joint_forces, joint_graph_t
    use dda_path_event, only : path_end
    use dda_scene_graph, only : has_limit_analysis, scene_graph
-   use dda_verdict, only : outcome_t, verdict
+   use dda_settings, only : verdict
+   use dda_verdict, only : outcome_t
    implicit none
 
    !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it

@@ -9,12 +9,12 @@ module dda_forward
    use dda_kinds, only : wp
    use dda_outline, only : outline_of
    use dda_reactions, only : keep_reactions
-   use dda_settings, only : settings_t
+   use dda_settings, only : settings_t, verdict
    use dda_step, only : advance
    use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : next_interval
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
-      & outcome_t, verdict
+      & outcome_t
    implicit none
    private
 

@@ -15,12 +15,12 @@ module dda_verdict
    use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_kinds, only : pi, wp
-   use dda_settings, only : settings_t
+   use dda_settings, only : settings_t, verdict
    use dda_step_context, only : march_t, run_t, step_context_t
    implicit none
    private
 
-   public :: has_fallen, has_collapsed, still_moves_away, tests_collapse, verdict
+   public :: has_fallen, has_collapsed, still_moves_away, tests_collapse
    public :: measure_step, judge_verdict, largest_displacement, outcome_t
 
    !> A block that has turned by this angle has fallen [rad]
@@ -30,18 +30,6 @@ module dda_verdict
    real(wp), parameter :: late = 0.9_wp
    !> By how much larger, over what means collapse
    real(wp), parameter :: growth = 0.01_wp
-
-   !> Answers of an analysis
-   type :: verdict_enum
-      integer :: undecided = 0  !! Not known
-      integer :: stable = 1     !! At rest under the full load
-      integer :: collapsed = 2  !! A mechanism that gains speed without end
-      integer :: completed = 3  !! A dynamic run that reached its end
-      integer :: found = 4      !! A search that closed its bracket
-   end type verdict_enum
-
-   !> Names of the verdicts
-   type(verdict_enum), parameter :: verdict = verdict_enum()
 
    !> Free fall over elastic motion in a step that can prove a collapse: a shallow arch with three
    !> hinges yields far more than the same arch without, and looks like a mechanism for a while. The

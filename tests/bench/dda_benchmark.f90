@@ -19,10 +19,9 @@ module dda_benchmark
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, decision_t, search_t
-   use dda_settings, only : settings_t
+   use dda_settings, only : settings_t, verdict
    use dda_step_state, only : equations_t
    use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
-   use dda_verdict, only : verdict
    implicit none
    private
 

@@ -3,8 +3,8 @@ module dda_benchmark_table
    use, intrinsic :: iso_fortran_env, only : compiler_version, output_unit
    use dda_benchmark, only : figures_t
    use dda_kinds, only : wp
+   use dda_settings, only : verdict
    use dda_text, only : to_text
-   use dda_verdict, only : verdict
    implicit none
    private
 

@@ -5,8 +5,8 @@ program drop_pile
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
-   use dda_verdict, only : verdict
    use scene_pile, only : pile_scene, pile_t, record_t, watch_step
+   use dda_settings, only : verdict
    implicit none
    type(pile_t) :: pile
    type(scene_t) :: scene

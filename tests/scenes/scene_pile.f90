@@ -5,9 +5,9 @@ module scene_pile
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_settings, only : flow_rule
+   use dda_settings, only : flow_rule, verdict
    use dda_step_context, only : march_t
-   use dda_verdict, only : outcome_t, verdict
+   use dda_verdict, only : outcome_t
    use random_numbers, only : draw, random_t
    use scene_model, only : add_block, model_t, rectangle, searched_scene, turned
    implicit none
