@@ -7,7 +7,6 @@ module dda_block_rows
    use dda_contacts, only : contacts_t, joint_place
    use dda_deformation, only : displacement_matrix
    use dda_frames, only : frame_t
-   use dda_friction_cone, only : contact_state
    use dda_kinds, only : wp
    use dda_mechanism, only : largest_of, mechanism_of, mechanism_t, role_of_joint, slides
    use dda_scene, only : build_once, scene_t, searched_load
@@ -17,12 +16,22 @@ module dda_block_rows
    implicit none
    private
 
-   public :: contact_states, frame_joint_rows, joint_rows, scale_to_one, tell_blocks
+   public :: contact_state, contact_states, frame_joint_rows, joint_rows, scale_to_one, tell_blocks
    public :: tell_mechanism, tell_mechanism_motion, tell_nearest, tell_roles, tell_total_motion
 
    !> Words for the roles of a joint, by their number: those of the columns state and mechanism
    character(len=14), parameter :: role_word(0:4) = [character(len=14) :: "none", "open", &
       & "sliding", "hinge_intrados", "hinge_extrados"]
+
+   !> Shi's states of a contact
+   type :: contact_state_enum
+      integer :: open = 0     !! Apart: no spring
+      integer :: sliding = 1  !! Closed, at the Coulomb limit: normal spring and friction force
+      integer :: locked = 2   !! Closed and stuck: normal and shear spring
+   end type contact_state_enum
+
+   !> Names of the contact states
+   type(contact_state_enum), parameter :: contact_state = contact_state_enum()
 
    !> Words for the states of a contact, by their number
    character(len=8), parameter :: state_word(0:2) = ["open    ", "sliding ", "locked  "]

@@ -14,7 +14,7 @@ module dda_friction_cone
    private
 
    public :: joint_face_t, cone_t, cone_kind_enum, cone_kind, project, apply_face, is_stuck
-   public :: contact_state, contact_state_enum, shear_bound
+   public :: shear_bound
 
    !> Face of the cone on which the force of a joint lies
    type :: joint_face_t
@@ -42,16 +42,6 @@ module dda_friction_cone
       !> One of `cone_kind`
       integer :: kind = cone_kind%frictional
    end type cone_t
-
-   !> Shi's states of a contact
-   type :: contact_state_enum
-      integer :: open = 0     !! Apart: no spring
-      integer :: sliding = 1  !! Closed, at the Coulomb limit: normal spring and friction force
-      integer :: locked = 2   !! Closed and stuck: normal and shear spring
-   end type contact_state_enum
-
-   !> Names of the contact states
-   type(contact_state_enum), parameter :: contact_state = contact_state_enum()
 
 contains
 
