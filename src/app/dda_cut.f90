@@ -1,9 +1,9 @@
 !> dda cut: lines to blocks
 submodule (dda_verbs) dda_cut
-   use dda_cut_model, only : block_vertices, cut_model_t, cut_reason, cut_remark_t, point_kind
+   use dda_cut_model, only : block_vertices, cut_model_t, cut_reason, cut_remark_t
    use dda_cutting, only : cut_blocks
    use dda_kinds, only : wp
-   use dda_line_model, only : line_model_t
+   use dda_line_model, only : entity_role, line_model_t
    use dda_process, only : exit_status
    use dda_read_limerick, only : read_geometry
    use dda_screen, only : print_line, print_warnings, screen_t
@@ -60,10 +60,10 @@ contains
          call tell(screen, "largest", to_text(cut%area(largest))//", block "//to_text(largest))
       end if
       call tell(screen, "joints", to_text(size(cut%pair))//" pairs of coincident edges")
-      call tell(screen, "points", to_text(count(cut%point%kind == point_kind%fixed))//" fixed, " &
-         & //to_text(count(cut%point%kind == point_kind%load))//" load, " &
-         & //to_text(count(cut%point%kind == point_kind%measured))//" measured")
-      if (model%bolt%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
+      call tell(screen, "points", to_text(count(cut%point%kind == entity_role%fix))//" fixed, " &
+         & //to_text(count(cut%point%kind == entity_role%load))//" load, " &
+         & //to_text(count(cut%point%kind == entity_role%measure))//" measured")
+      if (model%of(entity_role%bolt)%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
          & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
       if (cut%n_removed > 0) call tell(screen, "removed", to_text(cut%n_removed) &
          & //" blocks that hold hole points")

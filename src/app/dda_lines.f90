@@ -3,7 +3,7 @@ submodule (dda_verbs) dda_lines
    use dda_binary_file, only : write_file
    use dda_joint_map, only : joint_map_t
    use dda_kinds, only : wp
-   use dda_line_model, only : entities_t, line_model_t
+   use dda_line_model, only : entities_t, entity_role, line_model_t, role_name
    use dda_map_lines, only : map_lines
    use dda_process, only : deck_stem, exit_status
    use dda_read_joint_map, only : read_joint_map
@@ -44,7 +44,8 @@ contains
       call print_line(command%screen, name//": "//to_text(model%n_boundary)//" boundary lines, " &
          & //to_text(model%line%n - model%n_boundary)//" joints of " &
          & //to_text(length)//" m in all, " &
-         & //to_text(size(map%opening))//" openings, "//to_text(model%bolt%n)//" bolts")
+         & //to_text(size(map%opening))//" openings, " &
+         & //to_text(model%of(entity_role%bolt)%n)//" bolts")
       call print_line(command%screen, "   "//file//" is for 'dda cut', "//table_name(file) &
          & //" for pictures")
    end procedure draw_map
@@ -65,16 +66,14 @@ contains
       type(line_model_t), intent(in) :: model
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
+      integer :: k
 
       call open_table(file, "role,x1,y1,x2,y2,material,row", table, error)
       call write_rows(table, "boundary", model%line, 1, model%n_boundary, error)
       call write_rows(table, "joint", model%line, model%n_boundary + 1, model%line%n, error)
-      call write_rows(table, "material", model%material_line, 1, model%material_line%n, error)
-      call write_rows(table, "fix", model%fixed, 1, model%fixed%n, error)
-      call write_rows(table, "load", model%load, 1, model%load%n, error)
-      call write_rows(table, "measure", model%measured, 1, model%measured%n, error)
-      call write_rows(table, "hole", model%hole, 1, model%hole%n, error)
-      call write_rows(table, "bolt", model%bolt, 1, model%bolt%n, error)
+      do k = entity_role%material, entity_role%bolt
+         call write_rows(table, trim(role_name(k)), model%of(k), 1, model%of(k)%n, error)
+      end do
       call close_table(table, error)
    end subroutine write_table
 

@@ -4,8 +4,8 @@ module dda_plain_files
    use dda_error, only : error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : analysis_material_t, limerick_analysis_t, limerick_joint_t
-   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
-      & new_line_model
+   use dda_line_model, only : add_bolt, add_entity, entities_t, entity_name, entity_role, &
+      & line_model_t
    use dda_text, only : to_text
    use dda_word_list, only : check_number, largest_coordinate, largest_material, split_words, &
       & take_number, take_property, take_whole, take_word_numbers, this_row, warn_of_rest, &
@@ -14,12 +14,11 @@ module dda_plain_files
    private
 
    public :: read_plain_geometry, read_plain_analysis, check_material, check_joint, check_steps
-   public :: largest_value
+   public :: largest_value, plain_order
 
-   !> What a file announces the numbers of
-   character(len=*), parameter :: announced(8) = [character(len=45) :: "lines", &
-      & "boundary lines (counted among the lines)", "material lines", "bolts", "fixed points", &
-      & "load points", "measured points", "hole points"]
+   !> Roles of what a file has after its lines, in its order
+   integer, parameter :: plain_order(6) = [entity_role%material, entity_role%bolt, &
+      & entity_role%fix, entity_role%load, entity_role%measure, entity_role%hole]
    !> Most things of a kind
    integer, parameter :: most_things = 100000000
    !> Largest magnitude of any number of an analysis
@@ -39,28 +38,33 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
       type(word_list_t) :: words
-      integer :: k, n(size(announced))
+      integer :: k, n(0:size(plain_order))
 
-      call new_line_model(model)
       model%file = file
       call split_words(text, file, 1, words)
       call take_number(words, "the edge-node distance ratio e00", model%edge_node_ratio, error)
       call check_number(model%edge_node_ratio >= 0.0_wp .and. model%edge_node_ratio <= 0.5_wp, &
          & "the edge-node distance ratio e00 must be from 0 to 0.5", model%edge_node_ratio, file, &
          & words%row(1), error)
-      do k = 1, size(n)
-         call take_whole(words, "the number of "//trim(announced(k)), 0, &
-            & merge(n(1), most_things, k == 2), n(k), error)
+      call take_whole(words, "the number of lines", 0, most_things, n(0), error)
+      call take_whole(words, "the number of boundary lines (counted among the lines)", 0, n(0), &
+         & model%n_boundary, error)
+      do k = 1, size(plain_order)
+         call take_whole(words, "the number of "//trim(entity_name(plain_order(k)))//"s", 0, &
+            & most_things, n(k), error)
       end do
       if (allocated(error)) return
-      model%n_boundary = n(2)
-      call read_records(words, "line", n(1), 4, .true., model%line, error)
-      call read_records(words, "material line", n(3), 4, .true., model%material_line, error)
-      call read_bolts(words, n(4), model, error)
-      call read_records(words, "fixed point", n(5), 4, .false., model%fixed, error)
-      call read_records(words, "load point", n(6), 2, .false., model%load, error)
-      call read_records(words, "measured point", n(7), 2, .false., model%measured, error)
-      call read_records(words, "hole point", n(8), 2, .false., model%hole, error)
+      call read_records(words, "line", n(0), 4, .true., model%line, error)
+      do k = 1, size(plain_order)
+         associate (role => plain_order(k))
+            if (role == entity_role%bolt) then
+               call read_bolts(words, n(k), model, error)
+            else
+               call read_records(words, trim(entity_name(role)), n(k), merge(2, 4, &
+                  & role > entity_role%fix), role == entity_role%material, model%of(role), error)
+            end if
+         end associate
+      end do
       if (.not. allocated(error)) call warn_of_rest(words, "last record", warnings)
    end subroutine read_plain_geometry
 
@@ -88,7 +92,7 @@ contains
       end do
    end subroutine read_bolts
 
-   !> Read the records of one kind
+   !> Read the records of one role
    pure subroutine read_records(words, what, n, n_number, has_material, entities, error)
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what  !! What a record is called
@@ -101,7 +105,6 @@ contains
       real(wp) :: place(4)
       integer :: i, row, material
 
-      call new_entities(entities, min(n, words_left(words)))
       do i = 1, n
          row = this_row(words)
          name = what//" "//to_text(i)//" of "//to_text(n)

@@ -6,8 +6,7 @@ module dda_read_limerick
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
-      & new_line_model
+   use dda_line_model, only : add_bolt, add_entity, entities_t, entity_role, line_model_t
    use dda_plain_files, only : read_plain_analysis, read_plain_geometry
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
@@ -34,6 +33,10 @@ module dda_read_limerick
 
    end interface
 
+   !> Names of the lists, by the roles of what they hold
+   character(len=*), parameter :: list_name(*) = [character(len=17) :: "Jointlist", &
+      & "Matlinelist", "Fixedpointlist", "Loadpointlist", "Measuredpointlist", "Holepointlist", &
+      & "Boltlist", "Seismicpointlist"]
    !> Material of an entity that says none: it has none, it has the first one, or it must say it
    integer, parameter :: no_material = 0, first_material = 1, own_material = -1
 
@@ -111,14 +114,14 @@ contains
 
       call check_numbers(model%line, "joint", size(analysis%joint), model%file, analysis%file, &
          & error)
-      if (.not. allocated(error)) call check_numbers(model%material_line, "block", &
+      if (.not. allocated(error)) call check_numbers(model%of(entity_role%material), "block", &
          & size(analysis%material), model%file, analysis%file, error)
-      if (allocated(error) .or. size(analysis%load) == model%load%n) return
+      if (allocated(error) .or. size(analysis%load) == model%of(entity_role%load)%n) return
       if (size(analysis%load) == 0) then
          call add_warning(warnings, "a load point has no force: "//analysis%file//" gives none", &
-            & model%file, model%load%row(1))
+            & model%file, model%of(entity_role%load)%row(1))
       else
-         call fatal_error(error, "expected forces on "//to_text(model%load%n) &
+         call fatal_error(error, "expected forces on "//to_text(model%of(entity_role%load)%n) &
             & //" load points, as many as "//model%file//" has, got " &
             & //to_text(size(analysis%load))//"; add or remove forces", analysis%file, 1)
       end if
@@ -155,9 +158,7 @@ contains
       call find_part(tree, "Geometry", part, error)
       if (.not. allocated(error)) call check_elements(tree, part, geometry_form, warnings, error)
       if (allocated(error)) return
-      call new_line_model(model)
       model%file = tree%file
-      call new_entities(boundary, 0)
       at = first_child(tree, part)
       do while (at > 0 .and. .not. allocated(error))
          call read_list(tree, at, model, boundary, warnings, error)
@@ -181,32 +182,25 @@ contains
       type(entities_t), intent(inout) :: boundary
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
+      integer :: role
 
       associate (element => tree%element(at))
-         select case (element%name)
-         case ("Edgenodedist")
+         role = findloc(list_name == element%name, .true., dim=1)
+         if (element%name == "Edgenodedist") then
             call read_ratio(tree, at, model%edge_node_ratio, error)
-         case ("Jointlist")
-            call read_entities(tree, at, own_material, model%line, warnings, error)
-         case ("Boundlist")
+         else if (element%name == "Boundlist") then
             call read_entities(tree, at, first_material, boundary, warnings, error)
-         case ("Matlinelist")
-            call read_entities(tree, at, own_material, model%material_line, warnings, error)
-         case ("Fixedpointlist")
-            call read_entities(tree, at, no_material, model%fixed, warnings, error)
-         case ("Loadpointlist")
-            call read_entities(tree, at, no_material, model%load, warnings, error)
-         case ("Measuredpointlist")
-            call read_entities(tree, at, no_material, model%measured, warnings, error)
-         case ("Holepointlist")
-            call read_entities(tree, at, no_material, model%hole, warnings, error)
-         case ("Seismicpointlist")
-            call read_entities(tree, at, no_material, model%seismic, warnings, error)
-            if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
-               & "seismic points have no effect", tree%file, element%row)
-         case ("Boltlist")
+         else if (role == entity_role%joint) then
+            call read_entities(tree, at, own_material, model%line, warnings, error)
+         else if (role == entity_role%bolt) then
             call read_bolts(tree, at, model, warnings, error)
-         end select
+         else if (role > 0) then
+            call read_entities(tree, at, merge(own_material, no_material, &
+               & role == entity_role%material), model%of(role), warnings, error)
+            if (allocated(error) .or. role /= entity_role%seismic) return
+            if (model%of(role)%n > 0) call add_warning(warnings, "seismic points have no effect", &
+               & tree%file, element%row)
+         end if
       end associate
    end subroutine read_list
 
@@ -257,7 +251,6 @@ contains
       real(wp) :: property(3)
       integer :: at, k
 
-      call new_entities(bolt, 0)
       at = first_child(tree, list)
       do while (at > 0)
          call read_entity(tree, at, no_material, bolt, warnings, error)

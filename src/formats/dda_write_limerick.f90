@@ -2,7 +2,8 @@
 module dda_write_limerick
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
-   use dda_line_model, only : entities_t, line_model_t
+   use dda_line_model, only : entities_t, entity_role, line_model_t
+   use dda_plain_files, only : plain_order
    use dda_text, only : fields, to_text
    implicit none
    private
@@ -22,16 +23,24 @@ contains
    pure function plain_geometry(model) result(text)
       type(line_model_t), intent(in) :: model
       character(len=:), allocatable :: text  !! The file without its last line end
+      integer :: k
 
       text = to_text(model%edge_node_ratio)//lf//to_text(model%line%n)//" " &
-         & //to_text(model%n_boundary)//lf//to_text(model%material_line%n)//lf &
-         & //to_text(model%bolt%n)//lf &
-         & //to_text(model%fixed%n)//lf//to_text(model%load%n)//lf//to_text(model%measured%n)//lf &
-         & //to_text(model%hole%n)//records(model%line, 4, .true.) &
-         & //records(model%material_line, 4, .true.)//bolt_records(model) &
-         & //records(model%fixed, 4, .false.) &
-         & //records(model%load, 2, .false.)//records(model%measured, 2, .false.) &
-         & //records(model%hole, 2, .false.)
+         & //to_text(model%n_boundary)
+      do k = 1, size(plain_order)
+         text = text//lf//to_text(model%of(plain_order(k))%n)
+      end do
+      text = text//records(model%line, 4, .true.)
+      do k = 1, size(plain_order)
+         associate (role => plain_order(k))
+            if (role == entity_role%bolt) then
+               text = text//bolt_records(model)
+            else
+               text = text//records(model%of(role), merge(2, 4, role > entity_role%fix), &
+                  & role == entity_role%material)
+            end if
+         end associate
+      end do
    end function plain_geometry
 
    !> Records of one kind in the plain form
@@ -56,8 +65,8 @@ contains
       integer :: i
 
       text = ""
-      do i = 1, model%bolt%n
-         text = text//lf//fields(model%bolt%place(:, i), " ")//" " &
+      do i = 1, model%of(entity_role%bolt)%n
+         text = text//lf//fields(model%of(entity_role%bolt)%place(:, i), " ")//" " &
             & //fields(max(model%bolt_property(:, i), 0.0_wp), " ")
       end do
    end function bolt_records
@@ -69,15 +78,15 @@ contains
       integer :: i
 
       text = ""
-      if (model%bolt%n == 0) return
+      if (model%of(entity_role%bolt)%n == 0) return
       text = "<Boltlist>"//lf
-      do i = 1, model%bolt%n
+      do i = 1, model%of(entity_role%bolt)%n
          text = text//'<Bolt type="1"'
          if (model%bolt_property(1, i) >= 0.0_wp) text = text//' stiffness="' &
             & //to_text(model%bolt_property(1, i))//'" strength="' &
             & //to_text(model%bolt_property(2, i))//'" pretension="' &
             & //to_text(model%bolt_property(3, i))//'"'
-         text = text//"> "//fields(model%bolt%place(:, i), " ")//" </Bolt>"//lf
+         text = text//"> "//fields(model%of(entity_role%bolt)%place(:, i), " ")//" </Bolt>"//lf
       end do
       text = text//"</Boltlist>"//lf
    end function bolt_list
@@ -90,29 +99,31 @@ contains
       text = head//lf//"<Geometry>"//lf//empty("Edgenodedist", "distance", &
          & to_text(model%edge_node_ratio)) &
          & //list("Boundlist", "Line", model%line, 1, model%n_boundary) &
-         & //list("Jointlist", "Joint", model%line, model%n_boundary + 1, model%line%n) &
-         & //list("Matlinelist", "Line", model%material_line, 1, model%material_line%n) &
-         & //list("Fixedpointlist", "", model%fixed, 1, model%fixed%n) &
-         & //list("Loadpointlist", "Point", model%load, 1, model%load%n) &
-         & //list("Measuredpointlist", "Point", model%measured, 1, model%measured%n) &
-         & //list("Holepointlist", "Point", model%hole, 1, model%hole%n)//bolt_list(model) &
+         & //list("Jointlist", "Joint", model%line, model%n_boundary + 1) &
+         & //list("Matlinelist", "Line", model%of(entity_role%material), 1) &
+         & //list("Fixedpointlist", "", model%of(entity_role%fix), 1) &
+         & //list("Loadpointlist", "Point", model%of(entity_role%load), 1) &
+         & //list("Measuredpointlist", "Point", model%of(entity_role%measure), 1) &
+         & //list("Holepointlist", "Point", model%of(entity_role%hole), 1)//bolt_list(model) &
          & //"</Geometry>"//lf//"</Berkeley:DDA>"
    end function ddaml_geometry
 
    !> A list of DDAML
-   pure function list(name, item, entities, first, last) result(text)
+   pure function list(name, item, entities, first, until) result(text)
       character(len=*), intent(in) :: name  !! Name of the list
       !> Name of its elements; empty where it is Point for points and Line for lines
       character(len=*), intent(in) :: item
       type(entities_t), intent(in) :: entities
       integer, intent(in) :: first  !! First of them
-      integer, intent(in) :: last   !! Last of them
+      integer, intent(in), optional :: until  !! Last of them, without which all are meant
       !> Lines, each with its line end; empty for an empty list
       character(len=:), allocatable :: text
       character(len=:), allocatable :: kind
-      integer :: i
+      integer :: i, last
 
       text = ""
+      last = entities%n
+      if (present(until)) last = until
       if (last < first) return
       text = "<"//name//">"//lf
       do i = first, last

@@ -7,6 +7,7 @@ module dda_read_joint_map
    use dda_key_entry, only : group_error, key_group_t, read_groups
    use dda_key_value, only : deck_value_t
    use dda_kinds, only : degree, wp
+   use dda_line_model, only : role_name
    use dda_map_keys, only : bolts_from_deg, bolts_inset, bolts_length, bolts_number, &
       & bolts_opening, bolts_prestress, bolts_stiffness, bolts_to_deg, joint_set_bridge, &
       & joint_set_bridge_randomness, joint_set_dip_deg, joint_set_dip_spread_deg, &
@@ -152,8 +153,7 @@ contains
       if (allocated(error)) return
       role = merge(line_role, point_role, is_line)
       line%row = group%row
-      line%role = findloc([character(len=8) :: "joint", "material", "fix", "load", "measure", &
-         & "hole", "bolt"] == group%value(role)%text, .true., dim=1)
+      line%role = findloc(role_name == group%value(role)%text, .true., dim=1)
       if (is_line) then
          line%material = nint(group%value(line_material)%number)
          line%bolt = group%value(line_stiffness:line_prestress)%number

@@ -3,10 +3,11 @@
 !> Openings have their outlines here: circle and ellipse, arch on walls, horseshoe.
 module dda_joint_map
    use dda_kinds, only : pi, wp
+   use dda_line_model, only : entity_role
    implicit none
    private
 
-   public :: bolts_t, joint_map_t, joint_set_t, length_t, length_law, map_line_t, map_role
+   public :: bolts_t, joint_map_t, joint_set_t, length_t, length_law, map_line_t
    public :: opening_t, arched_opening, horseshoe, ring
 
    !> How a length is spread about its mean
@@ -20,20 +21,6 @@ module dda_joint_map
 
    !> The laws by name
    type(length_law_enum), parameter :: length_law = length_law_enum()
-
-   !> What a line or a point is for
-   type :: map_role_enum
-      integer :: joint = 1     !! A joint
-      integer :: material = 2  !! It gives the blocks that it crosses their material
-      integer :: fix = 3       !! It holds the blocks that it crosses
-      integer :: load = 4      !! A force acts there
-      integer :: measure = 5   !! It is followed
-      integer :: hole = 6      !! Its block is taken out
-      integer :: bolt = 7      !! A bolt
-   end type map_role_enum
-
-   !> The roles by name
-   type(map_role_enum), parameter :: map_role = map_role_enum()
 
    !> A length that may be random
    type :: length_t
@@ -70,8 +57,8 @@ module dda_joint_map
 
    !> A line or a point that is placed by hand
    type :: map_line_t
-      !> One of map_role
-      integer :: role = map_role%joint
+      !> One of entity_role
+      integer :: role = entity_role%joint
       real(wp) :: ends(4) = 0.0_wp  !! Ends, one and the same for a point: (4) [m]
       integer :: material = 1       !! Number of its material, or of the properties of a bolt
       real(wp) :: bolt(3) = 0.0_wp  !! Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]

@@ -4,9 +4,9 @@
 module dda_map_lines
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
-   use dda_joint_map, only : bolts_t, joint_map_t, joint_set_t, length_t, map_line_t, map_role
+   use dda_joint_map, only : bolts_t, joint_map_t, joint_set_t, length_t, map_line_t
    use dda_kinds, only : wp
-   use dda_line_model, only : add_bolt, add_entity, line_model_t, new_line_model
+   use dda_line_model, only : add_bolt, add_entity, entity_role, line_model_t
    use dda_polygon, only : contains_point
    use dda_random, only : random_t
    use dda_segment, only : crossing_parameters
@@ -68,7 +68,6 @@ contains
       real(wp) :: inside(2)
       integer :: i
 
-      call new_line_model(model)
       model%file = map%file
       model%edge_node_ratio = map%edge_node_ratio
       call check_openings(map, error)
@@ -78,7 +77,7 @@ contains
          call add_outline(map%opening(i)%corner, map%opening(i)%material, map%opening(i)%row, model)
          if (.not. map%opening(i)%excavated) cycle
          inside = inner_point(map%opening(i)%corner)
-         call add_entity(model%hole, [inside, inside], 0, map%opening(i)%row)
+         call add_entity(model%of(entity_role%hole), [inside, inside], 0, map%opening(i)%row)
       end do
       model%n_boundary = model%line%n
       call hold_sides(map, model)
@@ -148,7 +147,7 @@ contains
             & low(1), bottom, high(1), bottom], [4, 3])
       end associate
       do k = 1, 3
-         if (map%held_side(k)) call add_entity(model%fixed, side(:, k), 0, 1)
+         if (map%held_side(k)) call add_entity(model%of(entity_role%fix), side(:, k), 0, 1)
       end do
    end subroutine hold_sides
 
@@ -201,7 +200,7 @@ contains
       integer :: k, n
 
       select case (line%role)
-      case (map_role%joint)
+      case (entity_role%joint)
          allocate (part(4, 1))
          part(:, 1) = line%ends
          n = 1
@@ -211,18 +210,11 @@ contains
          do k = 1, n
             call add_entity(model%line, part(:, k), line%material, line%row)
          end do
-      case (map_role%material)
-         call add_entity(model%material_line, line%ends, line%material, line%row)
-      case (map_role%fix)
-         call add_entity(model%fixed, line%ends, 0, line%row)
-      case (map_role%load)
-         call add_entity(model%load, line%ends, 0, line%row)
-      case (map_role%measure)
-         call add_entity(model%measured, line%ends, 0, line%row)
-      case (map_role%hole)
-         call add_entity(model%hole, line%ends, 0, line%row)
-      case (map_role%bolt)
+      case (entity_role%bolt)
          call add_bolt(model, line%ends, line%bolt, line%row)
+      case default
+         call add_entity(model%of(line%role), line%ends, &
+            & merge(line%material, 0, line%role == entity_role%material), line%row)
       end select
    end subroutine add_line
 

@@ -9,7 +9,7 @@ module dda_cut_model
    implicit none
    private
 
-   public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, point_kind, block_vertices
+   public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, block_vertices
    public :: split_edges
    public :: cut_remark_t, cut_remarks_t, cut_reason, cut_reason_enum, add_remark
    public :: cut_scale_t, cut_scale
@@ -57,19 +57,9 @@ module dda_cut_model
       type(cut_remark_t), allocatable :: item(:)  !! The remarks: (n or more)
    end type cut_remarks_t
 
-   !> What a point of a block is for
-   type :: point_kind_enum
-      integer :: fixed = 1     !! It is held
-      integer :: load = 2      !! A force acts there
-      integer :: measured = 3  !! It is followed
-   end type point_kind_enum
-
-   !> Names of the kinds
-   type(point_kind_enum), parameter :: point_kind = point_kind_enum()
-
    !> A point that belongs to a block
    type :: block_point_t
-      integer :: kind = 0   !! One of point_kind
+      integer :: kind = 0   !! Its role: fix, load or measure
       integer :: block = 0  !! Number of the block
       !> Number of the point, or of the fixed line, among those of its kind in the file
       integer :: source = 0

@@ -1,7 +1,7 @@
 !> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
 submodule (dda_cutting) dda_cut_points
-   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, point_kind
-   use dda_line_model, only : entities_t
+   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t
+   use dda_line_model, only : entity_name
    use dda_polygon, only : polygon_distance
    use dda_segment, only : crossing_parameters
    use dda_vector, only : along, area_moments, area_moments_t, right_normal
@@ -55,12 +55,12 @@ contains
       type(boxes_t) :: boxes
       integer :: i, b, n, k
 
-      if (model%hole%n == 0) return
+      if (model%of(entity_role%hole)%n == 0) return
       boxes = block_boxes(cut)
       allocate (keep(size(cut%area)), source=.true.)
-      do i = 1, model%hole%n
-         b = block_around(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
-         if (b == 0) call no_block(error, "hole point", model, model%hole, i)
+      do i = 1, model%of(entity_role%hole)%n
+         b = block_around(cut, boxes, model%of(entity_role%hole)%place(1:2, i) - cut%scale%origin)
+         if (b == 0) call no_block(error, model, entity_role%hole, i)
          if (b == 0) return
          keep(b) = .false.
       end do
@@ -96,26 +96,22 @@ contains
    module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
-      integer :: n
+      integer :: n, role
 
       boxes = block_boxes(cut)
       n = 0
-      allocate (point(model%fixed%n + model%load%n + model%measured%n + 8))
-      call add_points(model, model%fixed, "fixed point", point_kind%fixed, boxes, cut, point, n, &
-         & error)
-      if (.not. allocated(error)) call add_points(model, model%load, "load point", &
-         & point_kind%load, boxes, cut, point, n, error)
-      if (.not. allocated(error)) call add_points(model, model%measured, "measured point", &
-         & point_kind%measured, boxes, cut, point, n, error)
-      if (.not. allocated(error)) cut%point = point(:n)
+      allocate (point(8))
+      do role = entity_role%fix, entity_role%measure
+         call add_points(model, role, boxes, cut, point, n, error)
+         if (allocated(error)) return
+      end do
+      cut%point = point(:n)
    end procedure place_points
 
-   !> Points of one kind in their blocks
-   pure subroutine add_points(model, entities, what, kind, boxes, cut, point, n, error)
+   !> Points of one role in their blocks
+   pure subroutine add_points(model, role, boxes, cut, point, n, error)
       type(line_model_t), intent(in) :: model
-      type(entities_t), intent(in) :: entities
-      character(len=*), intent(in) :: what                         !! What a point is called
-      integer, intent(in) :: kind                                  !! One of point_kind
+      integer, intent(in) :: role                                  !! Fix, load or measure
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
       type(block_point_t), allocatable, intent(inout) :: point(:)  !! Receives the points
@@ -124,16 +120,16 @@ contains
       real(wp) :: place(2)
       integer :: b, before, i
 
-      do i = 1, entities%n
+      do i = 1, model%of(role)%n
          before = n
-         if (kind == point_kind%fixed) &
-            & call add_crossed(entities%place(:, i), i, boxes, cut, point, n)
+         if (role == entity_role%fix) &
+            & call add_crossed(model%of(role)%place(:, i), i, boxes, cut, point, n)
          if (n > before) cycle
-         place = entities%place(1:2, i) - cut%scale%origin
+         place = model%of(role)%place(1:2, i) - cut%scale%origin
          b = block_around(cut, boxes, place)
-         if (b == 0) call no_block(error, what, model, entities, i)
+         if (b == 0) call no_block(error, model, role, i)
          if (b == 0) return
-         call append_point(point, n, block_point_t(kind, b, i, place))
+         call append_point(point, n, block_point_t(role, b, i, place))
       end do
    end subroutine add_points
 
@@ -161,7 +157,7 @@ contains
                if (.not. crossed .or. share(1) < 0.0_wp .or. share(1) >= 1.0_wp) cycle
                if (share(2) < 0.0_wp .or. share(2) > 1.0_wp) cycle
                crossing = edge(1:2) + share(1)*(edge(3:4) - edge(1:2))
-               call append_point(point, n, block_point_t(point_kind%fixed, b, source, &
+               call append_point(point, n, block_point_t(entity_role%fix, b, source, &
                   & inside_point(vertex, crossing, edge, fixed_depth*cut%scale%size)))
             end do
          end associate
@@ -191,16 +187,18 @@ contains
    !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
    module procedure place_bolts
       type(boxes_t) :: boxes
-      type(cut_bolt_t) :: bolt(model%bolt%n)
+      type(cut_bolt_t) :: bolt(model%of(entity_role%bolt)%n)
       integer :: i, n, side
 
       n = 0
       boxes = block_boxes(cut)
-      do i = 1, model%bolt%n
+      do i = 1, size(bolt)
          n = n + 1
-         bolt(n)%place = model%bolt%place(:, i) - [cut%scale%origin, cut%scale%origin]
-         bolt(n)%property = model%bolt_property(:, i)
-         bolt(n)%row = model%bolt%row(i)
+         associate (drawn => model%of(entity_role%bolt))
+            bolt(n)%place = drawn%place(:, i) - [cut%scale%origin, cut%scale%origin]
+            bolt(n)%property = model%bolt_property(:, i)
+            bolt(n)%row = drawn%row(i)
+         end associate
          do side = 1, 2
             bolt(n)%block(side) = block_around(cut, boxes, bolt(n)%place(2*side - 1:2*side))
          end do
@@ -219,19 +217,20 @@ contains
       integer :: i, n, b
 
       allocate (cut%material(size(cut%area)), source=1)
-      if (model%material_line%n == 0) return
       boxes = block_boxes(cut)
       allocate (point(8))
-      do i = 1, model%material_line%n
-         n = 0
-         call add_crossed(model%material_line%place(:, i), i, boxes, cut, point, n)
-         cut%material(point(:n)%block) = model%material_line%material(i)
-         if (n > 0) cycle
-         b = block_around(cut, boxes, model%material_line%place(1:2, i) - cut%scale%origin)
-         if (b == 0) call no_block(error, "material line", model, model%material_line, i)
-         if (b == 0) return
-         cut%material(b) = model%material_line%material(i)
-      end do
+      associate (lines => model%of(entity_role%material))
+         do i = 1, lines%n
+            n = 0
+            call add_crossed(lines%place(:, i), i, boxes, cut, point, n)
+            cut%material(point(:n)%block) = lines%material(i)
+            if (n > 0) cycle
+            b = block_around(cut, boxes, lines%place(1:2, i) - cut%scale%origin)
+            if (b == 0) call no_block(error, model, entity_role%material, i)
+            if (b == 0) return
+            cut%material(b) = lines%material(i)
+         end do
+      end associate
    end procedure give_materials
 
    !> Add a point to a list
@@ -247,16 +246,17 @@ contains
    end subroutine append_point
 
    !> Say that a thing lies in no block
-   pure subroutine no_block(error, what, model, entities, i)
+   pure subroutine no_block(error, model, role, i)
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: what  !! What the thing is called
       type(line_model_t), intent(in) :: model
-      type(entities_t), intent(in) :: entities
-      integer, intent(in) :: i              !! Number of the thing in its list
+      integer, intent(in) :: role  !! Role of the thing
+      integer, intent(in) :: i     !! Its number in its list
 
-      call fatal_error(error, "expected a "//what//" inside a block, got one at (" &
-         & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &
-         & //") outside all; move it into one or remove it", model%file, entities%row(i))
+      associate (place => model%of(role)%place(:, i))
+         call fatal_error(error, "expected a "//trim(entity_name(role))//" inside a block, got " &
+            & //"one at ("//to_text(place(1))//", "//to_text(place(2)) &
+            & //") outside all; move it into one or remove it", model%file, model%of(role)%row(i))
+      end associate
    end subroutine no_block
 
 end submodule dda_cut_points

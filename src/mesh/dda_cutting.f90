@@ -6,7 +6,7 @@ module dda_cutting
    use dda_cut_model, only : cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_line_model, only : line_model_t
+   use dda_line_model, only : entity_role, line_model_t
    use dda_line_network, only : crossings_t, find_crossings, half_edge_start, join_crossings, &
       & network_t
    use dda_polygon, only : contains_point
@@ -207,8 +207,8 @@ contains
       if (count(loops%area < 0.0_wp) < 2) return
       boxes = block_boxes(cut)
       allocate (hole(size(cut%area)), source=.false.)
-      do i = 1, model%hole%n
-         b = block_around(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
+      do i = 1, model%of(entity_role%hole)%n
+         b = block_around(cut, boxes, model%of(entity_role%hole)%place(1:2, i) - cut%scale%origin)
          if (b > 0) hole(b) = .true.
       end do
       do k = 1, size(loops%area)

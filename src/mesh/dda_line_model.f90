@@ -5,14 +5,38 @@ module dda_line_model
    implicit none
    private
 
-   public :: line_model_t, entities_t, new_entities, new_line_model, add_bolt, add_entity
+   public :: line_model_t, entities_t, entity_role, role_name, entity_name, add_bolt, add_entity
 
-   !> Segments or points of one kind, in the order of the file
+   !> What a line or a point is for
+   type :: entity_role_enum
+      integer :: joint = 1     !! A joint
+      integer :: material = 2  !! It gives the blocks that it crosses their material
+      integer :: fix = 3       !! It holds the blocks that it crosses, or that it lies in
+      integer :: load = 4      !! A force acts there
+      integer :: measure = 5   !! It is followed
+      integer :: hole = 6      !! Its block is taken out
+      integer :: bolt = 7      !! A bolt
+      integer :: seismic = 8   !! A place of seismic records, which nothing uses yet
+   end type entity_role_enum
+
+   !> The roles by name
+   type(entity_role_enum), parameter :: entity_role = entity_role_enum()
+
+   !> Their names in joint maps and tables
+   character(len=*), parameter :: role_name(8) = [character(len=8) :: "joint", "material", "fix", &
+      & "load", "measure", "hole", "bolt", "seismic"]
+
+   !> What messages call one of each
+   character(len=*), parameter :: entity_name(8) = [character(len=14) :: "line", &
+      & "material line", "fixed point", "load point", "measured point", "hole point", "bolt", &
+      & "seismic point"]
+
+   !> Segments or points of one role, in the order of the file
    type :: entities_t
       integer :: n = 0  !! How many there are
       !> Ends x1, y1, x2, y2; a point has both ends in one place: (4, n or more) [m]
       real(wp), allocatable :: place(:, :)
-      !> Material of the joint or of the blocks, where the kind has one: (n or more)
+      !> Material of the joint or of the blocks, where the role has one: (n or more)
       integer, allocatable :: material(:)
       integer, allocatable :: row(:)  !! Line of the file: (n or more)
    end type entities_t
@@ -25,43 +49,13 @@ module dda_line_model
       !> So many of the first lines are boundary lines, which are never deleted
       integer :: n_boundary = 0
       type(entities_t) :: line  !! Boundary lines, then joints, with the material of the joint
-      !> Lines that give blocks their material
-      type(entities_t) :: material_line
-      type(entities_t) :: fixed     !! Lines, or points, that hold blocks
-      type(entities_t) :: load      !! Points where forces act
-      type(entities_t) :: measured  !! Points that are followed
-      type(entities_t) :: hole      !! Points whose blocks are taken out
-      type(entities_t) :: seismic   !! Points of seismic records, which nothing uses yet
-      type(entities_t) :: bolt      !! Bolts
-      !> Stiffness, strength and prestress of each: (3, n or more); below 0 where the analysis
-      !> file says them
+      type(entities_t) :: of(entity_role%material:entity_role%seismic)  !! All others by their roles
+      !> Stiffness, strength and prestress of each bolt: (3, n or more); below 0 where the
+      !> analysis file says them
       real(wp), allocatable :: bolt_property(:, :)
    end type line_model_t
 
 contains
-
-   !> An empty list with room
-   pure subroutine new_entities(entities, room)
-      type(entities_t), intent(out) :: entities
-      integer, intent(in) :: room  !! How many are expected
-
-      allocate (entities%place(4, room), entities%material(room), entities%row(room))
-   end subroutine new_entities
-
-   !> A model without lines
-   pure subroutine new_line_model(model)
-      type(line_model_t), intent(out) :: model
-
-      call new_entities(model%line, 64)
-      call new_entities(model%material_line, 0)
-      call new_entities(model%fixed, 0)
-      call new_entities(model%load, 0)
-      call new_entities(model%measured, 0)
-      call new_entities(model%hole, 0)
-      call new_entities(model%seismic, 0)
-      call new_entities(model%bolt, 0)
-      allocate (model%bolt_property(3, 1))
-   end subroutine new_line_model
 
    !> Add a bolt
    pure subroutine add_bolt(model, place, property, row)
@@ -71,18 +65,20 @@ contains
       real(wp), intent(in) :: property(3)
       integer, intent(in) :: row  !! Line of the file
 
-      call add_entity(model%bolt, place, 0, row)
-      call make_room(model%bolt_property, model%bolt%n)
-      model%bolt_property(:, model%bolt%n) = property
+      call add_entity(model%of(entity_role%bolt), place, 0, row)
+      if (.not. allocated(model%bolt_property)) allocate (model%bolt_property(3, 8))
+      call make_room(model%bolt_property, model%of(entity_role%bolt)%n)
+      model%bolt_property(:, model%of(entity_role%bolt)%n) = property
    end subroutine add_bolt
 
    !> Add a segment or a point
    pure subroutine add_entity(entities, place, material, row)
       type(entities_t), intent(inout) :: entities
       real(wp), intent(in) :: place(4)
-      integer, intent(in) :: material  !! Its material; 0 if the kind has none
+      integer, intent(in) :: material  !! Its material; 0 if the role has none
       integer, intent(in) :: row
 
+      if (.not. allocated(entities%place)) allocate (entities%place(4, 8))
       call make_room(entities%place, entities%n + 1)
       call make_room(entities%material, entities%n + 1)
       call make_room(entities%row, entities%n + 1)

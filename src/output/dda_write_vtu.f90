@@ -5,9 +5,10 @@
 module dda_write_vtu
    use, intrinsic :: iso_fortran_env, only : int16, int32, int64, int8
    use dda_binary_file, only : write_file
-   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cut_model, only : cut_model_t
    use dda_error, only : error_t
    use dda_kinds, only : wp
+   use dda_line_model, only : entity_role
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
@@ -240,7 +241,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
       character(len=:), allocatable :: lines
-      integer :: b, held(3, size(cut%area))
+      integer :: b, held(entity_role%fix:entity_role%measure, size(cut%area))
 
       held = 0
       do b = 1, size(cut%point)
@@ -265,8 +266,8 @@ contains
    !> The row of a block
    pure function block_line(cut, block, held) result(line)
       type(cut_model_t), intent(in) :: cut
-      integer, intent(in) :: block    !! Number of the block
-      integer, intent(in) :: held(3)  !! Its fixed, load and measured points: (3)
+      integer, intent(in) :: block  !! Number of the block
+      integer, intent(in) :: held(entity_role%fix:)  !! Its fixed, load and measured points: (3)
       character(len=:), allocatable :: line
       character(len=:), allocatable :: x, y, joint
       type(area_moments_t) :: moments
@@ -287,8 +288,8 @@ contains
          & //","//to_text(cut%area(block)) &
          & //","//to_text(moments%centroid(1) + cut%scale%origin(1)) &
          & //","//to_text(moments%centroid(2) + cut%scale%origin(2)) &
-         & //","//to_text(held(point_kind%fixed))//","//to_text(held(point_kind%load)) &
-         & //","//to_text(held(point_kind%measured))//","//x(2:)//","//y(2:)//","//joint(2:)
+         & //","//to_text(held(entity_role%fix))//","//to_text(held(entity_role%load)) &
+         & //","//to_text(held(entity_role%measure))//","//x(2:)//","//y(2:)//","//joint(2:)
    end function block_line
 
    !> Write the blocks for ParaView
@@ -301,7 +302,7 @@ contains
 
       held = 0
       do i = 1, size(cut%point)
-         if (cut%point(i)%kind == point_kind%fixed) held(cut%point(i)%block) = 1
+         if (cut%point(i)%kind == entity_role%fix) held(cut%point(i)%block) = 1
       end do
       corners(1) = state_field("edge_joint", cut%edge_joint)
       cells(1) = state_field("block", [(i, i=1, size(cut%area))])

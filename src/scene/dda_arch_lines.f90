@@ -13,7 +13,7 @@ module dda_arch_lines
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
       & limerick_joint_t, analysis_material_t
    use dda_limerick_scene, only : abutment_depth, set_constants, widen
-   use dda_line_model, only : add_entity, line_model_t, new_line_model
+   use dda_line_model, only : add_entity, entity_role, line_model_t
    use dda_scene, only : scene_t
    use dda_text, only : to_text
    implicit none
@@ -57,7 +57,6 @@ contains
          & //to_text(abutment_depth(deck))//" m, where they meet below the arch; make it " &
          & //"smaller", deck, deck%value(arch_abutment_size)%place)
       if (allocated(error)) return
-      call new_line_model(model)
       model%file = deck%file
       do b = 1, n
          call add_chords(scene%system, b, model)
@@ -121,7 +120,7 @@ contains
             share = inset + (1.0_wp - 2.0_wp*inset)*real([i, j], wp)
             point = corner(:, 1) + share(1)*(corner(:, 2) - corner(:, 1)) &
                & + share(2)*(corner(:, 4) - corner(:, 1))
-            call add_entity(model%fixed, [point, point], 0, 0)
+            call add_entity(model%of(entity_role%fix), [point, point], 0, 0)
          end do
       end do
    end subroutine add_abutment

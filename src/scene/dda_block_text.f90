@@ -4,12 +4,13 @@ module dda_block_text
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_block_system, only : block_system_t
-   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cut_model, only : cut_model_t
    use dda_deck, only : deck_t, has_group
    use dda_deck_scene, only : deck_scene
    use dda_key_names, only : arch_lune_deg, fill_group, live_group, vehicle_group
    use dda_kinds, only : degree, wp
    use dda_limerick_analysis, only : load_history_t
+   use dda_line_model, only : entity_role
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
@@ -156,12 +157,12 @@ contains
       held = held_blocks(deck%cut)
       do i = 1, size(deck%cut%point)
          associate (point => deck%cut%point(i))
-            if (held(point%block) .and. point%kind /= point_kind%measured) cycle
+            if (held(point%block) .and. point%kind /= entity_role%measure) cycle
             at = " block "//to_text(point%block)//" " &
                & //fields(point%place + deck%cut%scale%origin, " ")
-            if (point%kind == point_kind%fixed) call add_line(lines, "fix"//at)
-            if (point%kind == point_kind%measured) call add_line(lines, "measure"//at)
-            if (point%kind /= point_kind%load .or. .not. allocated(deck%file_analysis)) cycle
+            if (point%kind == entity_role%fix) call add_line(lines, "fix"//at)
+            if (point%kind == entity_role%measure) call add_line(lines, "measure"//at)
+            if (point%kind /= entity_role%load .or. .not. allocated(deck%file_analysis)) cycle
             if (point%source <= size(deck%file_analysis%load)) &
                & call add_load(deck%file_analysis%load(point%source), at, lines)
          end associate

@@ -5,7 +5,7 @@ module dda_line_scene
    use dda_block_system, only : block_system_t, new_block_system
    use dda_boundary, only : boundary_t, constant_history, history_t
    use dda_contacts, only : find_contacts
-   use dda_cut_model, only : cut_model_t, point_kind, split_edges
+   use dda_cut_model, only : cut_model_t, split_edges
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
    use dda_error, only : error_t
@@ -14,6 +14,7 @@ module dda_line_scene
       & material_young, scene_geometry
    use dda_kinds, only : pi, wp
    use dda_limerick_analysis, only : limerick_joint_t
+   use dda_line_model, only : entity_role
    use dda_material, only : friction_coefficient, joint_law_t
    use dda_scene, only : scene_t
    implicit none
@@ -82,22 +83,22 @@ contains
       integer :: n(3), i
 
       associate (point => deck%cut%point)
-         allocate (boundary%held(count(point%kind == point_kind%fixed .and. .not. &
+         allocate (boundary%held(count(point%kind == entity_role%fix .and. .not. &
             & fixed(point%block))))
-         allocate (boundary%loaded(count(point%kind == point_kind%load)))
-         allocate (boundary%measured(count(point%kind == point_kind%measured)))
+         allocate (boundary%loaded(count(point%kind == entity_role%load)))
+         allocate (boundary%measured(count(point%kind == entity_role%measure)))
          n = 0
          do i = 1, size(point)
-            if (point(i)%kind == point_kind%fixed .and. .not. fixed(point(i)%block)) then
+            if (point(i)%kind == entity_role%fix .and. .not. fixed(point(i)%block)) then
                n(1) = n(1) + 1
                boundary%held(n(1))%block = point(i)%block
                boundary%held(n(1))%point = point(i)%place
-            else if (point(i)%kind == point_kind%load) then
+            else if (point(i)%kind == entity_role%load) then
                n(2) = n(2) + 1
                boundary%loaded(n(2))%block = point(i)%block
                boundary%loaded(n(2))%point = point(i)%place
                boundary%loaded(n(2))%force = force_of(deck, point(i)%source)
-            else if (point(i)%kind == point_kind%measured) then
+            else if (point(i)%kind == entity_role%measure) then
                n(3) = n(3) + 1
                boundary%measured(n(3))%block = point(i)%block
                boundary%measured(n(3))%point = point(i)%place
@@ -234,7 +235,7 @@ contains
       held = .false.
       first = 0
       do i = 1, size(cut%point)
-         if (cut%point(i)%kind /= point_kind%fixed) cycle
+         if (cut%point(i)%kind /= entity_role%fix) cycle
          associate (b => cut%point(i)%block)
             if (first(b) == 0) first(b) = i
             if (norm2(cut%point(i)%place - cut%point(first(b))%place) > cut%scale%reach) &
