@@ -4,8 +4,7 @@ module dda_plain_files
    use dda_error, only : error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : analysis_material_t, limerick_analysis_t, limerick_joint_t
-   use dda_line_model, only : add_bolt, add_entity, entities_t, entity_name, entity_role, &
-      & line_model_t
+   use dda_line_model, only : add_entity, entities_t, entity_name, entity_role, line_model_t
    use dda_text, only : to_text
    use dda_word_list, only : check_number, largest_coordinate, largest_material, split_words, &
       & take_number, take_property, take_whole, take_word_numbers, this_row, warn_of_rest, &
@@ -14,7 +13,7 @@ module dda_plain_files
    private
 
    public :: read_plain_geometry, read_plain_analysis, check_material, check_joint, check_steps
-   public :: largest_value, plain_order
+   public :: largest_value, n_coordinates, plain_order
 
    !> Roles of what a file has after its lines, in its order
    integer, parameter :: plain_order(6) = [entity_role%material, entity_role%bolt, &
@@ -54,70 +53,53 @@ contains
             & most_things, n(k), error)
       end do
       if (allocated(error)) return
-      call read_records(words, "line", n(0), 4, .true., model%line, error)
+      call read_records(words, entity_role%joint, n(0), model%line, error)
       do k = 1, size(plain_order)
-         associate (role => plain_order(k))
-            if (role == entity_role%bolt) then
-               call read_bolts(words, n(k), model, error)
-            else
-               call read_records(words, trim(entity_name(role)), n(k), merge(2, 4, &
-                  & role > entity_role%fix), role == entity_role%material, model%of(role), error)
-            end if
-         end associate
+         call read_records(words, plain_order(k), n(k), model%of(plain_order(k)), error)
       end do
       if (.not. allocated(error)) call warn_of_rest(words, "last record", warnings)
    end subroutine read_plain_geometry
 
-   !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
-   pure subroutine read_bolts(words, n, model, error)
+   !> Read the records of one role
+   pure subroutine read_records(words, role, n, entities, error)
       type(word_list_t), intent(inout) :: words
-      integer, intent(in) :: n  !! How many there are
-      type(line_model_t), intent(inout) :: model
+      integer, intent(in) :: role  !! One of entity_role
+      integer, intent(in) :: n     !! How many there are
+      type(entities_t), intent(out) :: entities
       type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
          & "prestress"]
-      real(wp) :: place(4), property(3)
-      integer :: i, k, row
-
-      do i = 1, n
-         row = this_row(words)
-         call take_word_numbers(words, "a coordinate of bolt "//to_text(i)//" of "//to_text(n), &
-            & largest_coordinate, place, error)
-         do k = 1, 3
-            call take_property(words, "the "//trim(what(k))//" of bolt "//to_text(i)//" of " &
-               & //to_text(n), property(k), error)
-         end do
-         if (allocated(error)) return
-         call add_bolt(model, place, property, row)
-      end do
-   end subroutine read_bolts
-
-   !> Read the records of one role
-   pure subroutine read_records(words, what, n, n_number, has_material, entities, error)
-      type(word_list_t), intent(inout) :: words
-      character(len=*), intent(in) :: what  !! What a record is called
-      integer, intent(in) :: n
-      integer, intent(in) :: n_number       !! Coordinates of each, 2 or 4
-      logical, intent(in) :: has_material   !! Whether a material follows
-      type(entities_t), intent(out) :: entities
-      type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: name
       real(wp) :: place(4)
-      integer :: i, row, material
+      real(wp), allocatable :: property(:)
+      integer :: i, k, row, material, n_number
 
+      n_number = n_coordinates(role)
+      if (role == entity_role%bolt) allocate (property(size(what)))
       do i = 1, n
          row = this_row(words)
-         name = what//" "//to_text(i)//" of "//to_text(n)
+         name = trim(entity_name(role))//" "//to_text(i)//" of "//to_text(n)
          call take_word_numbers(words, "a coordinate of "//name, largest_coordinate, &
             & place(:n_number), error)
          if (n_number == 2) place(3:4) = place(1:2)
          material = 0
-         if (has_material) call take_whole(words, "the material of "//name, 1, largest_material, &
-            & material, error)
+         if (role <= entity_role%material) call take_whole(words, "the material of "//name, 1, &
+            & largest_material, material, error)
+         do k = 1, merge(size(what), 0, allocated(property))
+            call take_property(words, "the "//trim(what(k))//" of "//name, property(k), error)
+         end do
          if (allocated(error)) return
-         call add_entity(entities, place, material, row)
+         call add_entity(entities, place, material, row, property)
       end do
    end subroutine read_records
+
+   !> Coordinates of a record: those of a point or of two ends
+   pure integer function n_coordinates(role)
+      integer, intent(in) :: role
+
+      n_coordinates = merge(2, 4, &
+         & any(role == [entity_role%load, entity_role%measure, entity_role%hole]))
+   end function n_coordinates
 
    !> Read an analysis file; the constants that it cannot give are the original's own
    pure subroutine read_plain_analysis(text, file, analysis, warnings, error)

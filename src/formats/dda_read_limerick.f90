@@ -6,7 +6,7 @@ module dda_read_limerick
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_line_model, only : add_bolt, add_entity, entities_t, entity_role, line_model_t
+   use dda_line_model, only : add_entity, entities_t, entity_role, line_model_t
    use dda_plain_files, only : read_plain_analysis, read_plain_geometry
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
@@ -192,8 +192,6 @@ contains
             call read_entities(tree, at, first_material, boundary, warnings, error)
          else if (role == entity_role%joint) then
             call read_entities(tree, at, own_material, model%line, warnings, error)
-         else if (role == entity_role%bolt) then
-            call read_bolts(tree, at, model, warnings, error)
          else if (role > 0) then
             call read_entities(tree, at, merge(own_material, no_material, &
                & role == entity_role%material), model%of(role), warnings, error)
@@ -237,35 +235,8 @@ contains
       end do
    end subroutine read_entities
 
-   !> Read bolts; what they are like may stand in attributes of ours, else the analysis file says it
-   pure subroutine read_bolts(tree, list, model, warnings, error)
-      type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: list
-      type(line_model_t), intent(inout) :: model
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
-      character(len=*), parameter :: name(3) = [character(len=10) :: "stiffness", "strength", &
-         & "pretension"]
-      type(entities_t) :: bolt
-      type(word_list_t) :: words
-      real(wp) :: property(3)
-      integer :: at, k
-
-      at = first_child(tree, list)
-      do while (at > 0)
-         call read_entity(tree, at, no_material, bolt, warnings, error)
-         property = -1.0_wp
-         do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
-            call attribute_words(tree, at, trim(name(k)), words, error)
-            call take_property(words, "the "//trim(name(k))//" of a bolt", property(k), error)
-         end do
-         if (allocated(error)) return
-         call add_bolt(model, bolt%place(:, bolt%n), property, bolt%row(bolt%n))
-         at = next_sibling(tree, at)
-      end do
-   end subroutine read_bolts
-
-   !> Read one element of a list
+   !> Read one element of a list; what a bolt is like may stand in attributes of ours, else the
+   !> analysis file says it
    pure subroutine read_entity(tree, at, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at, usual
@@ -273,8 +244,11 @@ contains
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
+      character(len=*), parameter :: attribute(3) = [character(len=10) :: "stiffness", "strength", &
+         & "pretension"]
       real(wp) :: place(4)
-      integer :: material, n
+      real(wp), allocatable :: property(:)
+      integer :: material, k, n
 
       associate (name => tree%element(at)%name)
          material = usual
@@ -290,7 +264,13 @@ contains
          if (allocated(error)) return
          if (n == 2) place(3:4) = place(1:2)
          call warn_of_rest(words, "coordinates of "//name, warnings)
-         call add_entity(entities, place, material, tree%element(at)%row)
+         if (name == "Bolt") property = [-1.0_wp, -1.0_wp, -1.0_wp]
+         do k = 1, merge(3, 0, name == "Bolt" .and. attribute_place(tree, at, "stiffness") > 0)
+            call attribute_words(tree, at, trim(attribute(k)), words, error)
+            call take_property(words, "the "//trim(attribute(k))//" of a bolt", property(k), error)
+         end do
+         if (.not. allocated(error)) call add_entity(entities, place, material, &
+            & tree%element(at)%row, property)
       end associate
    end subroutine read_entity
 

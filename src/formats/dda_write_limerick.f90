@@ -3,7 +3,7 @@ module dda_write_limerick
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
    use dda_line_model, only : entities_t, entity_role, line_model_t
-   use dda_plain_files, only : plain_order
+   use dda_plain_files, only : n_coordinates, plain_order
    use dda_text, only : fields, to_text
    implicit none
    private
@@ -30,66 +30,37 @@ contains
       do k = 1, size(plain_order)
          text = text//lf//to_text(model%of(plain_order(k))%n)
       end do
-      text = text//records(model%line, 4, .true.)
+      text = text//records(model%line, entity_role%joint)
       do k = 1, size(plain_order)
-         associate (role => plain_order(k))
-            if (role == entity_role%bolt) then
-               text = text//bolt_records(model)
-            else
-               text = text//records(model%of(role), merge(2, 4, role > entity_role%fix), &
-                  & role == entity_role%material)
-            end if
-         end associate
+         text = text//records(model%of(plain_order(k)), plain_order(k))
       end do
    end function plain_geometry
 
-   !> Records of one kind in the plain form
-   pure function records(entities, n_number, has_material) result(text)
+   !> Records of one role in the plain form
+   pure function records(entities, role) result(text)
       type(entities_t), intent(in) :: entities
-      integer, intent(in) :: n_number        !! Coordinates of each, 2 or 4
-      logical, intent(in) :: has_material    !! Whether a material follows
+      integer, intent(in) :: role            !! One of entity_role
       character(len=:), allocatable :: text  !! Lines, each with its line end before it
       integer :: i
 
       text = ""
       do i = 1, entities%n
-         text = text//lf//fields(entities%place(:n_number, i), " ")
-         if (has_material) text = text//" "//to_text(entities%material(i))
+         text = text//lf//fields(entities%place(:n_coordinates(role), i), " ")
+         if (role <= entity_role%material) text = text//" "//to_text(entities%material(i))
+         if (role == entity_role%bolt) text = text//" " &
+            & //fields(max(entities%property(:, i), 0.0_wp), " ")
       end do
    end function records
 
-   !> Bolts in the plain form, as Shi's programs have them
-   pure function bolt_records(model) result(text)
-      type(line_model_t), intent(in) :: model
-      character(len=:), allocatable :: text
-      integer :: i
+   !> What a bolt is like, in attributes of which the original reads the first
+   pure function bolt_attributes(property) result(text)
+      real(wp), intent(in) :: property(3)    !! Stiffness, strength and prestress: (3)
+      character(len=:), allocatable :: text  !! Attributes, a blank before each
 
-      text = ""
-      do i = 1, model%of(entity_role%bolt)%n
-         text = text//lf//fields(model%of(entity_role%bolt)%place(:, i), " ")//" " &
-            & //fields(max(model%bolt_property(:, i), 0.0_wp), " ")
-      end do
-   end function bolt_records
-
-   !> Bolts in DDAML; the original reads all but the attributes that say what they are like
-   pure function bolt_list(model) result(text)
-      type(line_model_t), intent(in) :: model
-      character(len=:), allocatable :: text  !! Lines, each with its line end; empty without bolts
-      integer :: i
-
-      text = ""
-      if (model%of(entity_role%bolt)%n == 0) return
-      text = "<Boltlist>"//lf
-      do i = 1, model%of(entity_role%bolt)%n
-         text = text//'<Bolt type="1"'
-         if (model%bolt_property(1, i) >= 0.0_wp) text = text//' stiffness="' &
-            & //to_text(model%bolt_property(1, i))//'" strength="' &
-            & //to_text(model%bolt_property(2, i))//'" pretension="' &
-            & //to_text(model%bolt_property(3, i))//'"'
-         text = text//"> "//fields(model%of(entity_role%bolt)%place(:, i), " ")//" </Bolt>"//lf
-      end do
-      text = text//"</Boltlist>"//lf
-   end function bolt_list
+      text = ' type="1"'
+      if (property(1) >= 0.0_wp) text = text//' stiffness="'//to_text(property(1)) &
+         & //'" strength="'//to_text(property(2))//'" pretension="'//to_text(property(3))//'"'
+   end function bolt_attributes
 
    !> A geometry in DDAML
    pure function ddaml_geometry(model) result(text)
@@ -104,7 +75,8 @@ contains
          & //list("Fixedpointlist", "", model%of(entity_role%fix), 1) &
          & //list("Loadpointlist", "Point", model%of(entity_role%load), 1) &
          & //list("Measuredpointlist", "Point", model%of(entity_role%measure), 1) &
-         & //list("Holepointlist", "Point", model%of(entity_role%hole), 1)//bolt_list(model) &
+         & //list("Holepointlist", "Point", model%of(entity_role%hole), 1) &
+         & //list("Boltlist", "Bolt", model%of(entity_role%bolt), 1) &
          & //"</Geometry>"//lf//"</Berkeley:DDA>"
    end function ddaml_geometry
 
@@ -132,6 +104,7 @@ contains
             & all(abs(entities%place(3:4, i) - entities%place(1:2, i)) <= 0.0_wp)))
          text = text//"<"//kind
          if (entities%material(i) > 0) text = text//' type="'//to_text(entities%material(i))//'"'
+         if (kind == "Bolt") text = text//bolt_attributes(entities%property(:, i))
          text = text//"> "//fields(entities%place(:merge(2, 4, kind == "Point"), i), " ")//" </" &
             & //kind//">"//lf
       end do

@@ -6,7 +6,7 @@ module dda_map_lines
    use dda_growth, only : make_room
    use dda_joint_map, only : bolts_t, joint_map_t, joint_set_t, length_t, map_line_t
    use dda_kinds, only : wp
-   use dda_line_model, only : add_bolt, add_entity, entity_role, line_model_t
+   use dda_line_model, only : add_entity, entity_role, line_model_t
    use dda_polygon, only : contains_point
    use dda_random, only : random_t
    use dda_segment, only : crossing_parameters
@@ -211,7 +211,7 @@ contains
             call add_entity(model%line, part(:, k), line%material, line%row)
          end do
       case (entity_role%bolt)
-         call add_bolt(model, line%ends, line%bolt, line%row)
+         call add_entity(model%of(entity_role%bolt), line%ends, 0, line%row, line%bolt)
       case default
          call add_entity(model%of(line%role), line%ends, &
             & merge(line%material, 0, line%role == entity_role%material), line%row)
@@ -240,7 +240,8 @@ contains
                & "expected bolts inside the outline, got one that ends at ("//to_text(tip(1)) &
                & //", "//to_text(tip(2))//")", map%file, bolts%row)
             if (allocated(error)) return
-            call add_bolt(model, [head, tip], bolts%property, bolts%row)
+            call add_entity(model%of(entity_role%bolt), [head, tip], 0, bolts%row, &
+               & bolts%property)
          end do
       end associate
    end subroutine add_bolts

@@ -196,7 +196,7 @@ contains
          n = n + 1
          associate (drawn => model%of(entity_role%bolt))
             bolt(n)%place = drawn%place(:, i) - [cut%scale%origin, cut%scale%origin]
-            bolt(n)%property = model%bolt_property(:, i)
+            bolt(n)%property = drawn%property(:, i)
             bolt(n)%row = drawn%row(i)
          end associate
          do side = 1, 2

@@ -5,7 +5,7 @@ module dda_line_model
    implicit none
    private
 
-   public :: line_model_t, entities_t, entity_role, role_name, entity_name, add_bolt, add_entity
+   public :: line_model_t, entities_t, entity_role, role_name, entity_name, add_entity
 
    !> What a line or a point is for
    type :: entity_role_enum
@@ -39,6 +39,9 @@ module dda_line_model
       !> Material of the joint or of the blocks, where the role has one: (n or more)
       integer, allocatable :: material(:)
       integer, allocatable :: row(:)  !! Line of the file: (n or more)
+      !> Stiffness, strength and prestress of bolts: (3, n or more); below 0 where the analysis
+      !> file says them
+      real(wp), allocatable :: property(:, :)
    end type entities_t
 
    !> Everything that a geometry file says
@@ -50,33 +53,18 @@ module dda_line_model
       integer :: n_boundary = 0
       type(entities_t) :: line  !! Boundary lines, then joints, with the material of the joint
       type(entities_t) :: of(entity_role%material:entity_role%seismic)  !! All others by their roles
-      !> Stiffness, strength and prestress of each bolt: (3, n or more); below 0 where the
-      !> analysis file says them
-      real(wp), allocatable :: bolt_property(:, :)
    end type line_model_t
 
 contains
 
-   !> Add a bolt
-   pure subroutine add_bolt(model, place, property, row)
-      type(line_model_t), intent(inout) :: model
-      real(wp), intent(in) :: place(4)  !! Its ends: (4) [m]
-      !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
-      real(wp), intent(in) :: property(3)
-      integer, intent(in) :: row  !! Line of the file
-
-      call add_entity(model%of(entity_role%bolt), place, 0, row)
-      if (.not. allocated(model%bolt_property)) allocate (model%bolt_property(3, 8))
-      call make_room(model%bolt_property, model%of(entity_role%bolt)%n)
-      model%bolt_property(:, model%of(entity_role%bolt)%n) = property
-   end subroutine add_bolt
-
    !> Add a segment or a point
-   pure subroutine add_entity(entities, place, material, row)
+   pure subroutine add_entity(entities, place, material, row, property)
       type(entities_t), intent(inout) :: entities
-      real(wp), intent(in) :: place(4)
-      integer, intent(in) :: material  !! Its material; 0 if the role has none
-      integer, intent(in) :: row
+      real(wp), intent(in) :: place(4)  !! Its ends: (4) [m]
+      integer, intent(in) :: material   !! Its material; 0 if the role has none
+      integer, intent(in) :: row        !! Line of the file
+      !> Stiffness, strength and prestress of a bolt: (3); an array that is not allocated is none
+      real(wp), intent(in), optional :: property(3)
 
       if (.not. allocated(entities%place)) allocate (entities%place(4, 8))
       call make_room(entities%place, entities%n + 1)
@@ -86,5 +74,9 @@ contains
       entities%place(:, entities%n) = place
       entities%material(entities%n) = material
       entities%row(entities%n) = row
+      if (.not. present(property)) return
+      if (.not. allocated(entities%property)) allocate (entities%property(3, 8))
+      call make_room(entities%property, entities%n)
+      entities%property(:, entities%n) = property
    end subroutine add_entity
 end module dda_line_model
