@@ -4,6 +4,7 @@ module dda_read_record
    use dda_error, only : error_t, fatal_error, place_error
    use dda_growth, only : make_room
    use dda_kinds, only : wp
+   use dda_table_file, only : field, n_fields
    use dda_text, only : lower_case, read_integer, read_number, to_text
    use dda_text_file, only : read_text_file, text_mark
    implicit none
@@ -103,40 +104,27 @@ contains
    end function begins_with_number
 
    !> One field of a line: between commas if there are any, else between blanks
-   pure function field_of(line, number) result(field)
+   pure function field_of(line, number) result(text)
       character(len=*), intent(in) :: line
       integer, intent(in) :: number  !! Its number, from 1
       !> The field without blanks and double quotes around it; empty if there is none
-      character(len=:), allocatable :: field
+      character(len=:), allocatable :: text
       character(len=2), parameter :: blanks = " "//achar(9)
       integer :: first, last, k
 
-      field = ""
-      first = 1
       if (index(line, ",") > 0) then
-         do k = 2, number
-            last = index(line(first:), ",")
-            if (last == 0) return
-            first = first + last
-         end do
-         last = first + index(line(first:)//",", ",") - 2
+         text = field(line, number)
       else
+         text = ""
          last = 0
          do k = 1, number
             first = last + verify(line(last + 1:)//"|", blanks)
             if (first > len(line)) return
             last = first + scan(line(first:)//" ", blanks) - 2
          end do
+         text = line(first:last)
       end if
-      do while (first <= last)
-         if (scan(line(first:first), blanks//"""") == 0) exit
-         first = first + 1
-      end do
-      do while (first <= last)
-         if (scan(line(last:last), blanks//"""") == 0) exit
-         last = last - 1
-      end do
-      field = line(first:last)
+      text = text(max(1, verify(text, blanks//"""")):verify(text, blanks//"""", back=.true.))
    end function field_of
 
    !> Numbers of the columns; a name is looked for in the last line of the header
@@ -152,7 +140,7 @@ contains
          call read_integer(trim(column(i)), place(i), ok)
          if (ok) ok = place(i) >= merge(1, 0, i == 1) .and. place(i) <= most_columns
          if (ok) cycle
-         do k = n_fields(header), 1, -1
+         do k = n_columns(header), 1, -1
             if (lower_case(field_of(header, k)) == column(i)) exit
          end do
          place(i) = k
@@ -165,19 +153,16 @@ contains
    end subroutine find_columns
 
    !> Number of fields of a line
-   pure integer function n_fields(line)
+   pure integer function n_columns(line)
       character(len=*), intent(in) :: line
-      integer :: i
 
-      n_fields = 0
-      if (index(line, ",") > 0) then
-         n_fields = 1 + count([(line(i:i) == ",", i=1, len(line))])
-      else
-         do while (field_of(line, n_fields + 1) /= "")
-            n_fields = n_fields + 1
-         end do
-      end if
-   end function n_fields
+      n_columns = n_fields(line)
+      if (index(line, ",") > 0) return
+      n_columns = 0
+      do while (field_of(line, n_columns + 1) /= "")
+         n_columns = n_columns + 1
+      end do
+   end function n_columns
 
    !> Take the numbers of a row
    pure subroutine take_row(line, place, scale, row, error)
