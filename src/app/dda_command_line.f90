@@ -5,6 +5,7 @@ module dda_command_line
    use dda_deck_key, only : near_one
    use dda_screen, only : screen_t
    use dda_text, only : read_integer, to_text
+   use dda_utf_8, only : bad_byte, byte_name
    implicit none
    private
 
@@ -31,7 +32,8 @@ module dda_command_line
    type(option_t), parameter :: option(*) = [option_t("--out", "run cut lines export", .true.), &
       & option_t("--jobs", "run", .true.), option_t("--set", "run check export", .true.), &
       & option_t("--cases", "run", .true.), option_t("--resume", "run", .false.), &
-      & option_t("--tight", "run", .false.), option_t("--record", "check", .false.), &
+      & option_t("--tight", "run", .false.), option_t("--force", "run", .false.), &
+      & option_t("--record", "check", .false.), &
       & option_t("--quiet", all_verbs, .false.), option_t("--help", all_verbs, .false.)]
 
    !> An argument as it was given, blanks at its end included
@@ -51,6 +53,7 @@ module dda_command_line
       integer :: jobs = 1                     !! Cases computed at the same time
       logical :: quiet = .false.              !! Print nothing but errors
       logical :: resume = .false.             !! Skip cases that an earlier run has finished
+      logical :: force = .false.              !! Overwrite tables that others have written
       logical :: tight = .false.              !! Bounds of searches as near as rounding lets them be
       logical :: record = .false.             !! Print what deck.record would hold
       type(screen_t) :: screen                !! Where lines for the user go
@@ -64,7 +67,7 @@ contains
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
       type(argument_t), allocatable :: argument(:)
-      integer :: i, length
+      integer :: bad, i, length
 
       allocate (argument(command_argument_count()))
       do i = 1, size(argument)
@@ -75,6 +78,10 @@ contains
          if (allocated(error)) return
          allocate (character(len=length) :: argument(i)%text)
          call get_command_argument(i, argument(i)%text)
+         bad = bad_byte(argument(i)%text)
+         if (bad > 0) call fatal_error(error, "expected text in UTF-8, got the byte " &
+            & //byte_name(argument(i)%text(bad:bad))//"; rename the file or folder", "dda", i)
+         if (allocated(error)) return
       end do
       call parse_command(argument, command, error)
       if (allocated(error)) error%file = "dda"
@@ -197,6 +204,8 @@ contains
          command%quiet = .true.
       case ("--resume")
          command%resume = .true.
+      case ("--force")
+         command%force = .true.
       case ("--tight")
          command%tight = .true.
       case ("--record")

@@ -53,7 +53,7 @@ module dda_help
    !> dda help run
    character(len=*), parameter :: on_run(*) = [character(len=96) :: &
       & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
-      & "        [--cases LIST] [--resume] [--tight] [--quiet]", &
+      & "        [--cases LIST] [--resume] [--force] [--tight] [--quiet]", &
       & "", &
       & "   --out DIR   where results go; several decks each have a folder inside it", &
       & "               (without it: a folder named as the deck without its ending)", &
@@ -64,6 +64,8 @@ module dda_help
       & "   --resume    skip the cases that an earlier run of the same deck with the same", &
       & "               --set has finished; if the deck has changed, compute all again", &
       & "               (without it: compute all again)", &
+      & "   --force     overwrite a results.csv, or another table, that dda has not written", &
+      & "               (without it: such a file is left alone, and the run ends with 4)", &
       & "   --tight     bounds of searches to 1e-12, as search%tolerance=1e-11 asks for them", &
       & "               (without it: to the tolerance of the deck)", &
       & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &

@@ -1,6 +1,7 @@
 !> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
 submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_block_rows, only : contact_states, frame_joint_rows
+   use dda_binary_file, only : remove_link
    use dda_block_system, only : block_system_t
    use dda_force_rows, only : bar_lines, reaction_text
    use dda_frames, only : album_t, frame_t
@@ -44,7 +45,10 @@ contains
 
       stem = "case_"//to_text(number)
       folder = tables%folder//"/frames/"
-      if (tables%has_vtu) call make_folder(tables%folder//"/frames")
+      if (tables%has_vtu) then
+         call remove_link(tables%folder//"/frames")
+         call make_folder(tables%folder//"/frames")
+      end if
       index = ""
       do i = 1, album%n
          if (allocated(error)) return

@@ -1,19 +1,19 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_binary_file, only : sync_binary
+   use dda_binary_file, only : is_link, sync_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_deck_sweep, only : few_cases, n_cases, swept_texts
    use dda_force_rows, only : bars_header, proof_forces_header, proof_motion_header
    use dda_deck, only : deck_t, has_group
    use dda_disk_record, only : write_disk_record
    use dda_fill_loads, only : fill_yields
-   use dda_error, only : error_t
+   use dda_error, only : error_t, fatal_error
    use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
-   use dda_table_file, only : append_line, close_table, field_number, open_table, remove_file, &
-      & table_file_t, without_field
+   use dda_table_file, only : append_line, close_table, field_number, first_line, open_table, &
+      & remove_file, table_file_t, without_field
    use dda_text, only : add_line, bytes_of, fields, growing_text_t, lines_of, to_text
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
@@ -23,8 +23,8 @@ module dda_result_tables
    private
 
    public :: result_tables_t, result_table_t, table, table_enum
-   public :: name_tables, open_tables, close_tables, write_case, write_waiting, swept_fields
-   public :: left_out, common_total, sync_tables
+   public :: name_tables, check_origin, open_tables, close_tables, write_case, write_waiting
+   public :: swept_fields, left_out, common_total, sync_tables
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -81,6 +81,9 @@ module dda_result_tables
    !> Time between two occasions to bring the tables to the disk, at least and beside the time that
    !> it takes: on a slow disk no more than a twentieth of a run goes into it
    integer, parameter :: sync_seconds = 1, sync_ratio = 20
+
+   !> Characters of a header by which a table is known: deck,case of results.csv
+   integer, parameter :: origin_length = 9
 
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
@@ -170,6 +173,27 @@ contains
       if (files /= "") text = "no "//files(6:)//" of more than "//to_text(few_cases) &
          & //" cases without "//keys(3:)
    end function left_out
+
+   !> Refuse to overwrite or remove what another program has written under the name of a table: its
+   !> first line begins otherwise. A link is replaced alone, not where it leads
+   subroutine check_origin(tables, error)
+      type(result_tables_t), intent(in) :: tables
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: found, own
+      integer :: i
+
+      do i = 1, size(tables%at)
+         if (allocated(error)) return
+         if (is_link(tables%at(i)%file)) cycle
+         found = first_line(tables%at(i)%file)
+         own = tables%at(i)%header(:origin_length)
+         ! a run that a full disk has ended may have left part of it
+         if (index(found, own) == 1 .or. index(own, found) == 1) cycle
+         call fatal_error(error, "expected a table that begins with "//own//", got a file that " &
+            & //"dda has not written; choose another folder with --out, or overwrite it with " &
+            & //"--force", tables%at(i)%file, 1)
+      end do
+   end subroutine check_origin
 
    !> Begin all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)

@@ -2,14 +2,16 @@
 submodule (dda_verbs) dda_run
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
+   use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary, &
+      & remove_link
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : choose_cases, n_cases
    use dda_error, only : error_line, fatal_error
    use dda_process, only : deck_stem, error_is_terminal, exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
-   use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
+   use dda_result_tables, only : check_origin, close_tables, left_out, name_tables, &
+      & open_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene
@@ -171,6 +173,7 @@ contains
       allocate (finished%case(total), source=.false.)
       call make_folder(tables%folder)
       call lock_folder(tables%folder, command%quiet, error)
+      if (.not. allocated(error) .and. .not. command%force) call check_origin(tables, error)
       if (allocated(error)) return
       record = run_record(deck, deck_stem(name))
       if (command%resume) then
@@ -231,6 +234,7 @@ contains
       type(binary_file_t) :: held
 
       file = folder//"/run.lock"
+      call remove_link(file)
       call open_binary(file, held, error, keep=.true.)
       if (allocated(error)) return
       if (is_locked(held)) return

@@ -56,7 +56,8 @@ contains
       type(error_t), allocatable :: error
 
       call open_descriptor(standard_output, "standard output", screen%file)
-      if (descriptor_of(screen%file) < 0) call open_binary("/dev/null", screen%file, error)
+      if (descriptor_of(screen%file) < 0) &
+         & call open_binary("/dev/null", screen%file, error, keep=.true.)
       call fill_gaps()
    end subroutine open_screen
 
@@ -67,7 +68,7 @@ contains
       type(error_t), allocatable :: error
 
       do
-         call open_binary("/dev/null", filler, error)
+         call open_binary("/dev/null", filler, error, keep=.true.)
          if (allocated(error)) exit
          if (descriptor_of(filler) > standard_error) exit
       end do

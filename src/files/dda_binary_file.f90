@@ -4,14 +4,14 @@ module dda_binary_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
       & c_ptr, c_size_t
    use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync, &
-      & c_ferror, c_fclose
+      & c_ferror, c_fclose, c_readlink, c_unlink
    use dda_error, only : error_t, fatal_error
    implicit none
    private
 
    public :: binary_file_t, open_binary, open_descriptor, flush_binary, sync_binary, close_binary
    public :: descriptor_of, write_file
-   public :: append_text
+   public :: append_text, is_link, remove_link
 
    !> A file open for writing
    type :: binary_file_t
@@ -26,22 +26,47 @@ module dda_binary_file
 
 contains
 
-   !> Begin a file
+   !> Begin a file. A link of its name is replaced, and where it leads stays as it is
    subroutine open_binary(name, file, error, keep)
       character(len=*), intent(in) :: name   !! Name of the file; one that exists is replaced
       type(binary_file_t), intent(out) :: file
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: keep  !! Whether what it holds is kept and added to instead
-      character(len=2) :: mode
+      character(len=:), allocatable :: mode
+      integer(c_int) :: failed
+      logical :: kept
 
-      mode = "wb"
-      if (present(keep)) mode = merge("ab", "wb", keep)
+      kept = .false.
+      if (present(keep)) kept = keep
+      if (kept) then
+         mode = "ab"
+      else
+         ! a file of its own: C's x refuses whatever still has the name
+         mode = "wbx"
+         failed = c_unlink(name//c_null_char)
+      end if
       file%name = name
       file%handle = c_fopen(name//c_null_char, mode//c_null_char)
       if (.not. c_associated(file%handle)) &
          & call fatal_error(error, "the file cannot be written; choose another folder with --out", &
          & name, 1)
    end subroutine open_binary
+
+   !> Remove a link; files and folders of that name stay
+   subroutine remove_link(name)
+      character(len=*), intent(in) :: name  !! Name of the link
+      integer(c_int) :: failed
+
+      if (is_link(name)) failed = c_unlink(name//c_null_char)
+   end subroutine remove_link
+
+   !> Whether a name is that of a symbolic link
+   logical function is_link(name)
+      character(len=*), intent(in) :: name
+      character(len=1) :: target(1)
+
+      is_link = c_readlink(name//c_null_char, target, 1_c_size_t) >= 0
+   end function is_link
 
    !> Take over a file that the system has opened already
    subroutine open_descriptor(descriptor, name, file)

@@ -1,12 +1,12 @@
 !> Files of the C library: Fortran's open cuts the blanks at the end of a name, and its flush does
 !> not say when a disk is full
 module dda_c_files
-   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_int64_t, c_intptr_t, c_ptr, c_size_t
    implicit none
    private
 
    public :: c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync
-   public :: c_ferror, c_fclose, c_fread, c_access
+   public :: c_ferror, c_fclose, c_fread, c_access, c_open, c_close, c_lseek, c_unlink, c_readlink
 
    interface
       !> C: open a file
@@ -91,5 +91,48 @@ module dda_c_files
          integer(c_int), intent(in), value :: mode  !! What is wanted; 0: that it exists
          integer(c_int) :: failed                   !! 0 if it may be done
       end function c_access
+
+      !> C: open a file by the system alone
+      function c_open(path, flags) bind(c, name="open") result(descriptor)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), intent(in), value :: flags  !! How to open it
+         !> The system's number; negative after a failure
+         integer(c_int) :: descriptor
+      end function c_open
+
+      !> C: close what c_open has opened
+      function c_close(descriptor) bind(c, name="close") result(failed)
+         import :: c_int
+         integer(c_int), intent(in), value :: descriptor
+         integer(c_int) :: failed
+      end function c_close
+
+      !> C: go to a place of a file
+      function c_lseek(descriptor, offset, origin) bind(c, name="lseek") result(place)
+         import :: c_int, c_int64_t
+         integer(c_int), intent(in), value :: descriptor
+         integer(c_int64_t), intent(in), value :: offset  !! Distance from the origin [bytes]
+         integer(c_int), intent(in), value :: origin      !! 0: the begin, 2: the end
+         !> The place from the begin [bytes]; negative for a pipe or a terminal
+         integer(c_int64_t) :: place
+      end function c_lseek
+
+      !> C: remove a file or a link, no folder
+      function c_unlink(path) bind(c, name="unlink") result(failed)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: failed  !! 0 if it was removed
+      end function c_unlink
+
+      !> C: where a link leads
+      function c_readlink(path, target, size) bind(c, name="readlink") result(length)
+         import :: c_char, c_intptr_t, c_size_t
+         character(kind=c_char), intent(in) :: path(*)
+         character(kind=c_char), intent(out) :: target(*)  !! Receives it
+         integer(c_size_t), intent(in), value :: size      !! Room for it
+         !> Its length; negative if there is no link
+         integer(c_intptr_t) :: length
+      end function c_readlink
    end interface
 end module dda_c_files

@@ -7,12 +7,13 @@ module dda_table_file
       & open_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_error, only : error_t, fatal_error
+   use dda_text_file, only : is_plain_file
    implicit none
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
    public :: keep_line, part_name, rename_part, table_lines_t, open_lines, next_line, close_lines
-   public :: n_fields, field, field_number, without_field
+   public :: first_line, n_fields, field_ends, field, field_number, without_field
 
    !> An open table
    type :: table_file_t
@@ -132,6 +133,7 @@ contains
       integer :: stat
 
       lines%ahead = ""
+      if (.not. is_plain_file(file)) return
       inquire (file=file, size=lines%left)
       if (present(most)) lines%left = min(lines%left, most)
       open (newunit=lines%unit, file=file, access="stream", form="unformatted", status="old", &
@@ -159,6 +161,23 @@ contains
       lines%first = lines%first + length
    end subroutine next_line
 
+   !> First line of a file, as far as it is read at a time; empty if there is none
+   function first_line(file) result(line)
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable :: line  !! The line with its end, if it has one
+      type(table_lines_t) :: lines
+      logical :: found
+
+      call open_lines(file, lines, int(chunk, int64))
+      call next_line(lines, line, found)
+      if (found) then
+         line = line//new_line("a")
+      else
+         line = lines%ahead
+      end if
+      call close_lines(lines)
+   end function first_line
+
    !> Read more of the file
    subroutine read_ahead(lines)
       type(table_lines_t), intent(inout) :: lines
@@ -185,17 +204,21 @@ contains
    end subroutine close_lines
 
    !> Number of fields of a line
-   pure integer function n_fields(line)
+   pure integer function n_fields(line, separator)
       !> Fields parted by commas; commas between double quotes part nothing
       character(len=*), intent(in) :: line
+      character, intent(in), optional :: separator  !! What parts them instead of commas
+      character :: mark
       logical :: quoted
       integer :: i
 
+      mark = ","
+      if (present(separator)) mark = separator
       quoted = .false.
       n_fields = 1
       do i = 1, len(line)
          if (line(i:i) == """") quoted = .not. quoted
-         if (line(i:i) == "," .and. .not. quoted) n_fields = n_fields + 1
+         if (line(i:i) == mark .and. .not. quoted) n_fields = n_fields + 1
       end do
    end function n_fields
 
@@ -222,19 +245,23 @@ contains
    end function without_field
 
    !> First and last character of a field; the last before the first if it is empty or not there
-   pure function field_ends(line, number) result(ends)
+   pure function field_ends(line, number, separator) result(ends)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number  !! Which, from 1
+      integer, intent(in) :: number                 !! Which, from 1
+      character, intent(in), optional :: separator  !! What parts fields instead of commas
       integer :: ends(2)
+      character :: mark
       logical :: quoted
       integer :: i, n
 
+      mark = ","
+      if (present(separator)) mark = separator
       quoted = .false.
       n = 1
       ends = [1, len(line)]
       do i = 1, len(line)
          if (line(i:i) == """") quoted = .not. quoted
-         if (line(i:i) /= "," .or. quoted) cycle
+         if (line(i:i) /= mark .or. quoted) cycle
          if (n == number) ends(2) = i - 1
          if (n == number) return
          n = n + 1

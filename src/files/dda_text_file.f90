@@ -1,22 +1,32 @@
 !> A text file as one string, whatever its line ends, or a failure with a line; and the mark by
 !> which another one of the same name is known
 module dda_text_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, &
+      & c_null_char, c_null_ptr, c_ptr, c_size_t
    use dda_check_sum, only : crc_32
-   use dda_c_files, only : c_access, c_fclose, c_ferror, c_fopen, c_fread
+   use dda_c_files, only : c_access, c_close, c_fclose, c_ferror, c_fdopen, c_fopen, c_fread, &
+      & c_lseek, c_open
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : to_text
+   use dda_utf_8, only : bad_byte, byte_name
    implicit none
    private
 
-   public :: read_bytes, read_text_file, plain_text
+   public :: read_bytes, read_text_file, plain_text, is_plain_file
    public :: file_mark, text_mark
 
    !> One megabyte [bytes]
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
    integer, parameter :: max_file_size = 512*megabyte
+   !> The message about a file of length 0, or a device without a length
+   character(len=*), parameter :: no_bytes = "the file is empty; write into it"
+   !> What the shell calls a pipe into the program, which has somebody who writes
+   character(len=*), parameter :: stream(*) = [character(len=14) :: "/dev/stdin", "/dev/fd/", &
+      & "/proc/self/fd/"]
+   !> C's O_NONBLOCK on Linux, beside O_RDONLY, which is 0: a pipe is opened at once
+   integer(c_int), parameter :: at_once = 2048
 
 contains
 
@@ -38,7 +48,7 @@ contains
       error%file = file
    end subroutine read_text_file
 
-   !> Read a whole file as it is, be it a pipe
+   !> Read a whole file as it is, be it a pipe from the shell
    subroutine read_bytes(file, bytes, error)
       character(len=*), intent(in) :: file
       character(len=:), allocatable, intent(out) :: bytes  !! Its bytes; empty after a failure
@@ -49,22 +59,81 @@ contains
       bytes = ""
       call check_name(file, error)
       if (allocated(error)) return
-      handle = c_fopen(file//c_null_char, "rb"//c_null_char)
-      if (.not. c_associated(handle)) call fatal_error(error, &
-         & "the file cannot be read; check its permissions")
+      call open_to_read(file, handle, error)
       if (allocated(error)) return
       call read_to_end(handle, bytes)
       failed = c_ferror(handle)
       if (failed /= 0) then
          call fatal_error(error, "the file cannot be read to its end; copy it to another place")
       else if (len(bytes) == 0) then
-         call fatal_error(error, "the file is empty; write into it")
+         call fatal_error(error, no_bytes)
       else if (len(bytes) > max_file_size) then
          call fatal_error(error, "expected a file of at most "//to_text(max_file_size/megabyte)// &
             " MB, got a larger one; split it")
       end if
       failed = c_fclose(handle)
    end subroutine read_bytes
+
+   !> Open a file. Others than those of the shell must be plain: a pipe may have nobody who writes,
+   !> a terminal or device no end
+   subroutine open_to_read(file, handle, error)
+      character(len=*), intent(in) :: file
+      type(c_ptr), intent(out) :: handle  !! C's handle of the file
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: descriptor, failed
+      integer(c_int64_t) :: length
+
+      handle = c_null_ptr
+      if (is_stream(file)) then
+         handle = c_fopen(file//c_null_char, "rb"//c_null_char)
+      else
+         call open_plain(file, descriptor, length)
+         if (length > 0) then
+            handle = c_fdopen(descriptor, "rb"//c_null_char)
+         else if (descriptor >= 0) then
+            failed = c_close(descriptor)
+            if (length < 0) call fatal_error(error, "expected a file, got a pipe or a device; " &
+               & //"write its text into a file, or send it to /dev/stdin")
+            if (length == 0) call fatal_error(error, no_bytes)
+         end if
+      end if
+      if (.not. c_associated(handle) .and. .not. allocated(error)) call fatal_error(error, &
+         & "the file cannot be read; check its permissions")
+   end subroutine open_to_read
+
+   !> Whether a name is one that the shell gives a pipe
+   pure logical function is_stream(file)
+      character(len=*), intent(in) :: file
+      integer :: i
+
+      is_stream = any([(index(file, trim(stream(i))) == 1, i=1, size(stream))])
+   end function is_stream
+
+   !> Open a file without waiting for who writes into it
+   subroutine open_plain(file, descriptor, length)
+      character(len=*), intent(in) :: file
+      integer(c_int), intent(out) :: descriptor    !! The system's number; negative after a failure
+      !> Its length, -1 for a pipe or a terminal; 0 for other devices [bytes]
+      integer(c_int64_t), intent(out) :: length
+      integer(c_int), parameter :: from_begin = 0, from_end = 2
+
+      length = -1
+      descriptor = c_open(file//c_null_char, at_once)
+      if (descriptor < 0) return
+      length = c_lseek(descriptor, 0_c_int64_t, from_end)
+      if (c_lseek(descriptor, 0_c_int64_t, from_begin) /= 0) length = -1
+   end subroutine open_plain
+
+   !> Whether there is a file of a name, or a device, but no pipe
+   logical function is_plain_file(file)
+      character(len=*), intent(in) :: file
+      integer(c_int) :: descriptor, failed
+      integer(c_int64_t) :: length
+
+      call open_plain(file, descriptor, length)
+      if (descriptor >= 0) failed = c_close(descriptor)
+      is_plain_file = length >= 0
+   end function is_plain_file
 
    !> Whether a name stands for something that may be a file
    subroutine check_name(file, error)
@@ -105,12 +174,12 @@ contains
       bytes = room(:n)
    end subroutine read_to_end
 
-   !> One kind of line end, no byte order mark, no control characters but the tab
+   !> One kind of line end, no byte order mark, no control characters but the tab, UTF-8
    pure subroutine plain_text(raw, text, error)
       character(len=*), intent(in) :: raw  !! Bytes of a file
       !> The text: lines end in a line feed, whether they ended in CR LF, CR or LF
       character(len=:), allocatable, intent(out) :: text
-      type(error_t), allocatable, intent(out) :: error  !! A control character, with its line
+      type(error_t), allocatable, intent(out) :: error  !! What is no text, with its line
       character(len=1), parameter :: lf = achar(10), cr = achar(13), tab = achar(9)
       character(len=3), parameter :: mark = char(239)//char(187)//char(191)
       integer :: i, n, line, code
@@ -132,6 +201,14 @@ contains
          return
       end do
       text = text(:n)
+      i = bad_byte(text)
+      if (i == 0) return
+      line = 1
+      do n = 1, i - 1
+         if (text(n:n) == lf) line = line + 1
+      end do
+      call fatal_error(error, "expected text in UTF-8, got the byte "//byte_name(text(i:i)) &
+         & //"; save the file as UTF-8", line=line)
    end subroutine plain_text
 
    !> The mark of a file: its length and check sum; a dash for one that cannot be read

@@ -89,6 +89,26 @@ def test_quantities_and_both_homes_of_a_record_agree(tmp_path: Path) -> None:
     assert ways == pytest.approx([-3.0 * 0.6**2 / 2] * 6, rel=1e-9)
 
 
+@pytest.mark.parametrize("separator", [";", ",", "\t"], ids=["semicolon", "comma", "tab"])
+def test_columns_whose_names_have_blanks_are_named_in_both_homes(tmp_path: Path, separator: str) -> None:
+    """The moved block is that of the same record by the numbers of its columns."""
+    names, lines = ["Time (s)", "Vertical", "Acc NS (g)"], ["0 0 1.5", "0.6 0 1.5"]
+    text = "\n".join(separator.join(words) for words in [names, *(line.split() for line in lines)])
+    (tmp_path / "a.csv").write_text(text + "\n")
+    step = FREE.format(more=", time_step = 0.01")
+    ways = []
+    for columns in ("1 3", "time (s); Acc NS (g)", "Time (s), acc ns (g)"):
+        status, message = run(tmp_path, BLOCKS, f"&ground record = 'a.csv', columns = '{columns}', unit = 2 /\n{step}")
+        assert status == 0, message
+        ways.append(float(rows(tmp_path, "points")[-1]["u"]))
+    for columns in ("1 3", "'Time (s)' \"Acc NS (g)\"", "1 'ACC NS (G)' '0'"):
+        base = f"base_acceleration file 'a.csv' columns {columns} scale 2\n"
+        status, message = run(tmp_path, BLOCKS + base, step)
+        assert status == 0, message
+        ways.append(float(rows(tmp_path, "points")[-1]["u"]))
+    assert ways == pytest.approx([-3.0 * 0.6**2 / 2] * 6, rel=1e-9)
+
+
 def test_a_led_point_follows_its_record(tmp_path: Path) -> None:
     (tmp_path / "p.csv").write_text("t,ux,uy\n0,0,0\n0.5,20,-8\n")
     led = BLOCKS + "".join(f"displacement {x} 1 file 'p.csv' columns t ux uy scale 0.001\n" for x in (0.2, 0.8))
@@ -260,7 +280,7 @@ def test_what_a_file_of_blocks_contradicts_is_refused(tmp_path: Path, more: str,
 def test_a_message_shows_no_byte_that_is_no_letter(tmp_path: Path) -> None:
     (tmp_path / "q.csv").write_text(RECORD)
     (tmp_path / "x.blocks").write_text(BLOCKS)
-    deck = b"&scene kind = 'blocks', geometry = 'x.blocks' /\n&ground record = 'q.csv', columns = '1\xffeast' /\n"
+    deck = b"&scene kind = 'blocks', geometry = 'x.blocks' /\n&ground record = 'q.csv', columns = '1\xc3\xa9east' /\n"
     (tmp_path / "x.nml").write_bytes(deck + FREE.format(more="").encode())
     done = run_dda("check", "x.nml", cwd=tmp_path)
     assert done.returncode == 2

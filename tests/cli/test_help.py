@@ -112,6 +112,14 @@ def run_tight(folder: Path) -> None:
     assert "search%tolerance\n  1e-11\n" in (folder / "push" / "deck.record").read_text()
 
 
+def run_force(folder: Path) -> None:
+    (folder / "deck").mkdir()
+    (folder / "deck" / "results.csv").write_text("of others\n")
+    assert run_dda("run", "deck.nml", cwd=folder).returncode == 4
+    assert run_dda("run", "deck.nml", "--force", cwd=folder).returncode == 0
+    assert cases(folder) == 4
+
+
 def run_quiet(folder: Path) -> None:
     done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -169,6 +177,7 @@ def export_quiet(folder: Path) -> None:
 PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--out"): run_out, ("run", "--jobs"): run_jobs, ("run", "--set"): run_set, ("run", "--cases"): run_cases,
     ("run", "--resume"): run_resume, ("run", "--tight"): run_tight, ("run", "--quiet"): run_quiet,
+    ("run", "--force"): run_force,
     ("check", "--set"): check_set, ("check", "--record"): check_record, ("check", "--quiet"): check_quiet,
     ("cut", "--out"): cut_out, ("cut", "--quiet"): cut_quiet, ("export", "--out"): export_out,
     ("export", "--set"): export_set, ("export", "--quiet"): export_quiet}

@@ -175,17 +175,6 @@ def test_output_folder_that_cannot_be_made_gives_4(tmp_path: Path, out: str) -> 
     assert (tmp_path / "deck.nml").read_text() == STABLE
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-@pytest.mark.parametrize("table", TABLES)
-def test_full_disk_gives_4(tmp_path: Path, table: str) -> None:
-    write_decks(tmp_path, deck=STABLE)
-    (tmp_path / "deck").mkdir()
-    (tmp_path / "deck" / table).symlink_to("/dev/full")
-    done = run_dda("run", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 4
-    assert f"deck/{table}" in done.stderr
-
-
 # where results go
 
 

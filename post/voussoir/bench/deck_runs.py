@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from voussoir.dda_program import find_dda, set_options
+from voussoir.files import read_text, write_text
 
 #: A row of results.csv: its columns as text
 Row = dict[str, str]
@@ -45,7 +46,7 @@ def run_deck(
     else:
         (folder / word).write_bytes(deck if isinstance(deck, bytes) else deck.encode())
     for name, text in (files or {}).items():
-        (folder / name).write_text(text, encoding="utf-8")
+        write_text(folder / name, text)
     command = [str(find_dda()), "run", word, "--out", "out", "--jobs", str(jobs), *set_options(settings)]
     start = time.monotonic()
     try:
@@ -73,7 +74,7 @@ def _remarks(file: Path) -> dict[str, str]:
     if not file.is_file():
         return {}
     remarks = {}
-    for line in file.read_text(encoding="utf-8").splitlines()[1:]:
+    for line in read_text(file).splitlines()[1:]:
         number, _, remark = (line.split(maxsplit=2) + ["", "", ""])[:3]
         remarks[number] = remark
     return remarks

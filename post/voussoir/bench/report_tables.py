@@ -7,12 +7,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+from voussoir.files import fresh
+
 Point = TypeVar("Point")
 
 
 def write_csv(file: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
     """Write a table as CSV."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
+    with fresh(file).open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(heads)
         writer.writerows(rows)

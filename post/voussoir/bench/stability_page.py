@@ -11,6 +11,7 @@ from pathlib import Path
 
 from voussoir.bench.report_tables import markdown, write_csv
 from voussoir.bench.expectations import RIGHT, UNDECIDED, WRONG
+from voussoir.files import write_text
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def write_markdown(lines: Sequence[Line], file: Path) -> None:
         *markdown(_HEADS, "l" + "r" * (len(_HEADS) - 1), [kind.cells() for kind in kinds(lines)]), "",
         *markdown(("scene", "result", "wanted", "found", "error", "reason"), "llllll", odd),
     ]
-    file.write_text("\n".join(text) + "\n", encoding="utf-8")
+    write_text(file, "\n".join(text) + "\n")
 
 
 def _is_number(text: str) -> bool:
@@ -137,7 +138,7 @@ def write_page(lines: Sequence[Line], file: Path) -> None:
         own = [line for line in lines if line.group == kind.name]
         text += [f"<details><summary>{html.escape(kind.name)}: {len(own)} scenes</summary>"]
         text += [*_scene_table(own, _SHOWN), "</details>"]
-    file.write_text("\n".join([*text, "</body></html>"]) + "\n", encoding="utf-8")
+    write_text(file, "\n".join([*text, "</body></html>"]) + "\n")
 
 
 def _kind_table(lines: Sequence[Line]) -> list[str]:

@@ -15,6 +15,7 @@ from voussoir.bench.checks import Check, Outcome
 from voussoir.bench.deck_runs import run_deck
 from voussoir.bench.scene import Scene
 from voussoir.dda_program import DdaError
+from voussoir.files import read_text
 
 #: Errors below this are round-off: they have no rate
 ROUND_OFF = 1e-9
@@ -78,7 +79,7 @@ def _step(deck: Path, halvings: int) -> list[str]:
     """Setting that halves the step of a deck so often, none for the deck as it stands."""
     if halvings == 0:
         return []
-    step = re.search(r"time_step = ([-+.\de]+)", deck.read_text(encoding="utf-8"))
+    step = re.search(r"time_step = ([-+.\de]+)", read_text(deck))
     if not step:
         raise DdaError(f"{deck}: expected a time_step to halve, got none; give one in &analysis")
     return [f"analysis%time_step={float(step[1]) / 2**halvings!r}"]

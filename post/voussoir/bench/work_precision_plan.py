@@ -18,6 +18,7 @@ from voussoir.bench.scene import BLOCKS, Corners, written_block
 from voussoir.bench.work_precision_runs import FRICTION_DEG, Arch
 from voussoir.dda_program import find_dda
 from voussoir.deck.text import Groups, deck_text
+from voussoir.files import write_text
 
 _PEAK = re.compile(r"VmHWM:\s+(\d+) kB")
 #: Thickness over the critical one of the arch that is decided
@@ -57,7 +58,7 @@ def plan_costs(counts: Sequence[int], folder: Path, repeats: int) -> Iterator[Co
     for count in counts:
         arch = Arch(90.0, count)
         ratio = THICKER * arch.exact()
-        (folder / BLOCKS).write_text(_polygons(arch, ratio), encoding="utf-8")
+        write_text(folder / BLOCKS, _polygons(arch, ratio))
         for part, groups in PARTS:
             if "move" in part and count > MOST_MOVING:
                 continue
@@ -77,7 +78,7 @@ def _cost(arch: Arch, part: str, more: Groups | None, ratio: float, search: bool
     else:
         groups["arch"]["thickness_ratio"] = ratio
     deck = deck_text({**groups, "joint": {"friction_deg": FRICTION_DEG}, "output": _BARE, **(more or {})})
-    (folder / "plan.nml").write_text(deck, encoding="utf-8")
+    write_text(folder / "plan.nml", deck)
     seconds, megabytes = [], []
     for _ in range(repeats):
         megabytes.append(_run(folder))

@@ -19,6 +19,7 @@ from typing import BinaryIO
 import numpy as np
 
 from voussoir.campaign.part import cases_of, slices_of
+from voussoir.files import fresh
 
 #: Tables with a case in each row
 TABLES = (
@@ -127,8 +128,9 @@ def copy_pictures(part: Path, owned: np.ndarray, out: Path) -> None:
         case = re.match(r"case_(\d+)", path.name)
         if case and part != out and int(case[1]) < len(owned) and owned[int(case[1])]:
             copy = out / path.relative_to(part)
-            copy.parent.mkdir(exist_ok=True)
-            shutil.copy2(path, copy)
+            if copy.parent != out:
+                fresh(copy.parent).mkdir(exist_ok=True)
+            shutil.copy2(path, fresh(copy))
 
 
 def merged(out: Path) -> Summary:

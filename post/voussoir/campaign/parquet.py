@@ -10,6 +10,7 @@ from typing import Any
 
 from voussoir.campaign.merge import replace
 from voussoir.extras import load
+from voussoir.files import plain
 from voussoir.results._tables import column_of
 
 #: Rows that are held at the same time, and in one group of the file
@@ -40,7 +41,7 @@ def write_parquet(table: Path) -> Path:
 
 def _batches(table: Path, arrow: Any) -> Iterator[Any]:
     """Rows of a table, so many at a time; one without rows where it has none."""
-    with table.open(newline="", encoding="utf-8") as lines:
+    with plain(table).open(newline="", encoding="utf-8") as lines:
         reader = csv.reader(lines)
         names = next(reader, [])
         rows = list(islice(reader, BATCH))

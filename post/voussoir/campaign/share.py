@@ -18,6 +18,8 @@ from voussoir.dda_program import Asked, DdaError, ask
 
 #: Most cases of a part, and parts a worker: all are to end at about the same time
 LARGEST_PART, PARTS_A_WORKER = 10000, 8
+#: Begin of results.csv, by which it is known
+_ORIGIN = b"deck,case"
 #: Folders that this process has, with their open lock files
 _LOCKS: dict[Path, BinaryIO] = {}
 #: Status and message of a part
@@ -62,6 +64,8 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     file = out / "campaign.record"
     digest = hashlib.sha256(asked.record.encode()).hexdigest()
     text = f"{digest}\n{asked.record}"
+    if not anew:
+        check_origin(out / "results.csv")
     if anew:
         shutil.rmtree(campaign.parts, ignore_errors=True)
         for name in ("campaign.record", "deck.record", "results.csv", "disk.record"):
@@ -80,6 +84,18 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
                 (out / name).unlink(missing_ok=True)
         replace(file, lambda opened: opened.write(text.encode()))
     return campaign
+
+
+def check_origin(table: Path) -> None:
+    """Refuse to replace a table that dda has not written: its first line begins otherwise; DdaError of status 4."""
+    if table.is_symlink() or not table.is_file():
+        return
+    with table.open("rb") as file:
+        begin = file.read(len(_ORIGIN))
+    if not begin.startswith(_ORIGIN) and not _ORIGIN.startswith(begin):
+        raise DdaError(
+            f"{table}:1: error: expected a table that begins with {_ORIGIN.decode()}, got a file that dda has not "
+            "written; choose another --out, or discard what is there with --anew", 4)
 
 
 def changed_keys(old: str, new: str) -> str:
@@ -113,7 +129,10 @@ def lock(out: Path, shared: bool) -> None:
 
     DdaError of status 4 if another campaign or run has it.
     """
-    file = (out / "run.lock").open("ab")
+    name = out / "run.lock"
+    if name.is_symlink():
+        name.unlink()
+    file = name.open("ab")
     try:
         fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError as error:

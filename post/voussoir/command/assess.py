@@ -17,6 +17,7 @@ from voussoir import __version__
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.thickness import ends_of, thickness_safety
+from voussoir.files import read_text, write_text
 from voussoir.results import Results, Table
 
 #: Positions of the first axle in the diagram
@@ -46,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page."""
     out = arguments.out or arguments.deck.with_suffix(".html")
     try:
-        text = arguments.deck.read_text(encoding="utf-8")
+        text = read_text(arguments.deck)
         check(text, arguments.deck)
         written = assess(text, arguments.deck)
     except DdaError as error:
@@ -54,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise ValueError(f"expected a deck that can be read: {error.strerror}") from error
     try:
-        out.write_text(written, encoding="utf-8")
+        write_text(out, written)
     except OSError as error:
         raise DdaError(f"{out}:1: error: expected a file that can be written: {error.strerror}", 4) from error
     print(out)

@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from voussoir.dda_program import DdaError, find_input
+from voussoir.files import fresh
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +24,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     target = arguments.copy / "input"
     try:
-        shutil.copytree(folder, target, dirs_exist_ok=True)
+        shutil.copytree(
+            folder, target, dirs_exist_ok=True, copy_function=lambda one, other: shutil.copy2(one, fresh(Path(other))))
     except (OSError, shutil.Error) as problem:
         raise DdaError(f"{target}:1: error: expected a folder to copy to, got: {problem}", 4) from problem
     print(f"{target}: {len(list(target.rglob('*.nml')))} decks")

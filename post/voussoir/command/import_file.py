@@ -12,6 +12,7 @@ from voussoir.command.options import magnification, whole_number
 from voussoir.dda_program import DdaError, find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import READERS, ImportedShape, read_shapes
+from voussoir.files import write_text
 
 #: Words that make a layer or a property one of what does not move
 FIXED = ("fixed", "ground", "support", "abutment")
@@ -63,8 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
         blocks.groups["search"] = {"parameter": arguments.search}
     try:
         deck.parent.mkdir(parents=True, exist_ok=True)
-        deck.with_suffix(".blocks").write_text(blocks.files[BLOCKS_FILE], encoding="utf-8")
-        deck.write_text(blocks.text(), encoding="utf-8")
+        write_text(deck.with_suffix(".blocks"), blocks.files[BLOCKS_FILE])
+        write_text(deck, blocks.text())
     except OSError as problem:
         raise DdaError(f"{deck}:1: error: expected a file that can be written, got: {problem}", 4) from problem
     fixed = sum(shape.fixed for shape in blocks.shapes)

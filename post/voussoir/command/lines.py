@@ -6,6 +6,8 @@ import argparse
 import csv
 from pathlib import Path
 
+from voussoir.files import read_text
+
 #: Layers of the picture from below: role, colour by its place in INK, width of the line
 _LINES = (("joint", 0, 0.5), ("boundary", 0, 1.4), ("material", 1, 1.0), ("bolt", 2, 1.6))
 #: Points: role, mark, name in the legend
@@ -28,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise ValueError(f"expected a picture whose name ends in .png, .svg or .pdf, got {picture}")
     try:
         lines = read_lines(arguments.table)
-    except (OSError, ValueError, KeyError) as problem:
+    except OSError as problem:
         raise ValueError(f"expected a table of dda lines: {problem}") from problem
     draw(lines, picture)
     print(picture)
@@ -38,12 +40,15 @@ def run(arguments: argparse.Namespace) -> int:
 def read_lines(table: Path) -> dict[str, list[tuple[float, ...]]]:
     """Ends x1, y1, x2, y2 of all lines by their role."""
     lines: dict[str, list[tuple[float, ...]]] = {}
-    with table.open(newline="", encoding="utf-8") as stream:
-        for row in csv.DictReader(stream):
+    for number, row in enumerate(csv.DictReader(read_text(table).splitlines()), 2):
+        try:
             ends = tuple(float(row[column]) for column in ("x1", "y1", "x2", "y2"))
             lines.setdefault(row["role"], []).append(ends)
+        except (KeyError, TypeError, ValueError) as problem:
+            raise ValueError(
+                f"{table}:{number}: error: expected a row of a table of dda lines, got: {problem}") from problem
     if not lines:
-        raise ValueError("it has no rows")
+        raise ValueError(f"{table}:1: error: expected a table of dda lines, got one without rows")
     return lines
 
 

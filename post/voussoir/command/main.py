@@ -72,6 +72,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if words[:1] in ([], ["help"]):
         words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]
     os.environ["MPLBACKEND"] = "Agg"  # pictures are files: no display is wanted
+    for word in words:
+        if any("\ud800" <= letter <= "\udfff" for letter in word):  # what Python makes of other bytes
+            sys.stderr.write(f"voussoir: error: expected text in UTF-8, got {word!a}; rename the file or folder\n")
+            return 2
     chosen = build_parser(words[0] if words else None).parse_args(words)
     try:
         return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)

@@ -13,6 +13,7 @@ from pathlib import Path
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import find_dda, find_input
 from voussoir.extras import advice
+from voussoir.files import write_text
 from voussoir.paper import tables
 from voussoir.paper.campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock, Timing, weights
 
@@ -66,7 +67,7 @@ def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: C
     page = report.build(campaign, folder / "figures", clock.timings, dda)
     took = f"{time.monotonic() - start:.2f}"
     index = folder / "index.html"
-    index.write_text(page.replace(report.PAGE_TIME, took), encoding="utf-8")
+    write_text(index, page.replace(report.PAGE_TIME, took))
     if not arguments.quiet:
         for table in campaign.tables.values():
             print(f"\n{table.title}\n{tables.as_text(table)}")

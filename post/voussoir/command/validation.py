@@ -9,6 +9,7 @@ from voussoir.bench.validation_page import page, told, write_lines
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
+from voussoir.files import write_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     lines = _lines(arguments)
     arguments.out.mkdir(parents=True, exist_ok=True)
     write_lines(lines, arguments.out / "validation.csv")
-    (arguments.out / "validation.md").write_text(page(lines, version_of(find_dda())), encoding="utf-8")
+    write_text(arguments.out / "validation.md", page(lines, version_of(find_dda())))
     return 0 if all(line.accepted for line in lines) else 1
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from voussoir import results
 from voussoir.extras import load
+from voussoir.files import fresh
 from voussoir.results import Frame, Results
 
 #: Depth that the blocks are drawn with, over the size of the scene
@@ -112,7 +113,7 @@ def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], 
     plotter.view_xy()
     if file is not None:
         file.parent.mkdir(parents=True, exist_ok=True)
-        plotter.screenshot(str(file))
+        plotter.screenshot(str(fresh(file)))
         plotter.close()
         print(file)
         return

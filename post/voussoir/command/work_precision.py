@@ -15,6 +15,7 @@ from voussoir.bench.work_precision_plan import cost_table, plan_costs
 from voussoir.bench.work_precision_runs import Arch, Race, race
 from voussoir.command.options import whole_number
 from voussoir.dda_program import find_dda
+from voussoir.files import write_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plan:
         costs = plan_costs(arguments.voussoirs, runs, arguments.repeats)
         table = "\n".join(cost_table(list(costs))) + "\n"
-        (arguments.out / "plan_costs.md").write_text(table, encoding="utf-8")
+        write_text(arguments.out / "plan_costs.md", table)
         sys.stdout.write(table)
         return 0
     races: list[Race] = []
@@ -61,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         motion = list(motion_points(runs, arguments.repeats))
         write_motion(motion, arguments.out / "work_precision_motion.csv")
     text = "\n".join(_report(races, drawn, motion)) + "\n"
-    (arguments.out / "work_precision.md").write_text(text, encoding="utf-8")
+    write_text(arguments.out / "work_precision.md", text)
     sys.stdout.write(text)
     return 0
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from voussoir.extras import load
+from voussoir.files import fresh, write_text
 from voussoir.plot.source_file import source_of
 from voussoir.results import Results
 
@@ -50,7 +51,7 @@ def write_geojson(outlines: list[Outline], file: Path) -> str:
         }
         for outline in outlines
     ]
-    file.write_text(json.dumps({"type": "FeatureCollection", "features": features}, indent=1) + "\n", encoding="utf-8")
+    write_text(file, json.dumps({"type": "FeatureCollection", "features": features}, indent=1) + "\n")
     return ""
 
 
@@ -60,7 +61,7 @@ def write_wkt(outlines: list[Outline], file: Path) -> str:
         f"{outline.layer}; POLYGON ((" + ", ".join(f"{float(x)!r} {float(y)!r}" for x, y in _ring(outline)) + "))"
         for outline in outlines
     ]
-    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(file, "\n".join(lines) + "\n")
     return "numbers of blocks"
 
 
@@ -72,7 +73,7 @@ def write_dxf(outlines: list[Outline], file: Path) -> str:
         drawing.layers.add(layer)
     for outline in outlines:
         drawing.modelspace().add_lwpolyline(_ring(outline)[:-1], close=True, dxfattribs={"layer": outline.layer})
-    drawing.saveas(file)
+    drawing.saveas(fresh(file))
     return "numbers of blocks"
 
 
@@ -90,7 +91,7 @@ def write_mesh(outlines: list[Outline], file: Path) -> str:
         else:
             cells.append((kind, [corners]))
     try:
-        meshio.Mesh(np.column_stack((points, np.zeros(len(points)))), cells).write(file)
+        meshio.Mesh(np.column_stack((points, np.zeros(len(points)))), cells).write(fresh(file))
     except meshio.WriteError as problem:
         raise ValueError(f"expected a mesh that can hold these blocks, got: {problem}") from problem
     return "layers and numbers of blocks, so what is fixed"

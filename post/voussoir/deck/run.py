@@ -15,7 +15,8 @@ from typing import Any, Union
 
 from voussoir import results
 from voussoir.dda_program import DdaError, find_dda, path_word, set_options
-from voussoir.deck.text import Groups, deck_text, groups_of, merged, value_text
+from voussoir.deck.text import Groups, checked, deck_text, groups_of, merged, value_text
+from voussoir.files import write_text
 
 #: Exit status of `dda run` that leaves results: all decided, or a case undecided
 _LEAVES_RESULTS = (0, 3)
@@ -47,8 +48,10 @@ class Deck:
         file = Path(file)
         file.parent.mkdir(parents=True, exist_ok=True)
         for name, text in self.files.items():
-            (file.parent / name).write_text(text, encoding="utf-8")
-        file.write_text(self.text(), encoding="utf-8")
+            if not isinstance(name, str) or not isinstance(text, str):
+                raise ValueError(f"expected files of a deck as texts by their names, got {name!r}: {text!r}")
+            write_text(file.parent / name, text)
+        write_text(file, self.text())
         return file
 
     def run(self, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any) -> results.Results:
@@ -88,8 +91,14 @@ def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set
     DdaError
         If the program refuses the deck: its message, with file and line.
     ValueError
-        If a key is not known, or the deck is neither a file nor text.
+        If a key is not known, the deck is neither a file nor text, or an argument is of another kind.
+    TypeError
+        If a value is no number, flag or text, and no list of them.
     """
+    if out is not None and not isinstance(out, (str, Path)):
+        raise ValueError(f"expected out as the name of a folder, got {out!r}")
+    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
+        raise ValueError(f"expected jobs as a whole number, 1 or more, got {jobs!r}")
     dda = find_dda()
     changes = groups_of(dda, set)
     place = Path(tempfile.mkdtemp(prefix="voussoir-")) if out is None else Path(out)
@@ -115,14 +124,14 @@ def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set
 def _as_file(deck: Runnable, place: Path, changes: Groups) -> tuple[Path, list[str]]:
     """The deck's file, and what is left to set."""
     if isinstance(deck, Mapping):
-        deck = Deck(dict(deck))
+        deck = Deck(dict(checked(deck)))
     if isinstance(deck, Deck):
         return Deck(merged(deck.groups, changes), deck.files).write(place / "deck.nml"), []
     if isinstance(deck, str) and _GROUP.search(deck):
         sweeps = {name: keys for name, keys in changes.items() if name == "sweep"}
         place.mkdir(parents=True, exist_ok=True)
         file = place / "deck.nml"
-        file.write_text(deck + "\n" + deck_text(sweeps), encoding="utf-8")
+        write_text(file, deck + "\n" + deck_text(sweeps))
         return file, _settings({name: changes[name] for name in changes if name != "sweep"})
     if not isinstance(deck, (str, Path)):
         raise ValueError(f"expected a deck's file, text or groups, got {deck!r}")

@@ -10,6 +10,7 @@ from typing import Any, Optional
 from voussoir.deck.dxf_shapes import Found, metres_a_unit, read_dxf
 from voussoir.deck.shapely_blocks import polygons_of
 from voussoir.extras import load
+from voussoir.files import read_text
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def read_shapes(
 def read_wkt(file: Path, tolerance: float) -> Found:
     """Geometries in well-known text, one a line; a layer may stand before it, with a semicolon."""
     wkt = load("shapely.wkt", "WKT")
-    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+    for number, line in enumerate(read_text(file).splitlines(), 1):
         layer, _, text = line.rpartition(";")
         if not text.strip():
             continue
@@ -68,7 +69,7 @@ def read_geojson(file: Path, tolerance: float) -> Found:
     """Features, or a geometry; the property role, layer or name is the layer."""
     geometry = load("shapely.geometry", "GeoJSON")
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(read_text(file))
     except json.JSONDecodeError as problem:
         raise ValueError(f"expected JSON, got: {problem}") from problem
     if isinstance(content, list) or "dtype" in content:

@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from voussoir.files import read_text
+
 _STYLE = """
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
@@ -93,7 +95,7 @@ class Page:
     def figure(self, svg: Path, caption: str, anchor: str) -> None:
         """Add a figure from an SVG file."""
         self._figures += 1
-        drawing = inline_svg(svg.read_text(encoding="utf-8"), f"f{self._figures}-", caption)
+        drawing = inline_svg(read_text(svg), f"f{self._figures}-", caption)
         self._body.append(
             f'<figure id="{anchor}"><div class="wide" tabindex="0">{drawing}</div>'
             f"<figcaption>{caption}</figcaption></figure>"

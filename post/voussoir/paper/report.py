@@ -12,6 +12,7 @@ import numpy as np
 
 import voussoir
 from voussoir import theory
+from voussoir.files import read_text
 from voussoir.paper import findings, tables
 from voussoir.paper.campaign import FIGURES, TOGETHER, Campaign, Timing
 from voussoir.paper.contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS, caption
@@ -235,7 +236,7 @@ def _decks(page: Page, campaign: Campaign) -> None:
         "and <code>frames/case_N.pvd</code> for ParaView."
     )
     for file in campaign.finished_decks():
-        page.listing(file.name, file.read_text(encoding="utf-8"))
+        page.listing(file.name, read_text(file))
 
 
 def _version_of(package: str) -> str:

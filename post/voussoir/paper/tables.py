@@ -229,6 +229,7 @@ def write_csv(table: PaperTable, file: Path) -> None:
     for column in table.columns:
         stem = column.lower().replace(", ", "_").replace(" ", "_")
         names += [stem, f"{stem}_error", f"{stem}_hinge_deg"]
+    file.unlink(missing_ok=True)  # a link is replaced, not followed
     with file.open("w", encoding="utf-8", newline="") as lines:
         writer = csv.writer(lines, lineterminator="\n")
         writer.writerow(names)
@@ -248,6 +249,7 @@ def write_tables(tables: list[PaperTable], folder: Path) -> list[Path]:
         files.append(folder / f"{table.name}.csv")
         write_csv(table, files[-1])
     files.append(folder / "tables.md")
+    files[-1].unlink(missing_ok=True)
     files[-1].write_text("\n\n".join(map(as_markdown, tables)) + "\n", encoding="utf-8")
     return files
 

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
+from voussoir.files import fresh
 from voussoir.plot.collapse_picture import draw_frame, limits, pictures_of, set_limits
 from voussoir.results import Results
 
@@ -92,7 +93,7 @@ def write(figure: Figure, draw: Callable[[int], None], length: int, file: Path) 
     """Write the pictures of a figure that is drawn anew for each of them; gives the first file."""
     if file.suffix.lower() != ".png":
         writer = (FFMpegWriter if file.suffix.lower() == ".mp4" else PillowWriter)(fps=_RATE)
-        with writer.saving(figure, str(file), 100):
+        with writer.saving(figure, str(fresh(file)), 100):
             for _ in _drawn(figure, draw, length):
                 writer.grab_frame()
             for _ in range(_REST):
@@ -100,7 +101,7 @@ def write(figure: Figure, draw: Callable[[int], None], length: int, file: Path) 
         return file
     names = [file.with_name(f"{file.stem}_{moment + 1:03d}.png") for moment in range(length)]
     for moment in _drawn(figure, draw, length):
-        figure.savefig(names[moment], dpi=100, metadata={"Software": None})
+        figure.savefig(fresh(names[moment]), dpi=100, metadata={"Software": None})
     return names[0]
 
 

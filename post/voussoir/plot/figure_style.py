@@ -10,6 +10,8 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from voussoir.files import fresh
+
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
 #: Line styles that tell the curves apart without colour
@@ -65,6 +67,6 @@ def save(figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("s
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{ending}" for ending in formats]
     for path in paths:
-        figure.savefig(path, bbox_inches="tight", metadata=_METADATA[path.suffix])
+        figure.savefig(fresh(path), bbox_inches="tight", metadata=_METADATA[path.suffix])
     plt.close(figure)
     return paths

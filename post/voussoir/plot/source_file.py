@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from voussoir.files import read_text
 from voussoir.results import Results
 
 Point = tuple[float, float]
@@ -44,7 +45,7 @@ def source_of(run: Results) -> Source:
     if file is None:
         source.missing.append(f"{'bolts' if run.kind == 'lines' else 'loads and held points'} of {name}")
         return source
-    text = file.read_text(encoding="utf-8", errors="replace")
+    text = read_text(file)
     if run.kind == "blocks":
         _read(text, source)
         _raise_water(run, source)

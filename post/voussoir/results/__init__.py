@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from voussoir.extras import advice
+from voussoir.files import read_text
 from voussoir.plot.shape_rings import is_shape
 from voussoir.results import _table_view
 from voussoir.results._tables import Choice, DamagedTable, read_columns
@@ -268,7 +269,7 @@ class Results:
     def _record(self) -> list[str]:
         """Lines of deck.record: what the deck asks for."""
         record = self.folder / "deck.record"
-        return record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
+        return read_text(record).splitlines() if record.is_file() else []
 
     def case(self, number: int) -> dict[str, Any]:
         """Row of one case; KeyError if there is no such case."""

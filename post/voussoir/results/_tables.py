@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.files import plain
+
 #: Columns of whole numbers, by name; every other column of numbers has floats
 _WHOLE = frozenset(
     (
@@ -70,7 +72,7 @@ def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | No
     pieces: list[list[np.ndarray]] = []
     names: list[str] = []
     try:
-        with file.open(newline="", encoding="utf-8") as lines:
+        with plain(file).open(newline="", encoding="utf-8") as lines:
             reader = csv.reader(lines)
             names = next(reader, [])
             lost = [name for name in _NEEDED.get(file.name, ("case",)) if names.count(name) != 1]

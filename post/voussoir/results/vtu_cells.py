@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.files import plain
+
 _DATA = b'<AppendedData encoding="raw">'
 
 
 def cell_field(path: Path, name: str) -> np.ndarray:
     """Read a field of the cells of a file as the program writes it: 64 bits, little-endian."""
-    whole = path.read_bytes()
+    whole = plain(path).read_bytes()
     head, _, data = whole.partition(_DATA)
     cells = re.search(r"<CellData.*?</CellData>", head.decode(), re.DOTALL)
     entry = re.search(rf'<DataArray[^>]*Name="{name}"[^>]*>', cells[0]) if cells else None

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.files import read_text
 from voussoir.verify.contacts import depth, make_block
 from voussoir.verify.deck import Deck, VerifyError
 from voussoir.verify.water import Water
@@ -107,7 +108,7 @@ def _time_of(change: Change) -> float:
 def read_blocks(path: Path, deck: Deck) -> Source:
     """What a file of blocks says; its deck fills in what materials leave out."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except OSError as error:
         raise VerifyError(f"cannot read {path}: name its folder by --decks") from error
     source = Source()

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
+from voussoir.files import read_text
 from voussoir.verify.rational import sine_cosine
 
 #: Groups of the keys that matter here, and their defaults
@@ -190,7 +191,7 @@ class Deck:
 def read_record(folder: Path) -> Deck:
     """The deck of a folder of results: its given keys and sweeps."""
     try:
-        lines = (folder / "deck.record").read_text(encoding="utf-8").splitlines()
+        lines = read_text(folder / "deck.record").splitlines()
     except OSError as error:
         raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written") from error
     values: dict[str, list[str]] = {}

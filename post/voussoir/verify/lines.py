@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from voussoir.files import read_text
 from voussoir.verify.blocks import Law, Source
 from voussoir.verify.contacts import Block, depth
 from voussoir.verify.deck import Deck, VerifyError
@@ -41,7 +42,7 @@ def read_lines(geometry: Path, analysis: Path, blocks: list[Block], deck: Deck) 
 def _text(path: Path) -> str:
     """A file of the original program."""
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return read_text(path)
     except OSError as error:
         raise VerifyError(f"cannot read {path}: name its folder by --decks") from error
 

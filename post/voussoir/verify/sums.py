@@ -6,6 +6,7 @@ import re
 import zlib
 from pathlib import Path
 
+from voussoir.files import plain, read_text
 from voussoir.verify.deck import VerifyError
 
 #: Tables whose lines are in the sum beside those of results.csv, where a run leaves them
@@ -23,7 +24,7 @@ def told_sums(folder: Path) -> dict[int, int]:
     path = folder / "sizes.record"
     if not path.exists():
         raise VerifyError("no sizes.record: run the deck again, or check proofs alone by --ignore-sums")
-    first, *lines = path.read_text(encoding="utf-8").splitlines()
+    first, *lines = read_text(path).splitlines()
     if first != "case,bytes,sum":
         raise VerifyError("sizes.record tells no sums: run the deck again, or check proofs alone by --ignore-sums")
     rows = [[int(word) for word in line.split(",")] for line in lines]
@@ -37,7 +38,7 @@ def sums_of(folder: Path) -> dict[int, int]:
         if not path.exists():
             continue
         blank = b" " if path.suffix == ".txt" else b","
-        with path.open("rb") as lines:
+        with plain(path).open("rb") as lines:
             next(lines, None)
             for line in lines:
                 word = line.split(blank, 1)[0]
@@ -48,7 +49,7 @@ def sums_of(folder: Path) -> dict[int, int]:
 
 def _sums_of_results(table: Path) -> dict[int, int]:
     """Sums of the rows of results.csv, without their seconds: no two runs agree in these."""
-    header, *rows = (_COMMA.split(line) for line in table.read_text(encoding="utf-8").rstrip("\n").split("\n"))
+    header, *rows = (_COMMA.split(line) for line in read_text(table).rstrip("\n").split("\n"))
     case, seconds = header.index("case"), header.index("seconds")
     sums: dict[int, int] = {}
     for row in rows:
