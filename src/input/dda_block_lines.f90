@@ -60,7 +60,8 @@ contains
       list(n)%row = entry%row(:, :entry%n_row)
    end subroutine keep_entry
 
-   !> Part a line into words; what follows a ! is a comment. One text may stand in quotes
+   !> Part a line into words; what follows a ! is a comment. One text may stand in quotes, and names
+   !> of columns
    pure subroutine split_line(text, number, line, error)
       character(len=*), intent(in) :: text  !! The line
       integer, intent(in) :: number         !! Its number
@@ -68,7 +69,7 @@ contains
       !> Too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
       character(len=word_size) :: word(max_words)
-      integer :: first, next
+      integer :: first, last, next
 
       line%number = number
       next = 1
@@ -81,17 +82,22 @@ contains
          end do
          if (first > len(text)) exit
          if (text(first:first) == "!") exit
-         if (scan(text(first:first), "'""") > 0) then
-            call take_quoted(text, first, next, line, error)
-         else
+         last = first
+         if (scan(text(first:first), "'""") == 0) then
             next = first + scan(text(first:)//"!", " "//achar(9)//"!") - 1
-            if (next - first > word_size) call fatal_error(error, too_much())
+            last = next - 1
+         else if (any(word(:line%n) == "columns")) then
+            call find_quote(text, first, next, error)
+            first = first + 1
+            last = next - 2
+         else
+            call take_quoted(text, first, next, line, error)
          end if
-         if (line%n == max_words) call fatal_error(error, too_much())
+         if (last - first >= word_size .or. line%n == max_words) call fatal_error(error, too_much())
          if (allocated(error)) return
          line%n = line%n + 1
-         word(line%n) = lower_case(text(first:min(next - 1, first + word_size - 1)))
-         if (scan(text(first:first), "'""") > 0) word(line%n) = "'"
+         word(line%n) = lower_case(text(first:last))
+         if (word(line%n) == """") word(line%n) = "'"
       end do
       line%word = word(:max(line%n, 3))
 
@@ -106,6 +112,19 @@ contains
       end function too_much
    end subroutine split_line
 
+   !> Find the quote that ends a text
+   pure subroutine find_quote(text, first, next, error)
+      character(len=*), intent(in) :: text
+      integer, intent(in) :: first  !! Place of the first quote
+      integer, intent(out) :: next  !! Place after the last one
+      type(error_t), allocatable, intent(out) :: error
+      integer :: length
+
+      length = index(text(first + 1:), text(first:first)) - 1
+      next = first + length + 2
+      if (length < 0) call fatal_error(error, "expected a second quote, got none; close the text")
+   end subroutine find_quote
+
    !> Take the text between two quotes
    pure subroutine take_quoted(text, first, next, line, error)
       character(len=*), intent(in) :: text
@@ -113,16 +132,14 @@ contains
       integer, intent(out) :: next  !! Place after the last one
       type(line_t), intent(inout) :: line
       type(error_t), allocatable, intent(out) :: error
-      integer :: length
 
-      length = index(text(first + 1:), text(first:first)) - 1
-      next = first + length + 2
-      if (length < 0) then
-         call fatal_error(error, "expected a second quote, got none; close the name of the file")
+      call find_quote(text, first, next, error)
+      if (allocated(error)) then
+         return
       else if (allocated(line%quoted)) then
          call fatal_error(error, "expected one text in quotes, got two; remove one")
       else
-         line%quoted = text(first + 1:first + length)
+         line%quoted = text(first + 1:next - 2)
       end if
    end subroutine take_quoted
 

@@ -9,7 +9,8 @@ submodule (dda_read_deck) dda_deck_check
       & scene_analysis, tie_group, vehicle_axles
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
-   use dda_read_record, only : column_size, read_record
+   use dda_read_record, only : column_size, field_of, n_columns, read_record, &
+      & separator_of
    implicit none
 
 contains
@@ -64,26 +65,27 @@ contains
       call add_file_mark(mark, deck)
    end subroutine add_record
 
-   !> Part ground%columns into the columns of time, x and y
+   !> Part ground%columns into the columns of time, x and y, as a record is parted: at semicolons,
+   !> or else at commas, or else at blanks
    pure subroutine split_columns(deck, column, error)
       type(deck_t), intent(in) :: deck
       character(len=column_size), intent(out) :: column(3)  !! The columns; 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
-      integer :: blank, n
+      character :: separator
+      integer :: i, n
 
-      text = adjustl(deck%value(ground_columns)%text)
       column = "0"
-      n = 0
-      do while (len_trim(text) > 0)
-         n = n + 1
-         blank = scan(text//" ", " ,")
-         if (n <= 3) column(n) = text(:blank - 1)
-         text = adjustl(text(min(blank + 1, len(text) + 1):))
+      text = trim(deck%value(ground_columns)%text)
+      separator = separator_of(text)
+      n = n_columns(text, separator)
+      do i = 1, min(n, 3)
+         column(i) = field_of(text, i, separator)
       end do
       if (n == 2 .or. n == 3) return
       call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
-         & "got '"//shown(deck%value(ground_columns)%text)//"'; write them as in '1 2'", deck, &
+         & "got '"//shown(trim(deck%value(ground_columns)%text))//"'; write them as in '1 2', " &
+         & //"or with commas where a name has blanks", deck, &
          & deck%value(ground_columns)%place)
    end subroutine split_columns
 

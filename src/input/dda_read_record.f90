@@ -1,19 +1,20 @@
-!> Records of motion: files of numbers in columns, separated by commas or blanks, below a header
+!> Records of motion: files of numbers in columns, separated by semicolons, commas or blanks, below
+!> a header
 module dda_read_record
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error, place_error
    use dda_growth, only : make_room
    use dda_kinds, only : wp
-   use dda_table_file, only : field, n_fields
+   use dda_table_file, only : field_ends, n_fields
    use dda_text, only : lower_case, read_integer, read_number, to_text
    use dda_text_file, only : read_text_file, text_mark
    implicit none
    private
 
-   public :: read_record, parse_record, column_size
+   public :: read_record, parse_record, column_size, separator_of, field_of, n_columns
 
    !> Longest name of a column [characters]
-   integer, parameter :: column_size = 32
+   integer, parameter :: column_size = 80
    !> Most columns of a record
    integer, parameter :: most_columns = 10000
    !> Largest magnitude of a number
@@ -80,10 +81,23 @@ contains
          start = finish + 2
       end do
       row = row(:, :n)
-      if (n < 2 .and. .not. allocated(error)) call fatal_error(error, "expected a record of at " &
-         & //"least two rows that begin with a number, got "//to_text(n))
+      if (n < 2 .and. .not. allocated(error)) call fatal_error(error, "expected at least two " &
+         & //"rows of numbers, separated by semicolons, commas or blanks, with a point for " &
+         & //"decimals, got "//to_text(n)//last_row(text, header, n))
       call place_error(error, max(1, number))
    end subroutine parse_record
+
+   !> The last line of what was taken for a header, where nothing else was there
+   pure function last_row(text, header, n) result(words)
+      character(len=*), intent(in) :: text
+      integer, intent(in) :: header(2)  !! First and last character of the header's last line: (2)
+      integer, intent(in) :: n          !! Number of rows
+      character(len=:), allocatable :: words
+
+      words = ""
+      if (n == 0 .and. header(2) >= header(1)) &
+         & words = "; the last line is '"//shown(text(header(1):header(2)))//"'"
+   end function last_row
 
    !> Whether a line says nothing
    pure logical function is_blank(line)
@@ -100,32 +114,63 @@ contains
       character(len=*), intent(in) :: line
       real(wp) :: value
 
-      call read_number(field_of(line, 1), value, begins_with_number)
+      call read_number(field_of(line, 1, separator_of(line)), value, begins_with_number)
    end function begins_with_number
 
-   !> One field of a line: between commas if there are any, else between blanks
-   pure function field_of(line, number) result(text)
+   !> What separates the fields of a line: a semicolon or else a comma outside double quotes, or
+   !> else blanks
+   pure character function separator_of(line)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number  !! Its number, from 1
+      logical :: quoted
+      integer :: i
+
+      separator_of = " "
+      quoted = .false.
+      do i = 1, len(line)
+         if (line(i:i) == """") quoted = .not. quoted
+         if (quoted .or. scan(line(i:i), ";,") == 0) cycle
+         separator_of = line(i:i)
+         if (separator_of == ";") return
+      end do
+   end function separator_of
+
+   !> One field of a line
+   pure function field_of(line, number, separator) result(text)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: number      !! Its number, from 1
+      character, intent(in) :: separator  !! A semicolon, comma or tab; a blank for blanks and tabs
       !> The field without blanks and double quotes around it; empty if there is none
       character(len=:), allocatable :: text
       character(len=2), parameter :: blanks = " "//achar(9)
-      integer :: first, last, k
+      integer :: ends(2)
 
-      if (index(line, ",") > 0) then
-         text = field(line, number)
+      if (separator == " ") then
+         ends = word_ends(line, number)
       else
-         text = ""
-         last = 0
-         do k = 1, number
-            first = last + verify(line(last + 1:)//"|", blanks)
-            if (first > len(line)) return
-            last = first + scan(line(first:)//" ", blanks) - 2
-         end do
-         text = line(first:last)
+         ends = field_ends(line, number, separator)
       end if
+      text = line(ends(1):ends(2))
       text = text(max(1, verify(text, blanks//"""")):verify(text, blanks//"""", back=.true.))
    end function field_of
+
+   !> First and last character of a word between blanks; the last before the first if there is none
+   pure function word_ends(line, number) result(ends)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: number
+      integer :: ends(2)
+      character(len=2), parameter :: blanks = " "//achar(9)
+      integer :: k
+
+      ends = 0
+      do k = 1, number
+         ends(1) = ends(2) + verify(line(ends(2) + 1:)//"|", blanks)
+         if (ends(1) > len(line)) then
+            ends = [1, 0]
+            return
+         end if
+         ends(2) = ends(1) + scan(line(ends(1):)//" ", blanks) - 2
+      end do
+   end function word_ends
 
    !> Numbers of the columns; a name is looked for in the last line of the header
    pure subroutine find_columns(header, column, place, error)
@@ -133,15 +178,19 @@ contains
       character(len=*), intent(in) :: column(3)
       integer, intent(out) :: place(3)        !! Their numbers, 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
+      character :: separator
       integer :: i, k
       logical :: ok
 
+      separator = separator_of(header)
+      ! names may have blanks where numbers are separated by tabs
+      if (separator == " " .and. index(trim(header), achar(9)) > 0) separator = achar(9)
       do i = 1, 3
          call read_integer(trim(column(i)), place(i), ok)
          if (ok) ok = place(i) >= merge(1, 0, i == 1) .and. place(i) <= most_columns
          if (ok) cycle
-         do k = n_columns(header), 1, -1
-            if (lower_case(field_of(header, k)) == column(i)) exit
+         do k = n_columns(header, separator), 1, -1
+            if (lower_case(field_of(header, k, separator)) == lower_case(column(i))) exit
          end do
          place(i) = k
          if (k > 0) cycle
@@ -153,13 +202,14 @@ contains
    end subroutine find_columns
 
    !> Number of fields of a line
-   pure integer function n_columns(line)
+   pure integer function n_columns(line, separator)
       character(len=*), intent(in) :: line
+      character, intent(in) :: separator
 
-      n_columns = n_fields(line)
-      if (index(line, ",") > 0) return
+      n_columns = n_fields(line, separator)
+      if (separator /= " ") return
       n_columns = 0
-      do while (field_of(line, n_columns + 1) /= "")
+      do while (field_of(line, n_columns + 1, separator) /= "")
          n_columns = n_columns + 1
       end do
    end function n_columns
@@ -171,18 +221,20 @@ contains
       real(wp), intent(in) :: scale
       real(wp), intent(out) :: row(3)  !! Time and components: (3)
       type(error_t), allocatable, intent(out) :: error
+      character :: separator
       integer :: i
       logical :: ok
 
       row = 0.0_wp
+      separator = separator_of(line)
       do i = 1, 3
          if (place(i) == 0) cycle
-         call read_number(field_of(line, place(i)), row(i), ok)
+         call read_number(field_of(line, place(i), separator), row(i), ok)
          if (i > 1) row(i) = scale*row(i)
          if (ok) ok = abs(row(i)) <= largest
          if (ok) cycle
          call fatal_error(error, "expected a number of at most 1e30 in column " &
-            & //to_text(place(i))//", got '"//shown(field_of(line, place(i)))//"'")
+            & //to_text(place(i))//", got '"//shown(field_of(line, place(i), separator))//"'")
          return
       end do
    end subroutine take_row
