@@ -165,3 +165,72 @@ def test_advice_fits_the_interpreter(monkeypatch: pytest.MonkeyPatch) -> None:
             extras.load("scipy_of_nowhere", "a test")
     monkeypatch.setattr(extras, "_is_managed", lambda: True)
     assert "virtual environment" in extras.advice("compas")
+
+
+class Foreign:
+    """An object that no deck has."""
+
+
+SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
+#: What is refused in one sentence, and a word of it
+REFUSED = {
+    "group without keys": (lambda: voussoir.run({"arch": None}), "&arch"),
+    "group that is a number": (lambda: voussoir.run({"arch": 3}, friction_deg=40), "&arch"),
+    "list for a group": (lambda: voussoir.run({"arch": [{"radius": 5}]}), "&arch"),
+    "sweep of numbers": (lambda: voussoir.run({"arch": {}, "sweep": [1, 2]}), "&sweep"),
+    "groups in a group's name": (lambda: voussoir.run({"arch radius = 5 /\n&joint": {}}), "name of a group"),
+    "number for a group's name": (lambda: voussoir.run({1: {}}), "name of a group"),
+    "groups in a key": (lambda: voussoir.run({"arch": {"radius = 5 /\n&joint friction_deg": 1}}), "name of a key"),
+    "number for a key": (lambda: voussoir.run({"arch": {5: 1}}), "name of a key"),
+    "blank in a key": (lambda: voussoir.run(ARCH, **{"arch%radius x": 5.0}), "key"),
+    "nothing for a value": (lambda: voussoir.run({"arch": {"radius": None}}), "None"),
+    "bytes for a value": (lambda: voussoir.run({"scene": {"title": b"x"}, "arch": {}}), "b'x'"),
+    "lines in a value": (lambda: voussoir.run({"scene": {"title": "x' /\n&joint /"}, "arch": {}}), "one line"),
+    "lines in a set value": (lambda: voussoir.run(ARCH, **{"scene%title": "a\nb"}), "one line"),
+    "object for a deck": (lambda: voussoir.run(Foreign()), "deck"),
+    "list for a deck": (lambda: voussoir.run([ARCH]), "deck"),
+    "number for out": (lambda: voussoir.run(ARCH, out=3), "out"),
+    "word for jobs": (lambda: voussoir.run(ARCH, jobs="two"), "jobs"),
+    "no jobs": (lambda: voussoir.run(ARCH, jobs=0), "jobs"),
+    "flag for jobs": (lambda: voussoir.run(ARCH, jobs=True), "jobs"),
+    "half a job": (lambda: voussoir.run(ARCH, jobs=1.5), "jobs"),
+    "word for fixed": (lambda: voussoir.Blocks().add(SQUARE, fixed="no"), "fixed"),
+    "number for fixed": (lambda: voussoir.Blocks().add(SQUARE, fixed=1), "fixed"),
+    "word for a material": (lambda: voussoir.Blocks().add(SQUARE, material="brick"), "material"),
+    "material 0": (lambda: voussoir.Blocks().add(SQUARE, material=0), "material"),
+    "material 1, which is the deck's": (lambda: voussoir.Blocks().material(1, density=1000), "2 or more"),
+    "word for a density": (lambda: voussoir.Blocks().material(2, density="1000"), "number"),
+    "nothing for a friction": (lambda: voussoir.Blocks().joint(1, 2, friction_deg=None), "number"),
+    "corners in space": (lambda: voussoir.Blocks().add([(0, 0, 1), (1, 0, 2), (1, 1, 3)]), "pairs"),
+    "corners of space in an array": (lambda: voussoir.Blocks().add(np.zeros((4, 3))), "pairs"),
+    "words for corners": (lambda: voussoir.Blocks().add([("a", "b")]), "pairs"),
+    "number for corners": (lambda: voussoir.Blocks().add(5), "pairs"),
+    "lines for an entry": (lambda: voussoir.Blocks().entry("measure 1 2\nblock fixed"), "one line"),
+    "number for a file": (lambda: voussoir.deck.run.Deck({"arch": {}}, {"x": 3}).run(), "files"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_is_of_another_kind_is_refused_in_one_sentence(what: str) -> None:
+    call, word = REFUSED[what]
+    with pytest.raises((TypeError, ValueError)) as refusal:
+        call()
+    said = str(refusal.value)
+    assert said.startswith("expected ") and ", got " in said and word in said and "\n" not in said, said
+
+
+def test_polygon_in_space_is_refused_and_a_level_one_taken() -> None:
+    pytest.importorskip("shapely")
+    from shapely.geometry import Polygon
+
+    with pytest.raises(ValueError, match="in the plane, got z from 1 to 3"):
+        voussoir.Blocks.from_shapely(Polygon([(0, 0, 1), (1, 0, 2), (1, 1, 3)]))
+    assert voussoir.Blocks.from_shapely(Polygon([(0, 0, 5), (1, 0, 5), (1, 1, 5)])).shapes[0].pieces == (
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)],)
+
+
+def test_flags_and_numbers_of_numpy_are_taken() -> None:
+    blocks = voussoir.Blocks()
+    assert blocks.add(np.array(SQUARE), fixed=np.bool_(True), material=np.int64(2)) == 1
+    assert blocks.add(np.array(SQUARE, dtype=np.float32) + 5.0) == 2
+    assert (blocks.shapes[0].fixed, blocks.shapes[0].material) == (True, 2)

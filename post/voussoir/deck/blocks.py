@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from numbers import Integral, Real
 from typing import Any, Union
 
 import numpy.typing as npt
@@ -106,7 +107,8 @@ class Blocks(Deck):
         blocks = cls(**keys)
         for shapes, is_fixed, materials in ((fixed, True, 1), (polygons, False, material)):
             found, dropped = polygons_of(shapes)
-            numbers = [materials] * len(found) if isinstance(materials, int) else list(materials)
+            several = isinstance(materials, Iterable) and not isinstance(materials, str)
+            numbers = list(materials) if several else [materials] * len(found)
             if len(numbers) != len(found):
                 raise ValueError(f"expected {len(found)} materials, one a polygon, got {len(numbers)}")
             for polygon, number in zip(found, numbers):
@@ -117,28 +119,38 @@ class Blocks(Deck):
         return blocks
 
     def add(self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1) -> int:
-        """Add a polygon by its corners (n, 2), in either sense [m]: its number, from 1."""
-        self.shapes.append(BlockShape((_points(corners),), fixed, material))
+        """Add a polygon by its corners (n, 2), in either sense [m]: its number, from 1.
+
+        ValueError if the corners are no pairs of numbers, `fixed` no flag, or `material` no whole number from 1.
+        """
+        self.shapes.append(BlockShape((_points(corners),), _flag(fixed), _whole(material, 1)))
         return len(self.shapes)
 
     def add_polygon(self, polygon: Any, fixed: bool = False, material: int = 1) -> int:
-        """Add a polygon of shapely; one with holes becomes pieces that no force parts."""
+        """Add a polygon of shapely; one with holes becomes pieces that no force parts; ValueError for one in space."""
         from voussoir.deck.shapely_blocks import pieces_of
 
-        pieces = tuple(_points(piece.exterior.coords[:-1]) for piece in pieces_of(polygon))
-        self.shapes.append(BlockShape(pieces, fixed, material))
+        heights = {corner[2] for corner in polygon.exterior.coords if len(corner) == 3}
+        if len(heights) > 1:
+            raise ValueError(f"expected a polygon in the plane, got z from {min(heights):g} to {max(heights):g}")
+        rings = (piece.exterior.coords[:-1] for piece in pieces_of(polygon))
+        pieces = tuple(_points([corner[:2] for corner in ring]) for ring in rings)
+        self.shapes.append(BlockShape(pieces, _flag(fixed), _whole(material, 1)))
         return len(self.shapes)
 
     def material(self, number: int, **properties: float) -> None:
-        """Say what a material from 2 on is: density, unit_weight, young, poisson."""
-        self._materials[number] = _words(properties, _MATERIAL)
+        """Say what a material from 2 on is: density, unit_weight, young, poisson; the deck's keys say it of 1."""
+        self._materials[_whole(number, 2)] = _words(properties, _MATERIAL)
 
     def joint(self, first: int, second: int, **law: float) -> None:
         """Say the law between two materials: friction_deg, cohesion, tension."""
+        first, second = _whole(first, 1), _whole(second, 1)
         self._laws[min(first, second), max(first, second)] = _words(law, _LAW)
 
     def entry(self, text: str) -> None:
         """Add a line of the file of blocks, such as "load 1 2 0 -1000" or "measure 1 2"."""
+        if not isinstance(text, str) or len(text.splitlines()) > 1:
+            raise ValueError(f"expected one line of a file of blocks, got {text!r}")
         self.entries.append(text)
 
     def block_text(self) -> str:
@@ -196,10 +208,36 @@ class _Materials:
         return [material, *(number for number, of in self.origin.items() if of == material)]
 
 
-def _points(corners: Iterable) -> list[tuple[float, float]]:
-    """Corners as pairs of floats."""
-    points = [(float(corner[0]), float(corner[1])) for corner in corners]
+def _points(corners: Any) -> list[tuple[float, float]]:
+    """Corners as pairs of floats; ValueError if they are none."""
+    try:
+        points = [(_number(x), _number(y)) for x, y in corners]
+    except (TypeError, ValueError) as problem:
+        text = " ".join(repr(corners).split())
+        raise ValueError(f"expected corners as pairs of numbers, got {text[:60]}") from problem
     return points[:-1] if len(points) > 1 and points[0] == points[-1] else points
+
+
+def _number(value: Any) -> float:
+    """A number; ValueError if it is none."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise ValueError(f"expected a number, got {value!r}")
+    return float(value)
+
+
+def _flag(value: Any) -> bool:
+    """A flag, NumPy's too; ValueError if it is none."""
+    plain = value.item() if hasattr(value, "item") else value
+    if not isinstance(plain, bool):
+        raise ValueError(f"expected fixed as True or False, got {value!r}")
+    return plain
+
+
+def _whole(value: Any, least: int) -> int:
+    """The number of a material; ValueError if it is none."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+        raise ValueError(f"expected the number of a material, {least} or more, got {value!r}")
+    return int(value)
 
 
 def _words(given: dict[str, float], known: tuple[str, ...]) -> str:
@@ -207,4 +245,4 @@ def _words(given: dict[str, float], known: tuple[str, ...]) -> str:
     for name in given:
         if name not in known:
             raise ValueError(f"expected one of {', '.join(known)}, got '{name}'")
-    return " ".join(f"{name} {float(value)!r}" for name, value in given.items())
+    return " ".join(f"{name} {_number(value)!r}" for name, value in given.items())

@@ -12,6 +12,9 @@ from typing import Any, Union
 
 #: Groups of a deck: a mapping of keys each; of &sweep a list of such mappings will do
 Groups = Mapping[str, Union[Mapping[str, Any], list]]
+#: Names of groups and keys; a key may have the number of a joint
+_NAME = re.compile(r"[a-z]\w*", re.ASCII | re.IGNORECASE)
+_KEY = re.compile(r"[a-z]\w*(\(\d+\))?", re.ASCII | re.IGNORECASE)
 #: What a bare name means that several groups have, as in &sweep
 _MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "material"}
 
@@ -25,6 +28,8 @@ def value_text(value: Any) -> str:
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, (str, Path)):
+        if len(str(value).splitlines()) > 1:
+            raise ValueError(f"expected a text of one line, got {value!r}")
         return "'" + str(value).replace("'", "''") + "'"
     if isinstance(value, (list, tuple, range)):
         return ", ".join(map(value_text, value))
@@ -34,17 +39,34 @@ def value_text(value: Any) -> str:
 def deck_text(groups: Groups) -> str:
     """A deck as text, a line a group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a list of them."""
     lines = []
-    for group, keys in groups.items():
-        for one in [keys] if isinstance(keys, Mapping) else keys:
+    for group, keys in checked(groups).items():
+        for one in _as_list(keys):
             words = ", ".join(f"{key} = {value_text(value)}" for key, value in one.items())
             lines.append(f"&{group} {words} /".replace("  ", " "))
     return "\n".join(lines) + "\n"
 
 
+def checked(groups: Any) -> Groups:
+    """Groups as they are; ValueError where they are no groups with keys of a deck."""
+    if not isinstance(groups, Mapping):
+        raise ValueError(f"expected the groups of a deck as a dict, got {groups!r}")
+    for group, keys in groups.items():
+        if not isinstance(group, str) or not _NAME.fullmatch(group):
+            raise ValueError(f"expected the name of a group, got {group!r}")
+        is_list = group == "sweep" and isinstance(keys, (list, tuple))
+        for one in keys if is_list else [keys]:
+            if not isinstance(one, Mapping):
+                raise ValueError(f"expected the keys of &{group} as a dict, got {one!r}")
+            for key in one:
+                if not isinstance(key, str) or not _KEY.fullmatch(key):
+                    raise ValueError(f"expected the name of a key of &{group}, got {key!r}")
+    return groups
+
+
 def merged(groups: Groups, more: Groups) -> dict[str, Any]:
     """Groups as for `deck_text`; keys of `more` go before, its sweeps are added."""
-    joint: dict[str, Any] = dict(groups)
-    for group, keys in more.items():
+    joint: dict[str, Any] = dict(checked(groups))
+    for group, keys in checked(more).items():
         there = joint.get(group)
         if group == "sweep":
             joint[group] = [*_as_list(there or []), *_as_list(keys)]
