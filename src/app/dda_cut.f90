@@ -7,7 +7,7 @@ submodule (dda_verbs) dda_cut
    use dda_process, only : exit_status
    use dda_read_limerick, only : read_geometry
    use dda_screen, only : print_line, print_warnings, screen_t
-   use dda_text, only : to_text
+   use dda_text, only : counted, place_text, short_text, to_text
    use dda_vector, only : area_moments, area_moments_t
    use dda_error, only : warnings_t
    use dda_write_vtu, only : write_cut_table, write_cut_vtu
@@ -52,25 +52,25 @@ contains
 
       smallest = minloc(cut%area, 1)
       largest = maxloc(cut%area, 1)
-      call print_line(screen, model%file//": "//to_text(model%line%n)//" lines, " &
-         & //to_text(size(cut%area))//" blocks")
+      call print_line(screen, model%file//": "//counted(model%line%n, "line")//", " &
+         & //counted(size(cut%area), "block"))
       if (size(cut%area) > 0) then
-         call tell(screen, "area", to_text(sum(cut%area))//" in all")
-         call tell(screen, "smallest", to_text(cut%area(smallest))//", block "//to_text(smallest))
-         call tell(screen, "largest", to_text(cut%area(largest))//", block "//to_text(largest))
+         call tell(screen, "area", short_text(sum(cut%area))//" in all")
+         call tell(screen, "smallest", short_text(cut%area(smallest))//", block "//to_text(smallest))
+         call tell(screen, "largest", short_text(cut%area(largest))//", block "//to_text(largest))
       end if
-      call tell(screen, "joints", to_text(size(cut%pair))//" pairs of coincident edges")
+      call tell(screen, "joints", counted(size(cut%pair), "pair")//" of coincident edges")
       call tell(screen, "points", to_text(count(cut%point%kind == entity_role%fix))//" fixed, " &
          & //to_text(count(cut%point%kind == entity_role%load))//" load, " &
          & //to_text(count(cut%point%kind == entity_role%measure))//" measured")
       if (model%of(entity_role%bolt)%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
          & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
-      if (cut%n_removed > 0) call tell(screen, "removed", to_text(cut%n_removed) &
-         & //" blocks that hold hole points")
+      if (cut%n_removed > 0) call tell(screen, "removed", counted(cut%n_removed, "block") &
+         & //" with hole points")
       if (cut%n_merged > 0) call tell(screen, "merged", &
-         & to_text(cut%n_merged)//" crossings with a node " &
-         & //"nearer than "//to_text(cut%scale%merge)//" (1.25 e00 w0, w0 = " &
-         & //to_text(cut%scale%size)//")")
+         & counted(cut%n_merged, "crossing")//" with a node " &
+         & //"nearer than "//short_text(cut%scale%merge)//" (1.25 e00 w0, w0 = " &
+         & //short_text(cut%scale%size)//")")
       call print_blocks(screen, cut)
       call print_dropped(screen, model, cut)
    end subroutine print_cut
@@ -88,7 +88,7 @@ contains
          write (columns, "(i5, i10, i9)") b, cut%material(b), &
             & cut%first_vertex(b + 1) - cut%first_vertex(b)
          moments = area_moments(block_vertices(cut, b))
-         call print_line(screen, "   "//columns//"  "//to_text(cut%area(b))//"  " &
+         call print_line(screen, "   "//columns//"  "//short_text(cut%area(b))//"  " &
             & //point_text(cut, moments%centroid))
       end do
       if (size(cut%area) > most_rows) call print_line(screen, "   and " &
@@ -149,7 +149,7 @@ contains
          text = text//": once nodes were merged it crosses "//other//" without a node"
       case (cut_reason%too_close)
          text = text//": it passes a node of "//other//" closer than " &
-            & //to_text(cut%scale%clearance)//" (e00 w0)"
+            & //short_text(cut%scale%clearance)//" (e00 w0)"
       case (cut_reason%flat)
          text = text//": it bounds a block without area"
       end select
@@ -161,8 +161,8 @@ contains
       real(wp), intent(in) :: point(2)       !! The point, from the origin of the cut: (2) [m]
       character(len=:), allocatable :: text  !! Its coordinates in parentheses
 
-      text = "("//to_text(point(1) + cut%scale%origin(1))//", " &
-         & //to_text(point(2) + cut%scale%origin(2))//")"
+      text = "("//place_text(point(1) + cut%scale%origin(1))//", " &
+         & //place_text(point(2) + cut%scale%origin(2))//")"
    end function point_text
 
    !> Print one line of the summary

@@ -9,7 +9,7 @@ submodule (dda_verbs) dda_lines
    use dda_read_joint_map, only : read_joint_map
    use dda_screen, only : print_line
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
-   use dda_text, only : fields, to_text
+   use dda_text, only : counted, fields, short_text, to_text
    use dda_write_limerick, only : ddaml_geometry, plain_geometry
    implicit none
 
@@ -41,11 +41,11 @@ contains
       associate (ends => model%line%place(:, model%n_boundary + 1:model%line%n))
          length = sum(norm2(ends(3:4, :) - ends(1:2, :), dim=1))
       end associate
-      call print_line(command%screen, name//": "//to_text(model%n_boundary)//" boundary lines, " &
-         & //to_text(model%line%n - model%n_boundary)//" joints of " &
-         & //to_text(length)//" m in all, " &
-         & //to_text(size(map%opening))//" openings, " &
-         & //to_text(model%of(entity_role%bolt)%n)//" bolts")
+      call print_line(command%screen, name//": "//counted(model%n_boundary, "boundary line")//", " &
+         & //counted(model%line%n - model%n_boundary, "joint")//" of " &
+         & //short_text(length)//" m in all, " &
+         & //counted(size(map%opening), "opening")//", " &
+         & //counted(model%of(entity_role%bolt)%n, "bolt"))
       call print_line(command%screen, "   "//file//" is for 'dda cut', "//table_name(file) &
          & //" for pictures")
    end procedure draw_map

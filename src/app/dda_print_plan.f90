@@ -14,7 +14,7 @@ submodule (dda_verbs:dda_check) dda_print_plan
    use dda_result_tables, only : left_out
    use dda_scene_check, only : check_lines
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
-   use dda_text, only : to_text
+   use dda_text, only : counted, place_text, short_text, to_text
    implicit none
 
 contains
@@ -87,8 +87,8 @@ contains
       associate (system => scene%system, n => size(scene%system%area))
          do b = 1, min(n, most_rows)
             call print_line(screen, "   "//to_text(b)//"  "//to_text(system%area(b))//"  (" &
-               & //to_text(system%centroid(1, b) + scene%origin(1))//", " &
-               & //to_text(system%centroid(2, b) + scene%origin(2))//")" &
+               & //place_text(system%centroid(1, b) + scene%origin(1))//", " &
+               & //place_text(system%centroid(2, b) + scene%origin(2))//")" &
                & //trim(merge("  held", "      ", system%equation(b) == 0)))
          end do
          if (n > most_rows) call print_line(screen, "   and "//to_text(n - most_rows)//" more")
@@ -155,10 +155,10 @@ contains
          call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each fixed at 4 points")
       else
          call tell(screen, "blocks", to_text(n)//", fixed at " &
-            & //to_text(size(model%boundary%held))//" points")
+            & //counted(size(model%boundary%held), "point"))
       end if
       call tell(screen, "half size", &
-         & to_text(half_size(model))//" m: the scale of penetration, opening and motion")
+         & short_text(half_size(model))//" m: the scale of penetration, opening and motion")
       call tell(screen, "contacts", "vertex to edge or vertex to vertex; detected in each step")
       call tell(screen, "unknowns", "6 per block, "//to_text(6*n)//" in all")
       call tell(screen, "penalty", merge("follows the penetration, up or down", &

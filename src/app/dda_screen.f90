@@ -7,7 +7,7 @@ module dda_screen
    use dda_error, only : error_t, warning_line, warnings_t
    use dda_kinds, only : wp
    use dda_process, only : terminal_width
-   use dda_text, only : read_integer, to_text
+   use dda_text, only : counted, read_integer, to_text
    use dda_watch, only : watch_t
    implicit none
    private
@@ -103,7 +103,7 @@ contains
          write (error_unit, "(a)") warning_line(warnings%item(i))
       end do
       if (warnings%left_out > 0) &
-         & write (error_unit, "(a)") "and "//to_text(warnings%left_out)//" more warnings"
+         & write (error_unit, "(a)") "and "//counted(warnings%left_out, "more warning")
    end subroutine print_warnings
 
    !> Columns that a line of a table may have: those of the terminal, or where it does not know,

@@ -14,7 +14,7 @@ module dda_case_rows
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : verdict
-   use dda_text, only : to_text
+   use dda_text, only : counted, short_text, to_text
    use dda_verdict, only : outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
@@ -61,7 +61,7 @@ contains
          & some_number(this%family%deck%value(vehicle_position)%number)
       if (this%has_worst .and. row%verdict /= "collapsed") remark = joined(remark, &
          & "the least load factor is carried with the first axle at " &
-         & //to_text(row%worst_position%value)//" m")
+         & //short_text(row%worst_position%value)//" m")
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
@@ -185,17 +185,17 @@ contains
          if (critical%verdict == verdict%undecided) then
             remark = "the bracket cannot be narrowed further"
             if (allocated(critical%reason)) &
-               & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
+               & remark = "at "//short_text(critical%undecided_at)//" "//critical%reason
             if (allocated(critical%fallen) .and. allocated(critical%standing)) remark = remark &
-               & //"; collapsed at "//to_text(critical%falls)//", stable at " &
-               & //to_text(critical%stands)
+               & //"; collapsed at "//short_text(critical%falls)//", stable at " &
+               & //short_text(critical%stands)
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (critical%limit%known) then
             row%exact_low = some_number(minval(critical%limit%value))
             row%exact_high = some_number(maxval(critical%limit%value))
          end if
-         if (critical%has_other) remark = "it also collapses at "//to_text(critical%other)
+         if (critical%has_other) remark = "it also collapses at "//short_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
             & remark = joined(remark, change_remark(critical))
@@ -272,7 +272,8 @@ contains
       end do
       n = count(way > moves*maxval(way))
       if (n == 0 .or. 3*n > count(system%equation > 0)) return
-      remark = "of "//to_text(count(system%equation > 0))//" blocks "//to_text(n)//" move:"
+      remark = "of "//to_text(count(system%equation > 0))//" blocks "//to_text(n) &
+         & //trim(merge(" moves", " move ", n == 1))//":"
       do i = 1, min(n, most_named)
          b = maxloc(way, dim=1)
          way(b) = -1.0_wp
@@ -290,8 +291,8 @@ contains
 
       remark = ""
       if (outcome%verdict /= verdict%stable) then
-         place = " time "//to_text(outcome%path_time)
-         if (outcome%path_time < 0.0_wp) place = " "//to_text(1.0_wp + outcome%path_time) &
+         place = " time "//short_text(outcome%path_time)
+         if (outcome%path_time < 0.0_wp) place = " "//short_text(1.0_wp + outcome%path_time) &
             & //" of the prescribed displacement"
          remark = trim(merge("the blocks collapse at     ", "equilibrium is proven up to", &
             & outcome%verdict == verdict%collapsed))//place
@@ -335,18 +336,20 @@ contains
    pure function change_remark(critical) result(remark)
       type(critical_t), intent(in) :: critical
       character(len=:), allocatable :: remark
+      character(len=:), allocatable :: agree
       integer :: i
 
+      agree = trim(merge("agrees", "agree ", critical%others == 1))
       if (.not. allocated(critical%other_change)) then
-         remark = to_text(critical%others)//" values between the ends agree with them"
+         remark = counted(critical%others, "value")//" between the ends "//agree//" with them"
       else if (size(critical%other_change) == 0) then
-         remark = to_text(critical%others)//" values on both sides agree with it"
+         remark = counted(critical%others, "value")//" on both sides "//agree//" with it"
       else
          remark = "not monotone: the answer changes again"
          do i = 1, size(critical%other_change, 2)
             if (i > 1) remark = remark//","
-            remark = remark//" between "//to_text(critical%other_change(1, i))//" and " &
-               & //to_text(critical%other_change(2, i))
+            remark = remark//" between "//short_text(critical%other_change(1, i))//" and " &
+               & //short_text(critical%other_change(2, i))
          end do
       end if
    end function change_remark
@@ -359,6 +362,6 @@ contains
 
       remark = ""
       if (jumps > 0) remark = "jumps on the loading path: "//to_text(jumps) &
-         & //", the largest "//to_text(largest)//" m"
+         & //", the largest "//short_text(largest)//" m"
    end function jump_remark
 end module dda_case_rows

@@ -4,7 +4,7 @@ module dda_word_list
    use dda_deck_token, only : shown
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
-   use dda_text, only : read_number, to_text
+   use dda_text, only : read_number, short_text, to_text
    implicit none
    private
 
@@ -138,8 +138,8 @@ contains
          call take_number(words, what, value(i), error)
          if (allocated(error)) return
          if (abs(value(i)) <= bound) cycle
-         call fatal_error(error, "expected "//what//" of at most "//to_text(bound)//" in " &
-            & //"magnitude, got "//to_text(value(i))//"; correct it or change the unit", &
+         call fatal_error(error, "expected "//what//" of at most "//short_text(bound)//" in " &
+            & //"magnitude, got "//short_text(value(i))//"; correct it or change the unit", &
             & words%file, row)
          return
       end do
@@ -157,7 +157,7 @@ contains
       row = this_row(words)
       call take_number(words, what, value, error)
       if (.not. allocated(error) .and. .not. (value >= 0.0_wp .and. value <= most)) &
-         & call fatal_error(error, "expected "//what//" from 0 to 1e30, got "//to_text(value), &
+         & call fatal_error(error, "expected "//what//" from 0 to 1e30, got "//short_text(value), &
          & words%file, row)
    end subroutine take_property
 
@@ -182,7 +182,7 @@ contains
          value = nint(number)
       else
          call fatal_error(error, "expected "//what//" as a whole number from "//to_text(low) &
-            & //" to "//to_text(high)//", got "//to_text(number)//"; correct it", words%file, row)
+            & //" to "//to_text(high)//", got "//short_text(number)//"; correct it", words%file, row)
       end if
    end subroutine take_whole
 
@@ -196,7 +196,7 @@ contains
       type(error_t), allocatable, intent(inout) :: error
 
       if (fits .or. allocated(error)) return
-      call fatal_error(error, rule//", got "//to_text(value)//"; correct it", file, row)
+      call fatal_error(error, rule//", got "//short_text(value)//"; correct it", file, row)
    end subroutine check_number
 
    !> Warn of words that were not taken

@@ -5,7 +5,7 @@ module dda_ddaml_material
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : analysis_material_t, limerick_joint_t, load_history_t
    use dda_plain_files, only : check_joint, check_material, largest_value
-   use dda_text, only : to_text
+   use dda_text, only : short_text, to_text
    use dda_word_list, only : check_number, quoted, split_words, take_whole, take_word_numbers, &
       & this_row, warn_of_rest, word_list_t
    use dda_xml_tree, only : attribute_of, find_child, xml_tree_t
@@ -101,7 +101,7 @@ contains
       call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
       if (allocated(error)) return
       value = number(1)
-      call check_number(value >= low, "the attribute "//name//" must be "//to_text(low) &
+      call check_number(value >= low, "the attribute "//name//" must be "//short_text(low) &
          & //" or more", value, tree%file, tree%element(at)%row, error)
    end subroutine number_attribute
 
@@ -159,7 +159,7 @@ contains
 
       weight = material%density*gravity
       if (abs(material%unit_weight - weight) <= same_weight*abs(weight)) return
-      call add_warning(warnings, "expected Unitweight = Unitmass*Gravaccel = "//to_text(weight) &
+      call add_warning(warnings, "expected Unitweight = Unitmass*Gravaccel = "//short_text(weight) &
          & //", got "//to_text(material%unit_weight)//": using the former", tree%file, &
          & tree%element(at)%row)
       material%unit_weight = weight

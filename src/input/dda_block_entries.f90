@@ -35,7 +35,7 @@ contains
       do side = 1, 2
          bar%block(side) = block_at(plan, site, bar%point(:, side))
          if (bar%block(side) == 0) call add_warning(warnings, "the end of the bar at (" &
-            & //to_text(ends(2*side - 1))//", "//to_text(ends(2*side)) &
+            & //place_text(ends(2*side - 1))//", "//place_text(ends(2*side)) &
             & //") lies in no block: the ground holds it", file, bar%line)
       end do
       if (bar%block(1) == bar%block(2)) call fatal_error(error, &
@@ -75,7 +75,7 @@ contains
             & "neither", given(1))))
       else if (bar%prestress > bar%strength) then
          call fatal_error(error, "expected a prestress of at most the strength, got " &
-            & //to_text(bar%prestress))
+            & //short_text(bar%prestress))
       end if
    end subroutine take_properties
 
@@ -95,7 +95,7 @@ contains
          call read_number(trim(entry%head%word(i)), place(n + 1), ok)
          if (.not. ok) exit
          if (.not. abs(place(n + 1)) <= 1.0e9_wp) call fatal_error(error, &
-            & "expected places of at most 1e9, got "//to_text(place(n + 1)))
+            & "expected places of at most 1e9, got "//short_text(place(n + 1)))
          if (allocated(error)) return
          n = n + 1
       end do
@@ -194,7 +194,7 @@ contains
       if (at <= entry%head%n) then
          call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(at)))//"'")
       else if (time(1) < 0.0_wp) then
-         call fatal_error(error, "expected a time from 0 [s], got "//to_text(time(1)))
+         call fatal_error(error, "expected a time from 0 [s], got "//short_text(time(1)))
       else if (entry%head%word(2) == "polygon") then
          call blocks_inside(entry, plan, block, error)
       else
@@ -270,7 +270,7 @@ contains
             if (last(b) > 0) then
                if (change(last(b))%adds .eqv. change(i)%adds) call fatal_error(error, "block " &
                   & //to_text(b)//" is already "//trim(merge("there    ", "not there", &
-                  & change(i)%adds))//" at "//to_text(change(i)%time)//" s", line=change(i)%line)
+                  & change(i)%adds))//" at "//short_text(change(i)%time)//" s", line=change(i)%line)
                if (.not. change(last(b))%time < change(i)%time) call fatal_error(error, &
                   & "expected one change of block "//to_text(b)//" at a time", line=change(i)%line)
             end if

@@ -6,7 +6,7 @@ module dda_block_lines
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_read_record, only : read_record
-   use dda_text, only : lower_case, read_number, to_text
+   use dda_text, only : lower_case, read_number, short_text, to_text
    implicit none
    private
 
@@ -161,7 +161,7 @@ contains
                & //shown(trim(line%word(i)))//"'")
          else if (abs(number(k)) > largest_number) then
             call fatal_error(error, "expected numbers of at most 1e30 in magnitude after '" &
-               & //shown(trim(line%word(i)))//"', got "//to_text(number(k)) &
+               & //shown(trim(line%word(i)))//"', got "//short_text(number(k)) &
                & //"; correct them or change the unit")
          end if
          if (allocated(error)) return
@@ -202,7 +202,7 @@ contains
             if (allocated(error)) return
             if (all(in_range(key(k), own))) cycle
             call fatal_error(error, trim(key(k)%name)//" must be "//wanted(key(k))//", got " &
-               & //to_text(own(1)))
+               & //short_text(own(1)))
             return
          end associate
       end do

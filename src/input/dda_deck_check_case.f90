@@ -9,7 +9,7 @@ module dda_deck_check_case
    use dda_key_value, only : deck_place_t, number_problem
    use dda_kinds, only : wp
    use dda_error, only : error_t
-   use dda_text, only : to_text
+   use dda_text, only : short_text, to_text
    use dda_deck_keys, only : deck_key
    use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, number_or, &
       & parameter_name, put_number, refuse, source_of
@@ -153,7 +153,7 @@ contains
       span = 2.0_wp*deck%value(arch_half_angle_deg)%number/deck%value(arch_voussoirs)%number
       if (span < 180.0_wp .or. deck%value(arch_facet_deg)%given) return
       call deck_error(error, "one chord per voussoir needs voussoirs of less than 180 degrees, "// &
-         "got "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
+         "got "//short_text(span)//"; give facet_deg or more voussoirs", deck, &
          later(deck, arch_half_angle_deg, arch_voussoirs))
    end subroutine check_shape
 
@@ -173,7 +173,7 @@ contains
             problem = "must be two angles or more, got "//to_text(n)// &
                "; write 0 (the crown) and the springing at least"
          else if (abs(joints(1)) > 0.0_wp) then
-            problem = "must begin with 0 (the crown), got "//to_text(joints(1))// &
+            problem = "must begin with 0 (the crown), got "//short_text(joints(1))// &
                "; write the joints of one half only"
          else if (deck%value(arch_voussoirs)%given) then
             problem = "and arch%voussoirs exclude one another; remove one of them"

@@ -1,7 +1,7 @@
 !> What the registry says of a key and of a group, and how that is said in words
 module dda_deck_key
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, to_text
+   use dda_text, only : lower_case, short_text, to_text
    implicit none
    private
 
@@ -117,26 +117,15 @@ contains
 
       text = ""
       comma = ""
-      if (key%within(1) > -none) text = " from "//bound_text(key%within(1))
-      if (key%above > -none) text = " above "//bound_text(key%above)
+      if (key%within(1) > -none) text = " from "//short_text(key%within(1))
+      if (key%above > -none) text = " above "//short_text(key%above)
       if (len(text) > 0) comma = ","
       if (key%below < none) then
-         text = text//comma//" below "//bound_text(key%below)
+         text = text//comma//" below "//short_text(key%below)
       else if (key%within(2) < none) then
-         text = text//" to "//bound_text(key%within(2))
+         text = text//" to "//short_text(key%within(2))
       end if
    end function range_text
-
-   !> A bound of a range; a one with many zeros as a power of ten
-   pure function bound_text(bound) result(text)
-      real(wp), intent(in) :: bound          !! The bound
-      character(len=:), allocatable :: text  !! Such as: 0.5, 1000 or 1e9
-      integer :: zeros
-
-      text = to_text(bound)
-      zeros = len(text) - 1
-      if (zeros > 6 .and. text == "1"//repeat("0", zeros)) text = "1e"//to_text(zeros)
-   end function bound_text
 
    !> A list of words, each in quotes
    pure function quoted_words(words) result(text)

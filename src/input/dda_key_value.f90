@@ -4,7 +4,7 @@ module dda_key_value
       & or_leave_out, wanted, word_length
    use dda_deck_token, only : shown
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, read_number, to_text
+   use dda_text, only : lower_case, read_number, short_text, to_text
    implicit none
    private
 
@@ -115,7 +115,7 @@ contains
 
       problem = ""
       if (number_fits(key, number)) return
-      problem = full_name(key)//" must be "//wanted(key)//", got "//to_text(number)
+      problem = full_name(key)//" must be "//wanted(key)//", got "//short_text(number)
    end function number_problem
 
    !> Whether a number can be the value of a key

@@ -10,7 +10,7 @@ module dda_read_blocks
    use dda_error, only : error_t, fatal_error, place_error, warnings_t
    use dda_growth, only : make_room
    use dda_kinds, only : wp
-   use dda_text, only : read_integer, read_number, to_text
+   use dda_text, only : place_text, read_integer, read_number, short_text, to_text
    use dda_watch, only : watch_t
    use dda_word_list, only : largest_coordinate
    implicit none
@@ -184,7 +184,7 @@ contains
             else if (abs(value) > merge(largest_coordinate, largest_number, &
                & entry%n_column == 2)) then
                call fatal_error(error, row_wanted(entry)//" of at most "//trim(merge("1e15", &
-                  & "1e30", entry%n_column == 2))//" in magnitude, got "//to_text(value) &
+                  & "1e30", entry%n_column == 2))//" in magnitude, got "//short_text(value) &
                   & //"; correct it or change the unit")
                return
             end if

@@ -22,7 +22,7 @@ module dda_read_joint_map
       & slope_bench_width, slope_benches, slope_face_deg, slope_foot_x, slope_foot_y, slope_x, &
       & slope_y
    use dda_polygon, only : find_crossing
-   use dda_text, only : lower_case, to_text
+   use dda_text, only : lower_case, place_text, short_text, to_text
    use dda_text_file, only : read_text_file
    use dda_vector, only : area_moments, area_moments_t
    implicit none
@@ -335,12 +335,12 @@ contains
 
       moments = area_moments(corner)
       if (.not. moments%area > 0.0_wp) call group_error(group, &
-         & "expected an outline with an area, got one of "//to_text(moments%area)//" m2", error)
+         & "expected an outline with an area, got one of "//short_text(moments%area)//" m2", error)
       if (allocated(error)) return
       call find_crossing(corner, edge, crossing)
       if (edge(1) > 0) call group_error(group, "expected an outline whose edges do not " &
          & //"meet, got edges "//to_text(edge(1))//" and "//to_text(edge(2))//" that do at (" &
-         & //to_text(crossing(1))//", "//to_text(crossing(2))//")", error)
+         & //place_text(crossing(1))//", "//place_text(crossing(2))//")", error)
    end subroutine check_polygon
 
    !> An opening
@@ -373,7 +373,7 @@ contains
       case ("horseshoe")
          if (wall <= 0.0_wp .or. wall >= 0.99_wp*width) call group_error(group, &
             & "expected a horseshoe with a wall above 0 and below the width, got " &
-            & //to_text(wall), error)
+            & //short_text(wall), error)
          if (allocated(error)) return
          opening%corner = horseshoe(at, 0.5_wp*width, wall, n)
       case default

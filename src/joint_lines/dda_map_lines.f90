@@ -11,7 +11,7 @@ module dda_map_lines
    use dda_random, only : random_t
    use dda_segment, only : crossing_parameters
    use dda_sort, only : sorted_order
-   use dda_text, only : to_text
+   use dda_text, only : place_text, to_text
    implicit none
    private
 
@@ -103,7 +103,7 @@ contains
             do k = 1, size(corner, 2)
                if (contains_point(map%outline, corner(:, k))) cycle
                call fatal_error(error, "expected an opening inside the outline, got one with a " &
-                  & //"corner at ("//to_text(corner(1, k))//", "//to_text(corner(2, k)) &
+                  & //"corner at ("//place_text(corner(1, k))//", "//place_text(corner(2, k)) &
                   & //"); make the outline larger", map%file, map%opening(i)%row)
                return
             end do
@@ -237,8 +237,8 @@ contains
             head = ray_exit(corner, centre, along) + bolts%reach(2)*along
             tip = head + bolts%reach(1)*along
             if (.not. contains_point(map%outline, tip)) call fatal_error(error, &
-               & "expected bolts inside the outline, got one that ends at ("//to_text(tip(1)) &
-               & //", "//to_text(tip(2))//")", map%file, bolts%row)
+               & "expected bolts inside the outline, got one that ends at ("//place_text(tip(1)) &
+               & //", "//place_text(tip(2))//")", map%file, bolts%row)
             if (allocated(error)) return
             call add_entity(model%of(entity_role%bolt), [head, tip], 0, bolts%row, &
                & bolts%property)

@@ -11,7 +11,7 @@ module dda_cutting
       & network_t
    use dda_polygon, only : contains_point
    use dda_sort, only : sorted_order
-   use dda_text, only : to_text
+   use dda_text, only : place_text, short_text, to_text
    use dda_vector, only : cross
    implicit none
    private
@@ -187,7 +187,7 @@ contains
       room = 1.0e-9_wp*enclosed + 10.0_wp*cut%scale%reach*cut%scale%size
       if (abs(sum(cut%area) - enclosed) <= room) return
       call fatal_error(error, "expected block areas that add up to the enclosed area " &
-         & //to_text(enclosed)//", got "//to_text(sum(cut%area)) &
+         & //short_text(enclosed)//", got "//short_text(sum(cut%area)) &
          & //": lines cross without a node; make the edge-node distance smaller", file, 1)
    end subroutine check_areas
 
@@ -243,8 +243,8 @@ contains
       call fatal_error(error, "expected blocks without holes, got line "//to_text(line) &
          & //" of blocks that lie wholly inside block "//to_text(block) &
          & //", whose corner 1 "// &
-         & "is at ("//to_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
-         & //to_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2)) &
+         & "is at ("//place_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
+         & //place_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2)) &
          & //"); join the two by a line or put a hole point into the outer block", &
          & model%file, model%line%row(line))
    end subroutine tell_nested

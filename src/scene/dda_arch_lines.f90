@@ -15,7 +15,7 @@ module dda_arch_lines
    use dda_limerick_scene, only : abutment_depth, set_constants, widen
    use dda_line_model, only : add_entity, entity_role, line_model_t
    use dda_scene, only : scene_t
-   use dda_text, only : to_text
+   use dda_text, only : short_text
    implicit none
    private
 
@@ -54,7 +54,7 @@ contains
       corner(:, :, 2) = corner(:, [1, 4, 3, 2], 2)
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) &
          & call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
-         & //to_text(abutment_depth(deck))//" m, where they meet below the arch; make it " &
+         & //short_text(abutment_depth(deck))//" m, where they meet below the arch; make it " &
          & //"smaller", deck, deck%value(arch_abutment_size)%place)
       if (allocated(error)) return
       model%file = deck%file

@@ -21,7 +21,7 @@ module dda_shape_check
       & tie_group, tie_prestress, tie_strength, tie_x1, tie_x2, tie_y1
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
-   use dda_text, only : to_text
+   use dda_text, only : place_text, to_text
    implicit none
    private
 
@@ -255,8 +255,8 @@ contains
          associate (bar => assembly%plan%boundary%bar(i))
             side = findloc(bar%block, 0, dim=1)
             if (side > 0) then
-               problem = "&tie needs ends in blocks, got ("//to_text(ends(2*side - 1, i))//", " &
-                  & //to_text(ends(2*side, i))//") of tie "//to_text(i)//", which lies in none; " &
+               problem = "&tie needs ends in blocks, got ("//place_text(ends(2*side - 1, i))//", " &
+                  & //place_text(ends(2*side, i))//") of tie "//to_text(i)//", which lies in none; " &
                   & //"move it"
             else if (bar%block(1) == bar%block(2)) then
                side = 1
