@@ -113,20 +113,13 @@ def test_tunnel_falls_without_its_bolts(tmp_path: Path) -> None:
     assert voussoir.run(tmp_path / "bare.nml").cases["verdict"][0] == "collapsed"
 
 
-def test_wedge_slides_at_the_level_of_its_closed_form() -> None:
-    """Weight, water along the plane, in the crack and on the face below its level, against friction of 40 degrees."""
-    water, base, crack = 9810.0, math.hypot(65.7, 46.0), 46.0 / 65.7
-    weight = 26000.0 * 0.5 * abs(65.7 * 60.0 - 65.7 * 46.0 + 65.7 * 60.0 - 50.35 * 60.0)
-    sine, cosine, face = 46.0 / base, 65.7 / base, 60.0 / 50.35
-
-    def excess(level: float) -> float:
-        wet = 0.5 * water * level**2 / (face - crack)  # on the face: half its head times its length along x
-        x = -water * level * base * sine - 0.5 * water * level**2 + wet * face
-        y = water * level * base * cosine - weight - wet
-        return -(x * cosine + y * sine) - math.tan(math.radians(40.0)) * (x * sine - y * cosine)
-
-    low, high = 0.0, 14.0
-    for _ in range(80):
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
-    assert run("12_slope").cases["critical"][0] == pytest.approx(low, rel=1e-7)
+def test_wedge_with_water_in_its_crack_needs_the_friction_of_its_closed_form() -> None:
+    """Weight, water in the crack, and along the plane what falls from its head in the crack to nothing at the toe."""
+    water, length, depth = 9810.0, math.hypot(65.7, 46.0), 7.238
+    weight = 2650.0 * 9.81 * 0.5 * abs(65.7 * 60.0 - 65.7 * 46.0 + 65.7 * 60.0 - 50.35 * 60.0)
+    sine, cosine = 46.0 / length, 65.7 / length
+    push, uplift = 0.5 * water * depth**2, 0.5 * water * depth * length
+    friction = (weight * sine + push * cosine) / (weight * cosine - uplift - push * sine)
+    row = run("12_slope").case(1)
+    assert row["critical"] == pytest.approx(math.degrees(math.atan(friction)), rel=1e-9)
+    assert (round(row["critical"], 3), row["collapse_mode"]) == (40.0, "sliding")
