@@ -4,10 +4,14 @@ A page is one test: its blocks run in their order in one folder. A deck whose na
 line before it is written to that file. Commands that install packages, build the project or run
 the whole paper are those that CI, the README, tests/post/test_install.py and test_paper_page.py
 run; here they only are known ones.
+
+Decimal numbers in the words of a section whose blocks run must be among what these blocks say, print
+and write, rounded as the page has them. `ELSEWHERE` lists the pages with other numbers, and why.
 """
 
 from __future__ import annotations
 
+import bisect
 import json
 import os
 import re
@@ -23,6 +27,35 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
 INSTALL = re.compile(r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper ")
 COMMAND = re.compile(r"(\$ |dda |voussoir |build/bin/|&[a-z]+\b.*/|python3 |pip |PYTHONPATH=)")
+#: A decimal number of prose, not part of a name, a version or a path
+DECIMAL = re.compile(r"(?<![\w./#%])-?\d+\.\d+(?:e-?\d+)?(?!\w|\.\w)")
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w]|\.\d)")
+#: Numbers of sections that run something, which no block writes: why
+NOT_WRITTEN = {
+    "getting-started.md": {
+        "0.0229": "0.02283 rounded up: what stands", "11.5": "the same in centimetres", "24.04": "a version of Ubuntu"},
+    "input.md": {"6.5": "the mean of 4 and 9"},
+}
+#: Pages with decimal numbers in sections that run nothing: what compares them, or why nothing can
+ELSEWHERE = {
+    "CONTRIBUTING.md": "a version of Ubuntu, and the share of lines that CI measures",
+    "README.md": "versions of Ubuntu and CMake",
+    "accuracy.md": "campaigns of minutes and hours; test_work_precision.py and test_stability.py run their fast scenes",
+    "architecture.md": "shares of the source, counted when the page was written",
+    "gallery.md": "sentences of the decks; test_gallery.py compares them",
+    "howto_fortran.md": "a program of Fortran; test_install.py builds it and compares what it prints",
+    "input.md": "ranges and defaults; test_input_doc.py compares them",
+    "installation.md": "versions",
+    "limerick.md": "the original program, which is not here; test_limerick.py runs what needs it not",
+    "limits.md": "scenes of tests/physics and tests/cli, which the page names",
+    "method.md": "constants of the source",
+    "performance.md": "times of one machine",
+    "scaling.md": "times of one machine",
+    "testing.md": "examples of faults, and times of one machine",
+    "theory.md": "test_theory.py, test_theory_paper.py and test_theory_accuracy.py compare the solutions",
+    "tolerances.md": "constants; tests/lint compares the page with the source",
+    "validation.md": "written by voussoir validation; test_validation.py compares its fast scenes",
+}
 LABELS = {"", "text", "sh", "sh install", "console", "f90", "fortran", "python", "message"}
 
 
@@ -86,8 +119,9 @@ def plain(text: str) -> str:
     return " ".join(re.sub(r"-?\d\.\dE[-+]\d\d", "ERROR", text).split())
 
 
-def run_console(block: Block, folder: Path, shell: dict[str, str]) -> None:
-    """Run a transcript: each command prints what stands under it, if anything does."""
+def run_console(block: Block, folder: Path, shell: dict[str, str]) -> str:
+    """Run a transcript: each command prints what stands under it, if anything does; what was printed."""
+    all_printed = ""
     for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
         command, _, expected = part.partition("\n")
         while command.count('"') % 2:  # an argument of several lines
@@ -95,6 +129,8 @@ def run_console(block: Block, folder: Path, shell: dict[str, str]) -> None:
             command += "\n" + line
         printed = run_script(command, folder, shell)
         assert not expected.strip() or plain(expected) == plain(printed)
+        all_printed += printed
+    return all_printed
 
 
 def check_messages(block: Block, folder: Path) -> None:
@@ -107,8 +143,8 @@ def check_messages(block: Block, folder: Path) -> None:
     assert (done.returncode, done.stderr) == (2, message + "\n")
 
 
-def run_block(block: Block, folder: Path, shell: dict[str, str]) -> None:
-    """Run a block as its label wants it."""
+def run_block(block: Block, folder: Path, shell: dict[str, str]) -> str:
+    """Run a block as its label wants it: what it prints."""
     if block.label == "fortran":
         named = re.search(r"`([\w./-]+\.nml)`:?$", block.before)
         name = named[1] if named else f"line{block.line}.nml"
@@ -120,16 +156,53 @@ def run_block(block: Block, folder: Path, shell: dict[str, str]) -> None:
         assert done.returncode == 0, done.stderr
     elif block.label == "python":
         (folder / "block.py").write_text(block.text)
-        run_script("python3 block.py", folder, shell)
+        return run_script("python3 block.py", folder, shell)
     elif block.label == "message":
         check_messages(block, folder)
     elif block.text.startswith("$ "):
-        run_console(block, folder, shell)
+        return run_console(block, folder, shell)
     elif block.label == "sh":
-        run_script(block.text, folder, shell)
+        return run_script(block.text, folder, shell)
     elif not installs(block):
         looks_run = [line for line in block.text.splitlines() if COMMAND.match(line)]
         assert block.label != "sh install" and not looks_run, "give the block its label"
+    return ""
+
+
+def runs(block: Block) -> bool:
+    """Whether a block computes something."""
+    return block.label in ("sh", "python") or block.text.startswith("$ ")
+
+
+def sections_of(page: Path) -> list[tuple[str, bool]]:
+    """Words of the parts of a page between its second headings, without blocks, and whether a block of each runs."""
+    parts = re.split(r"^(?=## )", page.read_text(encoding="utf-8"), flags=re.M)
+    fence = re.compile(r"^[ ]*```([^\n]*)\n(.*?)^[ ]*```", flags=re.M | re.S)
+    return [
+        (fence.sub("", part), any(runs(Block(label.strip(), text, 0, "")) for label, text in fence.findall(part)))
+        for part in parts
+    ]
+
+
+def written(folder: Path) -> str:
+    """What the blocks of a page have written: decks, tables but the longest, logs."""
+    endings = (".csv", ".txt", ".nml", ".blocks", ".geo")
+    files = [path for path in folder.rglob("*") if path.suffix in endings and path.is_file()]
+    mine = [path for path in files if not {"build", "input"} & {*path.relative_to(folder).parts}]
+    return "\n".join(path.read_text() for path in mine if path.stat().st_size < 100_000)
+
+
+def unknown_numbers(words: str, known: str) -> list[str]:
+    """Decimal numbers of words that no known number gives when it is rounded to as many decimals."""
+    values = sorted(abs(float(number)) for number in NUMBER.findall(known))
+    lost = []
+    for text in DECIMAL.findall(words):
+        digits, _, power = text.partition("e")
+        half = 0.5000001 * 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+        at = bisect.bisect_left(values, abs(float(text)) - half)
+        if at == len(values) or values[at] > abs(float(text)) + half:
+            lost.append(text)
+    return lost
 
 
 def ready() -> bool:
@@ -144,9 +217,34 @@ def test_blocks_of_a_page_run(page: Path, tmp_path: Path, shell: dict[str, str])
     python = any(block.label in ("sh", "python") or "$ " in block.text for block in blocks)
     if python and not ready():
         pytest.skip("the package voussoir of this build or matplotlib cannot be loaded here")
+    said = ""
     for block in blocks:
         assert block.label in LABELS, f"{page.name}:{block.line}: unknown label {block.label}"
-        run_block(block, tmp_path, shell)
+        said += run_block(block, tmp_path, shell) + block.text
+    said += written(tmp_path)
+    words = "".join(part for part, is_run in sections_of(page) if is_run)
+    assert [number for number in unknown_numbers(words, said) if number not in NOT_WRITTEN.get(page.name, {})] == []
+
+
+def test_every_number_that_nothing_here_computes_is_accounted_for() -> None:
+    """A page whose sections run nothing and have decimal numbers says who compares them; no other page is listed."""
+    pages = {page.name for page in PAGES for words, is_run in sections_of(page) if not is_run and DECIMAL.search(words)}
+    assert pages == set(ELSEWHERE)
+    for page, numbers in NOT_WRITTEN.items():
+        words = "".join(part for one in PAGES if one.name == page for part, _ in sections_of(one))
+        assert [number for number in numbers if number not in DECIMAL.findall(words)] == []
+    tests = {path.name for path in (ROOT / "tests").rglob("test_*.py")}
+    assert [name for reason in ELSEWHERE.values() for name in re.findall(r"test_\w+\.py", reason)
+            if name not in tests] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "lost"), [("0.163 of it", []), ("0.164 of it", ["0.164"]), ("-0.1 m", ["-0.1"]), ("1.6e-1", []),
+                        ("version 3.11.2, `a.5`, 5 and #1.2", []), ("2.50 m", []),
+                        ("2.51 m", ["2.51"])])
+def test_numbers_are_compared_as_they_are_rounded(words: str, lost: list[str]) -> None:
+    assert unknown_numbers(words, "x = 0.16302, 2.5049, n=3") == lost
+
 
 
 def test_tables_begin_with_their_head() -> None:
