@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import resource
 import statistics
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,17 +16,12 @@ import numpy as np
 
 from voussoir import results
 from voussoir.bench import limit_lp, work_precision_scenes as scenes
-from voussoir.bench.deck_runs import Finished, run_deck
+from voussoir.bench.deck_runs import Finished, run_deck, timed
 from voussoir.bench.limit_lp_blocks import Assembly, assembly_of, limit_factor
 from voussoir.bench.work_precision_motion import MOTION_METHODS, rocking
 from voussoir.bench.work_precision_runs import Arch, decide
 from voussoir.deck.text import deck_text, merged
 
-#: A case that takes longer [s] is timed by the processor's time of its run, for other work on the
-#: machine adds to its wall time; reading and writing are nothing beside it
-LONG_CASE = 0.02
-#: A case that takes longer [s] is run once
-ONCE = 5.0
 #: Weight per area of a deck's own material [N/m3]
 UNIT_WEIGHT = 2240.0 * 9.81
 
@@ -114,7 +108,7 @@ def _dda_points(scene: scenes.SceneClass, exact: Callable[[str], float], folder:
     """All settings of the methods of dda."""
     for method, settings in scene.methods.items():
         for setting in settings:
-            finished, seconds = _timed(functools.partial(_run, scene, setting, folder), repeats)
+            finished, seconds = timed(functools.partial(_run, scene, setting, folder), repeats)
             found = [row for row in finished.rows if row["verdict"] == "found"]
             answer = float(found[0]["critical"]) if found else None
             error = abs(answer / exact(method) - 1.0) if answer is not None else None
@@ -136,26 +130,6 @@ def _run(scene: scenes.SceneClass, setting: Mapping[str, Any], folder: Path, rep
     again = {"parameter": "penalty_ratio", "values": [penalty or default] * repeats}
     text = deck_text({**groups, "sweep": again})
     return run_deck(text, folder / scene.name.replace(" ", "_"), files=scene.files)
-
-
-def _timed(run: Callable[[int], Finished], repeats: int) -> tuple[Finished, float]:
-    """The median time of so many runs; those that take long by the processor's time."""
-    start = _processor_time()
-    finished = run(1)
-    once = _processor_time() - start
-    if not finished.rows or once > ONCE:
-        return finished, once
-    start = _processor_time()
-    finished = run(repeats)
-    spent = (_processor_time() - start) / repeats
-    wall = statistics.median(float(row["seconds"]) for row in finished.rows)
-    return finished, spent if wall > LONG_CASE else wall
-
-
-def _processor_time() -> float:
-    """Processor time of the programs that have ended [s]."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def _median_time(solve: Callable[[], float], repeats: int) -> tuple[float, float]:
@@ -207,7 +181,7 @@ def _motion(folder: Path, repeats: int) -> Iterator[Point]:
     for method, groups in MOTION_METHODS.items():
         for step in motion.steps():
             run = functools.partial(motion.run, step, folder, groups)
-            finished, seconds = _timed(run, repeats)
+            finished, seconds = timed(run, repeats)
             answer = error = None
             if finished.rows and finished.rows[0]["verdict"] == "completed":
                 with contextlib.suppress(IndexError):  # a block that never comes upright

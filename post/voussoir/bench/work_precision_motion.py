@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
-import statistics
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from voussoir.bench.deck_runs import Finished, run_deck
+from voussoir.bench.deck_runs import Finished, run_deck, timed
 from voussoir.bench.scene import BLOCKS, Corners, rectangle, written_block
 from voussoir.bench.validation_impact import next_amplitude, quarter_period
 from voussoir.bench.validation_motion import slide
@@ -96,10 +96,9 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
     """Run every scene with every length of the step, so many times each: a point a quantity and length."""
     for motion in (_slide(), rocking(), _pendulum(), _bounce()):
         for step in motion.steps():
-            finished = motion.run(step, folder, {}, repeats)
+            finished, seconds = timed(functools.partial(motion.run, step, folder, {}), repeats)
             if not finished.rows or finished.rows[0]["verdict"] != "completed":
                 continue
-            seconds = statistics.median(float(row["seconds"]) for row in finished.rows)
             outcome = motion.outcome(finished)
             for name, exact, measure in motion.checks:
                 error = abs(measure(outcome) / exact - 1.0)

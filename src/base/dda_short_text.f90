@@ -1,0 +1,50 @@
+!> Numbers as people write them
+submodule (dda_text) dda_short_text
+   implicit none
+
+contains
+
+   !> A number for people: at most six significant digits, and a power of ten from a million on
+   module procedure short_text
+      character(len=13) :: form
+      real(wp) :: mantissa, near
+      integer :: exponent, stat
+
+      text = to_text(value)
+      if (.not. ieee_is_finite(value)) return
+      write (form, "(es13.5e3)") value
+      read (form, "(f8.0, 1x, i4)", iostat=stat) mantissa, exponent
+      if (stat == 0) read (form, "(f13.0)", iostat=stat) near
+      if (stat /= 0) return
+      ! no zero has a sign
+      text = to_text(near + 0.0_wp)
+      if (exponent >= 6) text = to_text(mantissa)//"e"//to_text(exponent)
+   end procedure short_text
+
+   !> A point for people: coordinates of six significant digits, or whole millimetres where these
+   !> are more
+   module procedure place_text
+      text = "("//coordinate_text(place(1))//", "//coordinate_text(place(2))//")"
+   end procedure place_text
+
+   !> One coordinate of a point
+   pure function coordinate_text(value) result(text)
+      real(wp), intent(in) :: value          !! The coordinate [m]
+      character(len=:), allocatable :: text  !! The coordinate
+      ! from here on six digits are coarser, and up to there 1/1000 is no rounding
+      real(wp), parameter :: from = 1.0e3_wp, to = 1.0e12_wp
+
+      if (abs(value) < from .or. abs(value) > to) then
+         text = short_text(value)
+      else
+         text = to_text(anint(1.0e3_wp*value)/1.0e3_wp)
+      end if
+   end function coordinate_text
+
+   !> A number of things with their name, in the plural for all numbers but one
+   module procedure counted
+      text = to_text(number)//" "//thing
+      if (number /= 1) text = text//"s"
+   end procedure counted
+
+end submodule dda_short_text
