@@ -56,7 +56,8 @@ contains
          & //counted(size(cut%area), "block"))
       if (size(cut%area) > 0) then
          call tell(screen, "area", short_text(sum(cut%area))//" in all")
-         call tell(screen, "smallest", short_text(cut%area(smallest))//", block "//to_text(smallest))
+         call tell(screen, "smallest", short_text(cut%area(smallest)) &
+            & //", block "//to_text(smallest))
          call tell(screen, "largest", short_text(cut%area(largest))//", block "//to_text(largest))
       end if
       call tell(screen, "joints", counted(size(cut%pair), "pair")//" of coincident edges")
@@ -161,8 +162,7 @@ contains
       real(wp), intent(in) :: point(2)       !! The point, from the origin of the cut: (2) [m]
       character(len=:), allocatable :: text  !! Its coordinates in parentheses
 
-      text = "("//place_text(point(1) + cut%scale%origin(1))//", " &
-         & //place_text(point(2) + cut%scale%origin(2))//")"
+      text = place_text(point + cut%scale%origin)
    end function point_text
 
    !> Print one line of the summary

@@ -86,9 +86,8 @@ contains
       call print_line(screen, "   block  area  centre")
       associate (system => scene%system, n => size(scene%system%area))
          do b = 1, min(n, most_rows)
-            call print_line(screen, "   "//to_text(b)//"  "//to_text(system%area(b))//"  (" &
-               & //place_text(system%centroid(1, b) + scene%origin(1))//", " &
-               & //place_text(system%centroid(2, b) + scene%origin(2))//")" &
+            call print_line(screen, "   "//to_text(b)//"  "//short_text(system%area(b))//"  " &
+               & //place_text(system%centroid(:, b) + scene%origin) &
                & //trim(merge("  held", "      ", system%equation(b) == 0)))
          end do
          if (n > most_rows) call print_line(screen, "   and "//to_text(n - most_rows)//" more")

@@ -6,8 +6,8 @@ module dda_text
    implicit none
    private
 
-   public :: to_text, short_text, place_text, counted, print_number, lower_case, read_number, read_integer
-   public :: growing_text_t, add_line, bytes_of, fields, lines_of
+   public :: to_text, short_text, place_text, counted, print_number, lower_case
+   public :: read_number, read_integer, growing_text_t, add_line, bytes_of, fields, lines_of
 
    !> Shortest text that reads back as the same number
    interface to_text
@@ -42,6 +42,26 @@ module dda_text
          logical, intent(out) :: ok            !! Whether the whole text is one integer that fits
       end subroutine read_integer
 
+      !> A number for people: at most six significant digits, and a power of ten from a million on
+      pure module function short_text(value) result(text)
+         real(wp), intent(in) :: value          !! Number to write
+         character(len=:), allocatable :: text  !! Text without blanks, such as -1e12 or 0.107426
+      end function short_text
+
+      !> A point for people: coordinates of six significant digits, or whole millimetres where
+      !> these are more
+      pure module function place_text(place) result(text)
+         real(wp), intent(in) :: place(2)       !! Its coordinates: (2) [m]
+         character(len=:), allocatable :: text  !! Such as (1.5, -2)
+      end function place_text
+
+      !> A number of things with their name, in the plural for all numbers but one
+      pure module function counted(number, thing) result(text)
+         integer, intent(in) :: number          !! How many
+         character(len=*), intent(in) :: thing  !! Their name, whose plural ends in s
+         character(len=:), allocatable :: text
+      end function counted
+
    end interface
 
    !> Lines put together so far
@@ -63,49 +83,6 @@ contains
       call print_number(value, buffer, n)
       text = buffer(:n)
    end function real_to_text
-
-   !> A number for people: at most six significant digits, and a power of ten from a million on
-   pure function short_text(value) result(text)
-      real(wp), intent(in) :: value          !! Number to write
-      character(len=:), allocatable :: text  !! Text without blanks, such as -1e12 or 0.107426
-      character(len=13) :: form
-      character(len=longest) :: buffer
-      integer(int64) :: digits
-      integer :: exponent, n
-
-      text = to_text(value)
-      if (.not. ieee_is_finite(value)) return
-      write (form, "(es13.5e3)") value
-      call take_digits(form, digits, exponent)
-      n = merge(1, 0, sign(1.0_wp, value) < 0.0_wp .and. digits > 0)
-      buffer(:1) = "-"
-      call put_plain(digits, exponent, buffer, n, 6)
-      text = buffer(:n)
-   end function short_text
-
-   !> A coordinate for people: six significant digits, or whole millimetres where these are more
-   pure function place_text(value) result(text)
-      real(wp), intent(in) :: value  !! The coordinate [m]
-      character(len=:), allocatable :: text
-      ! from here on six digits are coarser, and up to there 1/1000 is no rounding
-      real(wp), parameter :: from = 1.0e3_wp, to = 1.0e12_wp
-
-      if (abs(value) < from .or. abs(value) > to) then
-         text = short_text(value)
-      else
-         text = to_text(anint(1.0e3_wp*value)/1.0e3_wp)
-      end if
-   end function place_text
-
-   !> A number of things with their name, in the plural for all numbers but one
-   pure function counted(number, thing) result(text)
-      integer, intent(in) :: number
-      character(len=*), intent(in) :: thing  !! Their name, whose plural ends in s
-      character(len=:), allocatable :: text
-
-      text = to_text(number)//" "//thing
-      if (number /= 1) text = text//"s"
-   end function counted
 
    !> Put the shortest decimal text that reads back as the same double into a text
    pure subroutine print_number(value, text, n)
@@ -260,20 +237,17 @@ contains
    end subroutine take_digits
 
    !> Plain decimals where they are as short as scientific notation
-   pure subroutine put_plain(number, exponent, text, n, most)
+   pure subroutine put_plain(number, exponent, text, n)
       !> Significant digits as a whole number; zeros at its end do not count
       integer(int64), intent(in) :: number
       integer, intent(in) :: exponent
       !> Receives them without trailing zeros, with at least one digit after a point
       character(len=*), intent(inout) :: text
       integer, intent(inout) :: n
-      integer, intent(in), optional :: most  !! Most digits before the point; 16 without this
       character(len=20) :: digits
       integer(int64) :: rest
-      integer :: limit, n_digits, whole
+      integer :: n_digits, whole
 
-      limit = 16
-      if (present(most)) limit = most
       rest = number
       do while (rest > 9)
          if (mod(rest, 10_int64) /= 0) exit
@@ -286,7 +260,7 @@ contains
          text(n - n_digits + 1:n) = digits
          return
       end if
-      whole = merge(exponent + 1, 1, exponent >= 0 .and. exponent < limit)
+      whole = merge(exponent + 1, 1, exponent >= 0 .and. exponent < 16)
       text(n + 1:n + whole) = digits
       n = n + whole
       if (n_digits > whole) then
@@ -294,7 +268,7 @@ contains
          text(n + 2:n + 1 + n_digits - whole) = digits(whole + 1:)
          n = n + 1 + n_digits - whole
       end if
-      if (exponent > -5 .and. exponent < limit) return
+      if (exponent > -5 .and. exponent < 16) return
       text(n + 1:n + 2) = merge("e-", "e ", exponent < 0)
       n = n + merge(2, 1, exponent < 0)
       call put_digits(abs(int(exponent, int64)), digits, n_digits)

@@ -182,7 +182,8 @@ contains
          value = nint(number)
       else
          call fatal_error(error, "expected "//what//" as a whole number from "//to_text(low) &
-            & //" to "//to_text(high)//", got "//short_text(number)//"; correct it", words%file, row)
+            & //" to "//to_text(high)//", got "//short_text(number)//"; correct it", words%file, &
+            & row)
       end if
    end subroutine take_whole
 

@@ -34,9 +34,9 @@ contains
       if (allocated(error)) return
       do side = 1, 2
          bar%block(side) = block_at(plan, site, bar%point(:, side))
-         if (bar%block(side) == 0) call add_warning(warnings, "the end of the bar at (" &
-            & //place_text(ends(2*side - 1))//", "//place_text(ends(2*side)) &
-            & //") lies in no block: the ground holds it", file, bar%line)
+         if (bar%block(side) == 0) call add_warning(warnings, "the end of the bar at " &
+            & //place_text(ends(2*side - 1:2*side)) &
+            & //" lies in no block: the ground holds it", file, bar%line)
       end do
       if (bar%block(1) == bar%block(2)) call fatal_error(error, &
          & "expected a bar between two blocks or a block and the ground, " &

@@ -277,8 +277,7 @@ contains
       call take_numbers(entry%head, i, point, error)
       if (allocated(error)) return
       point = point - plan%origin
-      shown_point = "("//place_text(point(1) + plan%origin(1))//", " &
-         & //place_text(point(2) + plan%origin(2))//")"
+      shown_point = place_text(point + plan%origin)
       if (block == 0) then
          block = block_at(plan, site, point)
          if (block == 0) call fatal_error(error, "expected a point of a block, got " &

@@ -339,8 +339,8 @@ contains
       if (allocated(error)) return
       call find_crossing(corner, edge, crossing)
       if (edge(1) > 0) call group_error(group, "expected an outline whose edges do not " &
-         & //"meet, got edges "//to_text(edge(1))//" and "//to_text(edge(2))//" that do at (" &
-         & //place_text(crossing(1))//", "//place_text(crossing(2))//")", error)
+         & //"meet, got edges "//to_text(edge(1))//" and "//to_text(edge(2))//" that do at " &
+         & //place_text(crossing), error)
    end subroutine check_polygon
 
    !> An opening

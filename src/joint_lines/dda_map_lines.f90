@@ -103,8 +103,8 @@ contains
             do k = 1, size(corner, 2)
                if (contains_point(map%outline, corner(:, k))) cycle
                call fatal_error(error, "expected an opening inside the outline, got one with a " &
-                  & //"corner at ("//place_text(corner(1, k))//", "//place_text(corner(2, k)) &
-                  & //"); make the outline larger", map%file, map%opening(i)%row)
+                  & //"corner at "//place_text(corner(:, k)) &
+                  & //"; make the outline larger", map%file, map%opening(i)%row)
                return
             end do
             do j = 1, i - 1
@@ -237,8 +237,8 @@ contains
             head = ray_exit(corner, centre, along) + bolts%reach(2)*along
             tip = head + bolts%reach(1)*along
             if (.not. contains_point(map%outline, tip)) call fatal_error(error, &
-               & "expected bolts inside the outline, got one that ends at ("//place_text(tip(1)) &
-               & //", "//place_text(tip(2))//")", map%file, bolts%row)
+               & "expected bolts inside the outline, got one that ends at " &
+               & //place_text(tip), map%file, bolts%row)
             if (allocated(error)) return
             call add_entity(model%of(entity_role%bolt), [head, tip], 0, bolts%row, &
                & bolts%property)

@@ -254,8 +254,8 @@ contains
 
       associate (place => model%of(role)%place(:, i))
          call fatal_error(error, "expected a "//trim(entity_name(role))//" inside a block, got " &
-            & //"one at ("//place_text(place(1))//", "//place_text(place(2)) &
-            & //") outside all; move it into one or remove it", model%file, model%of(role)%row(i))
+            & //"one at "//place_text(place(1:2)) &
+            & //" outside all; move it into one or remove it", model%file, model%of(role)%row(i))
       end associate
    end subroutine no_block
 

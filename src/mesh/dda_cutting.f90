@@ -242,10 +242,9 @@ contains
       line = network%line((h + 1)/2)
       call fatal_error(error, "expected blocks without holes, got line "//to_text(line) &
          & //" of blocks that lie wholly inside block "//to_text(block) &
-         & //", whose corner 1 "// &
-         & "is at ("//place_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
-         & //place_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2)) &
-         & //"); join the two by a line or put a hole point into the outer block", &
+         & //", whose corner 1 is at " &
+         & //place_text(cut%vertex(:, cut%first_vertex(block)) + cut%scale%origin) &
+         & //"; join the two by a line or put a hole point into the outer block", &
          & model%file, model%line%row(line))
    end subroutine tell_nested
 

@@ -12,7 +12,7 @@ module dda_live_loads
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
-   use dda_text, only : place_text, to_text
+   use dda_text, only : place_text, short_text, to_text
    use dda_vehicle, only : axle_loads, road_of, vehicle_of
    implicit none
    private
@@ -137,15 +137,16 @@ contains
          axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
          if (size(axle) == 0) call key_error(error, &
             & "&vehicle needs an axle above a block that moves, got none at position " &
-            & //place_text(deck%value(vehicle_position)%number)//"; move it", deck, vehicle_position)
+            & //short_text(deck%value(vehicle_position)%number)//"; move it", deck, &
+            & vehicle_position)
          if (allocated(error)) return
       end if
       if (.not. has_group(deck, live_group)) return
       call live_lists(deck, scene%origin, point, force)
       do i = 1, size(point, 2)
          b = block_at(scene%system, point(:, i))
-         text = "&live needs points of blocks that move, got ("//place_text(point(1, i) &
-            & + scene%origin(1))//", "//place_text(point(2, i) + scene%origin(2))//"), which lies in "
+         text = "&live needs points of blocks that move, got " &
+            & //place_text(point(:, i) + scene%origin)//", which lies in "
          if (b == 0) then
             call key_error(error, text//"none; move point "//to_text(i), deck, live_x)
             return

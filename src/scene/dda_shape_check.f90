@@ -255,9 +255,9 @@ contains
          associate (bar => assembly%plan%boundary%bar(i))
             side = findloc(bar%block, 0, dim=1)
             if (side > 0) then
-               problem = "&tie needs ends in blocks, got ("//place_text(ends(2*side - 1, i))//", " &
-                  & //place_text(ends(2*side, i))//") of tie "//to_text(i)//", which lies in none; " &
-                  & //"move it"
+               problem = "&tie needs ends in blocks, got " &
+                  & //place_text(ends(2*side - 1:2*side, i))//" of tie "//to_text(i) &
+                  & //", which lies in none; move it"
             else if (bar%block(1) == bar%block(2)) then
                side = 1
                problem = "&tie needs ends in two blocks, got both of tie "//to_text(i) &

@@ -92,7 +92,7 @@ def test_what_was_dropped_is_reported_with_its_line(tmp_path: Path) -> None:
     (tmp_path / "a.geo").write_text(text)
     done = run_dda("cut", "a.geo", cwd=tmp_path)
     assert done.returncode == 0
-    assert "a.geo: 6 lines, 1 blocks" in done.stdout
+    assert "a.geo: 6 lines, 1 block" in done.stdout
     assert "a.geo:13: line 5 from (0, 0.5) to (0.7, 0.5): it meets fewer than two" in done.stdout
     assert "a.geo:14: line 6" in done.stdout
 
