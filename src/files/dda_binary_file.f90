@@ -20,6 +20,8 @@ module dda_binary_file
       character(len=:), allocatable :: name  !! Name of the file, for messages
    end type binary_file_t
 
+   !> Folder whose files are devices, and never removed
+   character(len=*), parameter :: devices = "/dev/"
    !> What a write that failed may have met
    character(len=*), parameter :: no_room = "cannot write the results: no space left on the "// &
       & "disk, or above the limit of a file (ulimit -f); make room or write elsewhere"
@@ -40,6 +42,8 @@ contains
       if (present(keep)) kept = keep
       if (kept) then
          mode = "ab"
+      else if (index(name, devices) == 1) then
+         mode = "wb"
       else
          ! a file of its own: C's x refuses whatever still has the name
          mode = "wbx"

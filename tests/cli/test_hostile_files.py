@@ -186,6 +186,18 @@ def test_files_of_other_commands_replace_links(tmp_path: Path, words: tuple[str,
         assert path.read_bytes() == content and not path.is_symlink()
 
 
+@pytest.mark.parametrize("device", ["full", "null"])
+def test_devices_are_never_removed(tmp_path: Path, device: str) -> None:
+    """A table that leads to a device is replaced; the device stays, also for a program that may remove it."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "joints.csv").symlink_to(f"/dev/{device}")
+    assert results_of(tmp_path).returncode == 0
+    assert Path(f"/dev/{device}").is_char_device()
+    assert run_dda("help", cwd=tmp_path).returncode == 0
+    subprocess.run(f"'{os.environ['DDA']}' help >&- 2>&-", shell=True, cwd=tmp_path, check=False)
+    assert Path("/dev/null").is_char_device()
+
+
 FOREIGN = ["time,load\n0,1\n", "no line end", "deck;case\n", "\ufeffdeck,case\n", "case,deck\n", "\n", "x" * 100000]
 
 
