@@ -1,10 +1,12 @@
 !> dda help and dda --version
 module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit
+   use dda_block_help, only : on_blocks
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
    use dda_deck_keys, only : deck_group, deck_key
-   use dda_deck_key, only : near_one, registry_help
+   use dda_deck_key, only : near_one
+   use dda_key_help, only : registry_help, registry_json, topic_help
    use dda_map_keys, only : map_group, map_key
    use dda_model_table, only : models_help
    use dda_process, only : exit_status
@@ -18,7 +20,7 @@ module dda_help
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
    character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
-      & "lines", "export", "keys", "models", "help"]
+      & "lines", "export", "keys", "models", "blocks", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -32,6 +34,9 @@ module dda_help
       & "   dda help run | check | cut | lines | export", &
       & "                               options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
+      & "   dda help keys --json        the same for programs", &
+      & "   dda help GROUP | KEY        a group of a deck, or a key: &arch, radius, arch%radius", &
+      & "   dda help blocks             the form of a file of blocks", &
       & "   dda help models             what is run with which mode, and what can be searched", &
       & "   dda --help | -h             this page", &
       & "   dda --version               the version", &
@@ -145,10 +150,15 @@ module dda_help
 
    !> dda help help
    character(len=*), parameter :: on_help(*) = [character(len=96) :: &
-      & "dda help [run | check | cut | lines | export | keys | models | help]", &
+      & "dda help [run | check | cut | lines | export | keys [--json] | models | blocks | help |", &
+      & "          GROUP | KEY | GROUP%KEY]", &
       & "", &
-      & "Prints help on a subcommand, on the keys of a deck, or on the models that there are", &
-      & "(without a topic: the first page)."]
+      & "Prints help on a subcommand, on the keys of a deck, on one group or key of a deck or a", &
+      & "joint map, on the models that there are, or on the form of a file of blocks", &
+      & "(without a topic: the first page).", &
+      & "", &
+      & "   --json      groups and keys as JSON: kind, unit, default, range, words, meaning", &
+      & "               (without it: as text)"]
 
 contains
 
@@ -156,11 +166,22 @@ contains
    subroutine print_help(command, status)
       type(command_t), intent(in) :: command
       integer, intent(out) :: status  !! Exit status of the program
-      character(len=:), allocatable :: topic
+      character(len=:), allocatable :: found, topic
 
       status = exit_status%success
       topic = ""
       if (size(command%name) > 0) topic = trim(command%name(1)%text)
+      if (size(command%name) > 1) then
+         if (topic == "keys" .and. command%name(2)%text == "--json" &
+            & .and. size(command%name) == 2) then
+            call print_text(command%screen, registry_json(deck_group, deck_key))
+         else
+            write (error_unit, "(a)") "dda:3: error: expected one topic, or keys --json, got '" &
+               & //shown(command%name(size(command%name))%text)//"' too; remove it"
+            status = exit_status%bad_input
+         end if
+         return
+      end if
       select case (topic)
       case ("")
          call print_lines(command%screen, general)
@@ -179,12 +200,18 @@ contains
          call print_lines(command%screen, on_help)
       case ("keys")
          call print_text(command%screen, registry_help(deck_group, deck_key))
+      case ("blocks")
+         call print_lines(command%screen, on_blocks)
       case ("models")
          call print_text(command%screen, models_help())
       case default
+         found = topic_help(topic, [deck_group, map_group], [deck_key, map_key])
+         call print_text(command%screen, found)
+         if (found /= "") return
          write (error_unit, "(a)") "dda:2: error: expected help on run, check, cut, lines, " &
-            & //"export, keys, models or help, got '"//shown(topic)//"'"//near_one(topic, topics) &
-            & //"; write one of them"
+            & //"export, keys, models, blocks, help, a group or a key, got '"//shown(topic)//"'" &
+            & //near_one(topic, [character(len=32) :: topics, deck_group%name, map_group%name, &
+            & deck_key%name, map_key%name])//"; write one of them"
          status = exit_status%bad_input
       end select
    end subroutine print_help

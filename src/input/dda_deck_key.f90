@@ -7,7 +7,7 @@ module dda_deck_key
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
    public :: wanted, full_name, near_group, near_key, near_word, has_word, listed_words
-   public :: near_one, or_leave_out, registry_help
+   public :: near_one, or_leave_out
 
    !> Longest name of a key [characters]
    integer, parameter :: name_length = 32
@@ -277,37 +277,4 @@ contains
       end do
       edit_distance = row(len(b))
    end function edit_distance
-
-   !> The groups and keys of a registry with unit, range, default and meaning: what `dda help keys`
-   !> and `dda help lines` print
-   pure function registry_help(groups, keys) result(text)
-      type(group_t), intent(in) :: groups(:)  !! The groups
-      type(key_t), intent(in) :: keys(:)      !! The keys
-      character(len=:), allocatable :: text   !! Lines, each ended by a line feed
-      character(len=1), parameter :: lf = achar(10)
-      integer :: g, i
-
-      text = ""
-      do g = 1, size(groups)
-         if (g > 1) text = text//lf
-         text = text//"&"//trim(groups(g)%name)//"   "//trim(groups(g)%meaning)//lf
-         do i = 1, size(keys)
-            if (keys(i)%group /= groups(g)%name) cycle
-            text = text//key_help(keys(i), lf)
-         end do
-      end do
-   end function registry_help
-
-   !> Help on one key
-   pure function key_help(key, lf) result(text)
-      type(key_t), intent(in) :: key
-      character(len=*), intent(in) :: lf     !! End of a line
-      character(len=:), allocatable :: text  !! Three lines
-      character(len=*), parameter :: indent = "      "
-
-      text = "   "//trim(key%name)
-      if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
-      if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
-      text = text//lf//indent//trim(key%meaning)//lf//indent//wanted(key)//lf
-   end function key_help
 end module dda_deck_key

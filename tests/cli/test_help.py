@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -173,11 +174,15 @@ def export_quiet(folder: Path) -> None:
     assert list(folder.glob("*.geo"))
 
 
+def help_json(folder: Path) -> None:
+    assert json.loads(help_on("help", "keys", "--json"))["groups"][0]["name"] == "scene"
+
+
 #: Subcommand and option: what proves that the option works
 PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--out"): run_out, ("run", "--jobs"): run_jobs, ("run", "--set"): run_set, ("run", "--cases"): run_cases,
     ("run", "--resume"): run_resume, ("run", "--tight"): run_tight, ("run", "--quiet"): run_quiet,
-    ("run", "--force"): run_force,
+    ("run", "--force"): run_force, ("help", "--json"): help_json,
     ("check", "--set"): check_set, ("check", "--record"): check_record, ("check", "--quiet"): check_quiet,
     ("cut", "--out"): cut_out, ("cut", "--quiet"): cut_quiet, ("export", "--out"): export_out,
     ("export", "--set"): export_set, ("export", "--quiet"): export_quiet}
@@ -212,3 +217,47 @@ def test_every_key_shows_its_default_or_what_holds_without_it() -> None:
     assert len(keys) > 40
     bare = [name for name, rest, _ in keys if " = " not in rest and "without it" not in rest]
     assert set(bare) <= {"geometry", "analysis", "parameter"}
+
+
+def test_help_on_a_group_a_key_or_both() -> None:
+    everything = help_on("help", "keys")
+    joint = help_on("help", "&joint")
+    assert joint == help_on("help", "joint") == help_on("help", "JOINT") and joint in everything
+    assert joint.startswith("&joint   ") and "   friction_deg = 50.0\n" in joint and "&load" not in joint
+    radius = help_on("help", "radius")
+    assert radius == help_on("help", "arch%radius") and radius.count("\n") == 4
+    owners = re.findall(r"^&(\w+)", help_on("help", "friction_deg"), flags=re.MULTILINE)
+    assert owners[:2] == ["joint", "fill"]
+    assert re.findall(r"^&(\w+)", help_on("help", "analysis"), flags=re.MULTILINE) == ["scene", "analysis"]
+    assert help_on("help", "outline").startswith("&outline   ")
+
+
+def test_help_on_a_file_of_blocks_has_every_entry_of_the_page() -> None:
+    page = (Path(__file__).resolve().parents[2] / "docs" / "input.md").read_text(encoding="utf-8")
+    table = page[page.index("| entry | what it says |"):].split("\n\n")[0]
+    entries = [row.split(" | ")[0].strip("| ").replace("`", "") for row in table.splitlines()[2:]]
+    printed = help_on("help", "blocks").splitlines()
+    assert len(entries) >= 16 and [entry for entry in entries if entry not in printed] == []
+
+
+def test_keys_as_json_are_the_keys_as_text() -> None:
+    groups = json.loads(help_on("help", "keys", "--json"))["groups"]
+    text = help_on("help", "keys")
+    heads = [f"&{group['name']}   {group['meaning']}" for group in groups]
+    assert heads == re.findall("^&.*", text, flags=re.MULTILINE)
+    names = re.findall(r"^ {3}(\w+)", text, flags=re.MULTILINE)
+    assert [key["name"] for group in groups for key in group["keys"]] == names
+    keys = {(group["name"], key["name"]): key for group in groups for key in group["keys"]}
+    assert keys["arch", "radius"] == {
+        "name": "radius", "kind": "number", "unit": "m", "default": "10.0", "from": 1e-9, "to": 1e9, "sweep": True,
+        "search": True, "meaning": "Radius of the circle half way between intrados and extrados."}
+    assert keys["scene", "kind"]["words"] == ["arch", "lines", "blocks"]
+    assert (keys["material", "poisson"]["above"], keys["material", "poisson"]["below"]) == (-1.0, 0.5)
+    assert keys["arch", "joints_deg"]["without"] == "equal voussoirs"
+
+
+@pytest.mark.parametrize("words", [["nothing"], ["keys", "--jsn"], ["radius", "span"], ["keys", "--json", "more"]])
+def test_help_on_nothing_known_is_one_line(words: list[str]) -> None:
+    done = run_dda("help", *words)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert re.match(r"dda:[23]: error: expected ", done.stderr)

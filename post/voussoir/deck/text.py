@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import re
 import subprocess
 from collections.abc import Mapping
@@ -83,15 +84,12 @@ def _as_list(keys: Any) -> list:
 @lru_cache(maxsize=4)
 def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
     """Which groups have a key, as the program says it; a group's own name, with its mark, stands for itself."""
-    done = subprocess.run([dda, "help", "keys"], capture_output=True, text=True, check=True)
+    done = subprocess.run([dda, "help", "keys", "--json"], capture_output=True, text=True, check=True)
     owners: dict[str, tuple[str, ...]] = {}
-    group = ""
-    for line in done.stdout.splitlines():
-        if found := re.match(r"&(\w+)", line):
-            group = found[1]
-            owners.setdefault("&" + group, (group,))
-        elif found := re.match(r" {3}(\w+)(?: = | +\(|$)", line):
-            owners[found[1]] = (*owners.get(found[1], ()), group)
+    for group in json.loads(done.stdout)["groups"]:
+        owners["&" + group["name"]] = (group["name"],)
+        for key in group["keys"]:
+            owners[key["name"]] = (*owners.get(key["name"], ()), group["name"])
     return owners
 
 
