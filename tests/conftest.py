@@ -16,7 +16,6 @@ import pytest
 MAY_SKIP = (
     "the deck has no current geometry",  # a column of the paper that has no such run
     "below 5 degrees no answer is promised",  # random lines that cross too flatly
-    "a group of blocks lies inside a block: refused",  # random lines that are no model
     "VTK is not installed",
     "could not import 'vtk'",
     "could not import 'meshio'",

@@ -1,6 +1,6 @@
 !> dda cut: lines to blocks
 submodule (dda_verbs) dda_cut
-   use dda_cut_model, only : block_vertices, cut_model_t, cut_reason, cut_remark_t
+   use dda_cut_model, only : block_vertices, bond_joint, cut_model_t, cut_reason, cut_remark_t
    use dda_cutting, only : cut_blocks
    use dda_kinds, only : wp
    use dda_line_model, only : entity_role, line_model_t
@@ -48,7 +48,7 @@ contains
       type(screen_t), intent(in) :: screen
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(in) :: cut
-      integer :: smallest, largest
+      integer :: smallest, largest, i
 
       smallest = minloc(cut%area, 1)
       largest = maxloc(cut%area, 1)
@@ -66,6 +66,10 @@ contains
          & //to_text(count(cut%point%kind == entity_role%measure))//" measured")
       if (model%of(entity_role%bolt)%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
          & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
+      if (any(cut%pair%joint == bond_joint)) call tell(screen, "islands", &
+         & counted(count([(count(cut%whole == i) > 1, i=1, size(cut%whole))]), "block") &
+         & //" around others, cut into pieces with " &
+         & //counted(count(cut%pair%joint == bond_joint), "bond")//" between them")
       if (cut%n_removed > 0) call tell(screen, "removed", counted(cut%n_removed, "block") &
          & //" with hole points")
       if (cut%n_merged > 0) call tell(screen, "merged", &

@@ -87,7 +87,8 @@ contains
       else
          if (.not. has_one_law(deck)) call key_error(error, "expected joints of one law, got " &
             & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
-            & //"the keys of &joint", deck, scene_geometry)
+            & //"the keys of &joint, and join islands to the blocks around them by " &
+            & //"lines", deck, scene_geometry)
          if (.not. allocated(error)) text = line_text(deck)
          losses = line_losses(deck)
       end if

@@ -10,9 +10,12 @@ module dda_cut_model
    private
 
    public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, block_vertices
-   public :: split_edges
+   public :: bond_joint, split_edges
    public :: cut_remark_t, cut_remarks_t, cut_reason, cut_reason_enum, add_remark
    public :: cut_scale_t, cut_scale
+
+   !> Joint material of bonds: edges along which a block was cut around others that lie inside it
+   integer, parameter :: bond_joint = 0
 
    !> Scales of a cut
    type :: cut_scale_t
@@ -96,6 +99,8 @@ module dda_cut_model
       integer, allocatable :: edge_joint(:)
       real(wp), allocatable :: area(:)     !! Area of each block: (n_block) [m2]
       integer, allocatable :: material(:)  !! Material of each block: (n_block)
+      !> Number of the block that stands for all pieces of a block with islands: (n_block)
+      integer, allocatable :: whole(:)
       !> Fixed points, then load points, then measured points: (n_point)
       type(block_point_t), allocatable :: point(:)
       type(cut_bolt_t), allocatable :: bolt(:)   !! Bolts: (n_bolt)

@@ -32,20 +32,26 @@ contains
       integer :: b, next_best
 
       next_best = 0
+      block_around = 0
       nearest = cut%scale%merge
       do b = 1, size(cut%area)
-         block_around = b
          if (any(point < boxes%low(:, b) - cut%scale%merge)) cycle
          if (any(point > boxes%high(:, b) + cut%scale%merge)) cycle
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
-            if (contains_point(vertex, point)) return
+            if (contains_point(vertex, point)) then
+               if (block_around > 0) then  ! a block with a hole point may lie around others
+                  if (cut%area(b) > cut%area(block_around)) cycle
+               end if
+               block_around = b
+               cycle
+            end if
             here = polygon_distance(vertex, point)
          end associate
          if (here > nearest .or. (next_best > 0 .and. .not. here < nearest)) cycle
          nearest = here
          next_best = b
       end do
-      block_around = next_best
+      if (block_around == 0) block_around = next_best
    end procedure block_around
 
    !> Take out the blocks that hold hole points (Shi: dc11)
@@ -223,15 +229,27 @@ contains
          do i = 1, lines%n
             n = 0
             call add_crossed(lines%place(:, i), i, boxes, cut, point, n)
-            cut%material(point(:n)%block) = lines%material(i)
+            call give_material(point(:n)%block, lines%material(i), cut)
             if (n > 0) cycle
             b = block_around(cut, boxes, lines%place(1:2, i) - cut%scale%origin)
             if (b == 0) call no_block(error, model, entity_role%material, i)
             if (b == 0) return
-            cut%material(b) = lines%material(i)
+            call give_material([b], lines%material(i), cut)
          end do
       end associate
    end procedure give_materials
+
+   !> Give a material to blocks and to all pieces of the same blocks
+   pure subroutine give_material(block, material, cut)
+      integer, intent(in) :: block(:)  !! Numbers of the blocks
+      integer, intent(in) :: material  !! Number of the material
+      type(cut_model_t), intent(inout) :: cut
+      integer :: i
+
+      do i = 1, size(block)
+         where (cut%whole == cut%whole(block(i))) cut%material = material
+      end do
+   end subroutine give_material
 
    !> Add a point to a list
    pure subroutine append_point(point, n, new)

@@ -3,7 +3,7 @@
 !> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
 !> dc06).
 module dda_cutting
-   use dda_cut_model, only : cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
+   use dda_cut_model, only : bond_joint, cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : entity_role, line_model_t
@@ -102,6 +102,20 @@ module dda_cutting
          type(cut_remarks_t), intent(inout) :: remarks
       end subroutine drop_close_edges
 
+      !> Cut blocks around other blocks that lie wholly inside them into pieces without holes: adds
+      !> nodes and edges. The new edges belong to the line after the last
+      pure module subroutine cut_islands(model, origin, loops, network)
+         type(line_model_t), intent(in) :: model
+         real(wp), intent(in) :: origin(2)  !! What nodes are counted from: (2) [m]
+         type(loops_t), intent(in) :: loops
+         type(network_t), intent(inout) :: network
+      end subroutine cut_islands
+
+      !> Number the blocks as wholes: pieces that a bond holds together are one
+      pure module subroutine find_wholes(cut)
+         type(cut_model_t), intent(inout) :: cut
+      end subroutine find_wholes
+
       !> Blocks of the loops that run around an area; scales, points and materials are left to
       !> others
       pure module subroutine blocks_of_loops(network, loops, joint, cut)
@@ -123,17 +137,21 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! What keeps the lines from making blocks
       type(network_t) :: network
       type(loops_t) :: loops
+      integer :: n_edge
 
       call make_network(model, cut, network, error)
       if (allocated(error)) return
       call trace_loops(network, loops)
-      call blocks_of_loops(network, loops, model%line%material(:model%line%n), cut)
+      n_edge = size(network%line)
+      call cut_islands(model, cut%scale%origin, loops, network)
+      if (size(network%line) > n_edge) call trace_loops(network, loops)
+      call blocks_of_loops(network, loops, [model%line%material(:model%line%n), bond_joint], cut)
       cut%n_merged = network%n_merged
       if (size(cut%area) == 0) call fatal_error(error, "expected lines that enclose a block, got " &
          & //to_text(model%line%n)//" that enclose none; join their ends", model%file, 1)
       if (.not. allocated(error)) call check_areas(loops, cut, model%file, error)
-      if (.not. allocated(error)) call check_nesting(model, network, loops, cut, error)
       if (.not. allocated(error)) call remove_holes(model, cut, error)
+      if (.not. allocated(error)) call find_wholes(cut)
       if (.not. allocated(error)) call give_materials(model, cut, error)
       if (.not. allocated(error)) call place_points(model, cut, error)
       if (.not. allocated(error)) call place_bolts(model, cut)
@@ -190,63 +208,6 @@ contains
          & //short_text(enclosed)//", got "//short_text(sum(cut%area)) &
          & //": lines cross without a node; make the edge-node distance smaller", file, 1)
    end subroutine check_areas
-
-   !> No group of blocks may lie inside a block of another group, unless that block is taken out: a
-   !> block is one polygon, without holes
-   pure subroutine check_nesting(model, network, loops, cut, error)
-      type(line_model_t), intent(in) :: model
-      type(network_t), intent(in) :: network
-      type(loops_t), intent(in) :: loops
-      type(cut_model_t), intent(in) :: cut
-      type(error_t), allocatable, intent(out) :: error
-      type(boxes_t) :: boxes
-      logical, allocatable :: hole(:)
-      real(wp) :: node(2)
-      integer :: i, k, b
-
-      if (count(loops%area < 0.0_wp) < 2) return
-      boxes = block_boxes(cut)
-      allocate (hole(size(cut%area)), source=.false.)
-      do i = 1, model%of(entity_role%hole)%n
-         b = block_around(cut, boxes, model%of(entity_role%hole)%place(1:2, i) - cut%scale%origin)
-         if (b > 0) hole(b) = .true.
-      end do
-      do k = 1, size(loops%area)
-         if (.not. loops%area(k) < 0.0_wp) cycle
-         node = network%node(:, half_edge_start(network, loops%half_edge(loops%first(k))))
-         do b = 1, size(cut%area)
-            if (hole(b) .or. any(node <= boxes%low(:, b) .or. node >= boxes%high(:, b))) cycle
-            associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
-               if (any(abs(vertex(1, :) - node(1)) <= 0.0_wp &
-                  & .and. abs(vertex(2, :) - node(2)) <= 0.0_wp)) cycle
-               if (.not. contains_point(vertex, node)) cycle
-            end associate
-            call tell_nested(model, network, loops, k, cut, b, error)
-            return
-         end do
-      end do
-   end subroutine check_nesting
-
-   !> Say which block holds what
-   pure subroutine tell_nested(model, network, loops, inner, cut, block, error)
-      type(line_model_t), intent(in) :: model
-      type(network_t), intent(in) :: network
-      type(loops_t), intent(in) :: loops
-      integer, intent(in) :: inner  !! Number of the loop around the inner group
-      type(cut_model_t), intent(in) :: cut
-      integer, intent(in) :: block  !! Number of the outer block
-      type(error_t), allocatable, intent(out) :: error
-      integer :: h, line
-
-      h = loops%half_edge(loops%first(inner))
-      line = network%line((h + 1)/2)
-      call fatal_error(error, "expected blocks without holes, got line "//to_text(line) &
-         & //" of blocks that lie wholly inside block "//to_text(block) &
-         & //", whose corner 1 is at " &
-         & //place_text(cut%vertex(:, cut%first_vertex(block)) + cut%scale%origin) &
-         & //"; join the two by a line or put a hole point into the outer block", &
-         & model%file, model%line%row(line))
-   end subroutine tell_nested
 
    !> Walk along all edges on both sides, at each node turning as far left as possible
    pure subroutine trace_loops(network, loops)

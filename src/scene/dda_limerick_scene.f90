@@ -14,6 +14,7 @@ module dda_limerick_scene
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_model, only : finite_law, half_size, limerick_model_t
+   use dda_cut_model, only : bond_joint
    use dda_line_scene, only : law_of_joint, points_of_lines
    use dda_scene, only : scene_t
    use dda_settings, only : load_direction
@@ -165,7 +166,7 @@ contains
       type(deck_t), intent(in) :: deck  !! The deck of one case, with its blocks; checked
       type(scene_t), intent(in) :: scene
       type(limerick_model_t), intent(inout) :: model
-      integer :: j
+      integer :: j, n
 
       allocate (model%first_vertex, source=deck%cut%first_vertex)
       allocate (model%vertex, source=deck%cut%vertex)
@@ -173,10 +174,13 @@ contains
       allocate (model%block_material, source=scene%system%material)
       allocate (model%kind(size(model%block_material)), source=1)
       call set_materials(deck, scene, model)
-      allocate (model%law(1, max(1, maxval(model%edge_law))))
-      do j = 1, size(model%law)
+      n = max(1, maxval(model%edge_law))
+      allocate (model%law(1, n + 1))
+      do j = 1, n
          model%law(1, j) = finite_law(law_of_joint(deck, j))
       end do
+      model%law(1, n + 1) = finite_law(law_of_joint(deck, bond_joint))
+      where (model%edge_law == bond_joint) model%edge_law = n + 1
       call add_corners(deck, scene, model%boundary)
    end subroutine lines_model
 

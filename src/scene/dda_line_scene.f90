@@ -5,7 +5,7 @@ module dda_line_scene
    use dda_block_system, only : block_system_t, new_block_system
    use dda_boundary, only : boundary_t, constant_history, history_t
    use dda_contacts, only : find_contacts
-   use dda_cut_model, only : cut_model_t, split_edges
+   use dda_cut_model, only : bond_joint, cut_model_t, split_edges
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
    use dda_error, only : error_t
@@ -25,6 +25,9 @@ module dda_line_scene
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
+
+   !> Cohesion and tensile strength of a bond between pieces of one block [Pa]
+   real(wp), parameter :: bond_strength = 1.0e15_wp
 
    !> Least stiffness of a bolt, for those of which no file says what they are like
    real(wp), parameter :: least_stiffness = 1.0e-12_wp
@@ -214,6 +217,10 @@ contains
       integer, intent(in) :: number  !! Number of the joint's material
       type(limerick_joint_t) :: listed
 
+      if (number == bond_joint) then
+         law = joint_law_t(no_slip=.true., cohesion=bond_strength, tension=bond_strength)
+         return
+      end if
       law = joint_law(deck)
       if (.not. allocated(deck%file_analysis)) return
       listed = deck%file_analysis%joint(number)
@@ -226,7 +233,8 @@ contains
       if (.not. deck%value(joint_tension)%given) law%tension = listed%tension
    end function law_of_joint
 
-   !> Blocks that cannot move: those with two fixed points apart from one another
+   !> Blocks that cannot move: those with two fixed points apart from one another, in any of the
+   !> pieces that a bond holds together
    pure function held_blocks(cut) result(held)
       type(cut_model_t), intent(in) :: cut
       logical :: held(size(cut%area))  !! Whether each is held: (n_block)
@@ -236,11 +244,12 @@ contains
       first = 0
       do i = 1, size(cut%point)
          if (cut%point(i)%kind /= entity_role%fix) cycle
-         associate (b => cut%point(i)%block)
+         associate (b => cut%whole(cut%point(i)%block))
             if (first(b) == 0) first(b) = i
             if (norm2(cut%point(i)%place - cut%point(first(b))%place) > cut%scale%reach) &
                & held(b) = .true.
          end associate
       end do
+      held = held(cut%whole)
    end function held_blocks
 end module dda_line_scene
