@@ -25,11 +25,12 @@ class MissingPackage(ImportError):
 
 
 def advice(package: str) -> str:
-    """How to install a package for this interpreter.
+    """How to install a package, or that of a module, for this interpreter.
 
     With pip in a virtual environment or where the system leaves its Python to pip; else with the system's package, and
     an environment where it has none.
     """
+    package = package.partition(".")[0]
     if not _is_managed():
         return f"install it: {Path(sys.executable).name} -m pip install {package}"
     if package in _DEBIAN:
@@ -49,4 +50,5 @@ def load(package: str, purpose: str) -> ModuleType:
     try:
         return importlib.import_module(package)
     except ImportError as missing:
-        raise MissingPackage(f"{purpose} needs {package}, got none ({missing}); {advice(package)}") from missing
+        name = package.partition(".")[0]
+        raise MissingPackage(f"{purpose} needs {name}, got none ({missing}); {advice(name)}") from missing

@@ -1,46 +1,65 @@
-"""`voussoir import`: a drawing or a file of geometry as a deck and its file of blocks."""
+"""`voussoir import`: a drawing or a file of geometry as a deck and its file of blocks, or as lines."""
 
 from __future__ import annotations
 
 import argparse
 import subprocess
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Optional
 
 from voussoir.command import plot
 from voussoir.command.options import magnification, whole_number
 from voussoir.dda_program import DdaError, find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
-from voussoir.deck.shapes import READERS, ImportedShape, read_shapes
+from voussoir.deck.shapes import ENDINGS, Content, ImportedShape, read_shapes
 from voussoir.files import write_text
+from voussoir.imports.limits import limited
+from voussoir.imports.plane import AXES
+from voussoir.imports.traces import line_file
 
 #: Words that make a layer or a property one of what does not move
 FIXED = ("fixed", "ground", "support", "abutment")
+#: Units of --unit [m]
+UNITS = {"mm": 1e-3, "cm": 1e-2, "dm": 0.1, "m": 1.0, "km": 1e3, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
         "Make a deck and its file of blocks from outlines: DXF (closed polylines, circles, inserted blocks, what "
-        "single lines and arcs of a layer enclose; arcs become chords), GeoJSON, WKT, meshes, COMPAS (json)."
+        "single lines and arcs of a layer enclose; arcs become chords), GeoJSON, WKT, meshes, COMPAS (json). GeoJSON "
+        "and WKT of lines alone become a file of lines for dda cut."
     )
-    parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(READERS)}")
+    parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(ENDINGS)}")
     parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
+    unit = parser.add_mutually_exclusive_group()
+    unit.add_argument(
+        "--unit", metavar="U", choices=UNITS,
+        help=f"unit of the file: {', '.join(UNITS)} (default: that which a drawing names, else m)")
+    unit.add_argument("--scale", metavar="S", type=_above_zero, help="metres per unit of the file")
     parser.add_argument(
-        "--scale", metavar="S", type=_scale, help="metres a unit of the file (default: what a drawing names, else 1)")
+        "--tolerance", metavar="T", type=_above_zero, default=1e-3, help="how far a chord may be from its arc [m]")
     parser.add_argument(
-        "--tolerance", metavar="T", type=float, default=1e-3, help="how far a chord may be from its arc [m]")
+        "--snap", metavar="T", type=magnification, default=0.0,
+        help="distance within which corners, ends and edges are joined [m]")
+    parser.add_argument(
+        "--plane", choices=AXES, help="axes to the right and up of points in space (default: xy, of COMPAS the plane "
+        "in which all blocks share their ends)")
     parser.add_argument(
         "--fixed", metavar="WORD", nargs="+", default=list(FIXED),
         help="layers, or values of the property role or layer, of what does not move")
     parser.add_argument(
         "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of blocks that do not move")
     parser.add_argument(
+        "--allow-dropped", action="store_true", help="accept that pieces are dropped which make no block")
+    parser.add_argument(
         "--search", metavar="PARAMETER", help="ask for the value at which it falls, such as horizontal_coefficient")
     parser.add_argument("--run", action="store_true", help="run the deck, too, and draw what comes out")
 
 
-def _scale(word: str) -> float:
+def _above_zero(word: str) -> float:
     """A number above 0."""
     number = magnification(word)
     if number == 0.0:
@@ -48,38 +67,106 @@ def _scale(word: str) -> float:
     return number
 
 
+@dataclass
+class _Imported:
+    """What is made of a file: texts by their file names, and what is printed."""
+
+    files: dict[Path, str]
+    lines: list[str]
+    dropped: int
+    fixed: int = 0
+    advice: list[str] = field(default_factory=list)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Read, write, say what was dropped, and run the deck if asked: then 3 for a case that is undecided."""
+    made = limited(import_file, arguments)
+    deck = _deck_of(arguments)
     try:
-        shapes, dropped, (scale, whose) = read_shapes(arguments.file, arguments.scale, arguments.tolerance)
+        deck.parent.mkdir(parents=True, exist_ok=True)
+        for name, text in made.files.items():
+            write_text(name, text)
     except OSError as problem:
-        raise ValueError(problem) from problem
+        raise DdaError(f"{deck}:1: error: expected a file that can be written, got: {problem}", 4) from problem
+    print("\n".join(made.lines + made.advice), flush=True)
+    if not arguments.run:
+        return 0
+    if made.dropped and not arguments.allow_dropped:
+        raise ValueError(
+            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped; mend it, or run what is "
+            "left with --allow-dropped")
+    return _run_deck(deck) if made.fixed else 2
+
+
+def _deck_of(arguments: argparse.Namespace) -> Path:
+    """The deck that is written."""
+    return arguments.out or Path(arguments.file.with_suffix(".nml").name)
+
+
+def import_file(arguments: argparse.Namespace) -> _Imported:
+    """Read a file by the arguments of the command; ValueError if it makes no blocks and no lines."""
+    content, deck = Content(), _deck_of(arguments)
+    scale = UNITS[arguments.unit] if arguments.unit else arguments.scale
+    shapes, dropped, (scale, whose) = read_shapes(
+        arguments.file, scale, arguments.tolerance, arguments.snap, arguments.plane or "", content)
+    notes = content.notes.lines(scale)
+    if content.lines:
+        return _import_lines(arguments, content, notes, f"a unit is {scale:g} m ({whose})")
+    if content.notes.short and not arguments.allow_dropped:
+        raise ValueError(_short_ends(content, scale))
     if not shapes:
-        raise ValueError("expected closed outlines, got none; close the polylines")
+        raise ValueError(_nothing(dropped))
     blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed), arguments.hold)
-    deck = arguments.out or Path(arguments.file.with_suffix(".nml").name)
     name = deck.with_suffix(".blocks").name
     blocks.groups["scene"] |= {"title": arguments.file.stem, "geometry": name}
     if arguments.search:
         blocks.groups["search"] = {"parameter": arguments.search}
-    try:
-        deck.parent.mkdir(parents=True, exist_ok=True)
-        write_text(deck.with_suffix(".blocks"), blocks.files[BLOCKS_FILE])
-        write_text(deck, blocks.text())
-    except OSError as problem:
-        raise DdaError(f"{deck}:1: error: expected a file that can be written, got: {problem}", 4) from problem
-    fixed = sum(shape.fixed for shape in blocks.shapes)
-    for words in dropped:
-        print(f"dropped: {words}")
-    print(
-        f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; a unit is {scale:g} m ({whose}); "
+    made = _Imported(
+        {deck.with_suffix(".blocks"): blocks.files[BLOCKS_FILE], deck: blocks.text()}, notes, len(dropped),
+        sum(shape.fixed for shape in blocks.shapes))
+    made.lines.append(
+        f"{deck}, {name}: {len(blocks.shapes)} blocks, {made.fixed} of them fixed; a unit is {scale:g} m ({whose}); "
         f"chords within {arguments.tolerance:g} m of their arcs")
     layers = {shape.material: found.layer for shape, found in zip(blocks.shapes, shapes) if not shape.fixed}
     if len(layers) > 1:
-        print("materials: " + ", ".join(f"{number} {layer or '(no layer)'}" for number, layer in layers.items()))
-    if not fixed:
-        print("nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD, or --hold N")
-    return _run_deck(deck) if arguments.run and fixed else 2 if arguments.run else 0
+        made.lines.append(
+            "materials: " + ", ".join(f"{number} {layer or '(no layer)'}" for number, layer in layers.items()))
+    if not made.fixed:
+        made.advice.append(
+            "nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD, or --hold N")
+    return made
+
+
+def _import_lines(arguments: argparse.Namespace, content: Content, notes: list[str], unit: str) -> _Imported:
+    """Lines as a file for `dda cut`; ValueError if blocks are asked for."""
+    if arguments.run or arguments.search or arguments.hold:
+        raise ValueError(
+            "expected outlines of blocks, got lines alone; import them without --run, --search and --hold, "
+            "and cut them with dda cut")
+    file = _deck_of(arguments).with_suffix(".geo")
+    text, layers, count, boundary = line_file(content.lines, max(arguments.snap, arguments.tolerance))
+    named = ", ".join(f"{number} {layer or '(no layer)'}" for layer, number in layers.items())
+    return _Imported({file: text}, [
+        *notes, f"{file}: {count} lines, {boundary} of the boundary; {unit}; joint materials: {named}",
+        f"cut them into blocks: dda cut {path_word(file)}"], 0)
+
+
+def _short_ends(content: Content, scale: float) -> str:
+    """What is wrong with ends that stop short of a line."""
+    gaps = [gap * scale for _, _, gap in content.notes.short]
+    layer, end, gap = max(content.notes.short, key=lambda short: short[2])
+    count = "an end that stops" if len(gaps) == 1 else f"{len(gaps)} ends that stop"
+    return (
+        f"expected lines that meet, got {count} at most {max(gaps):.3g} m short of another line, on {layer} at "
+        f"({end.real * scale:.6g}, {end.imag * scale:.6g}); join them with --snap {1.01 * max(gaps):.3g}, "
+        "or drop them with --allow-dropped")
+
+
+def _nothing(dropped: Optional[list[str]]) -> str:
+    """What is wrong with a file without outlines."""
+    words = f": {dropped[0]}" if dropped else ""
+    more = f" and {len(dropped) - 1} more" if dropped and len(dropped) > 1 else ""
+    return f"expected closed outlines, got none{words}{more}"
 
 
 def _run_deck(deck: Path) -> int:

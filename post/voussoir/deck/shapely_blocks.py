@@ -41,7 +41,8 @@ def pieces_of(polygon: Any) -> list:
 
     low, high = polygon.bounds[1], polygon.bounds[3]
     reach = high - low
-    middle = polygon.interiors[0].envelope.centroid.x
+    middles = sorted(ring.envelope.centroid.x for ring in polygon.interiors)
+    middle = middles[len(middles) // 2]  # halves are cut further
     line = LineString([(middle, low - reach), (middle, high + reach)])
     parts = (part.simplify(1e-9 * reach) for part in split(polygon, line).geoms)  # without corners that nearly meet
     return [piece for part in parts for piece in pieces_of(part)]

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
-from voussoir.deck.dxf_shapes import Found, metres_a_unit, read_dxf
 from voussoir.deck.shapely_blocks import polygons_of
 from voussoir.extras import load
-from voussoir.files import read_text
+from voussoir.files import plain
+from voussoir.imports.dxf_drawing import Drawing, read_dxf
+from voussoir.imports.geojson import read_json, read_wkt
+from voussoir.imports.linework import Found
+from voussoir.imports.meshes import read_mesh
+from voussoir.imports.notes import Notes
+from voussoir.imports.plane import Plane
+from voussoir.imports.snapping import snapped
+from voussoir.imports.traces import BOUNDARY, Trace, traces_of
+
+#: Endings of files that are read
+ENDINGS = (".dxf", ".geojson", ".json", ".wkt", ".msh", ".vtk", ".vtu")
+_TEXTS = (".geojson", ".json", ".wkt")
 
 
 @dataclass(frozen=True)
@@ -21,128 +32,100 @@ class ImportedShape:
     layer: str  #: Its layer, or its property role, layer or name; empty if it has none
 
 
+@dataclass
+class Content:
+    """What a file holds besides outlines: lines where it has no outlines, and remarks."""
+
+    lines: list[Trace] = field(default_factory=list)
+    notes: Notes = field(default_factory=Notes)
+
+
 def read_shapes(
-    file: Path, scale: Optional[float], tolerance: float
+    file: Path, scale: Optional[float], tolerance: float, snap: float = 0.0, plane: str = "",
+    content: Optional[Content] = None
 ) -> tuple[list[ImportedShape], list[str], tuple[float, str]]:
     """Outlines of a file: the outlines, in words what was dropped, and the scale with who says so.
 
-    The file's ending says how it is read, see `READERS`. The scale, metres a unit, is by default what a drawing says,
-    else 1; chords are within a tolerance of their arcs [m]. ValueError if the file is none of its kind, MissingPackage
-    if it needs one.
+    The file's ending says how it is read. The scale, metres a unit, is by default what a drawing says, else 1. Chords
+    are within a tolerance of their arcs, corners and ends within the distance `snap` become one [m]. `content` receives
+    lines and remarks. ValueError if the file is none of its kind, MissingPackage if it needs one.
     """
-    if file.suffix.lower() not in READERS:
-        raise ValueError(f"expected a file of {', '.join(READERS)}, got '{file.suffix}'")
+    ending = file.suffix.lower()
+    if ending not in ENDINGS:
+        raise ValueError(f"expected a file of {', '.join(ENDINGS)}, got '{file.suffix}'")
+    plain(file).open("rb").close()  # readers of others say less of what cannot be opened
+    load("shapely", "an outline")
+    content = Content() if content is None else content
+    notes = content.notes
+    drawing = Drawing(file) if ending == ".dxf" else None
+    said = drawing.metres() if drawing and scale is None else None
+    whose = "given" if scale is not None else "the drawing" if said else "no unit is named; --unit U names it"
+    factor = scale or said or 1.0
+    view = Plane(plane)
+    if drawing:
+        found: Found = read_dxf(drawing, tolerance / factor, snap / factor, view, notes)
+    elif ending == ".wkt":
+        found = read_wkt(file, view, scale is not None)
+    elif ending in _TEXTS:
+        found = read_json(file, plane, view, tolerance / factor, scale is not None)
+    else:
+        found = read_mesh(file, view, notes)
+    rows = list(found)
+    if constant := view.depth(tolerance / factor):
+        notes.left_out.append(constant)
+    content.lines = [] if drawing else _only_lines(rows, factor)
+    if content.lines:
+        return [], notes.dropped, (factor, whose)
+    shapes = _snapped_shapes(list(_polygons(rows, notes)), snap / factor, notes)
     affinity = load("shapely.affinity", "an outline")
-    said = metres_a_unit(file) if scale is None and file.suffix.lower() == ".dxf" else None
-    whose = "--scale" if scale is not None else "the drawing" if said else "no unit is named; --scale S sets another"
-    scale = scale or said or 1.0
-    shapes, dropped = [], []
-    for words, geometry, layer in READERS[file.suffix.lower()](file, tolerance / scale):
+    scaled = [
+        ImportedShape(affinity.scale(polygon, factor, factor, origin=(0.0, 0.0)), layer) for polygon, layer in shapes]
+    return scaled, notes.dropped, (factor, whose)
+
+
+def _only_lines(rows: list[tuple[str, Any, str]], scale: float) -> list[Trace]:
+    """Lines of a file that has no outlines except those of the boundary."""
+    given = [(geometry, layer) for _, geometry, layer in rows if geometry is not None and not geometry.is_empty]
+    lines = [pair for pair in given if pair[0].geom_type in ("LineString", "MultiLineString", "LinearRing")]
+    rims = [pair for pair in given if pair not in lines and pair[0].geom_type in ("Polygon", "MultiPolygon")
+            and pair[1].lower() == BOUNDARY]
+    if not lines or len(lines) + len(rims) != len(rows):
+        return []
+    return [trace for geometry, layer in lines + rims for trace in traces_of(geometry, layer, scale)]
+
+
+def _polygons(rows: list[tuple[str, Any, str]], notes: Notes) -> Iterator[tuple[Any, str, str]]:
+    """Polygons that are valid, with words and layers; spikes are cut off, closed lines taken as outlines."""
+    shape, validation = load("shapely.geometry", "an outline"), load("shapely.validation", "an outline")
+    for words, geometry, layer in rows:
         if geometry is None:
-            dropped.append(words)
+            notes.dropped.append(words)
             continue
+        if geometry.geom_type in ("LineString", "LinearRing") and geometry.is_closed and len(geometry.coords) > 3:
+            notes.repaired.append(f"{words}: a closed line is taken as an outline")
+            geometry = shape.Polygon(geometry.coords)
         found, lost = polygons_of(geometry)
-        dropped += [f"{words}: {what}" for what in lost]
+        notes.dropped += [f"{words}: {what}" for what in lost]
         for polygon in found:
             if not polygon.is_valid:
-                dropped.append(f"{words}: an outline that crosses itself")
-                continue
-            scaled = affinity.scale(polygon, scale, scale, origin=(0.0, 0.0))
-            shapes.append(ImportedShape(scaled, layer))
-    return shapes, dropped, (scale, whose)
+                parts = polygons_of(validation.make_valid(polygon))[0]
+                if len(parts) != 1 or abs(parts[0].area - polygon.area) > 1e-9 * polygon.area:
+                    notes.dropped.append(f"{words}: an outline that crosses itself")
+                    continue
+                notes.repaired.append(f"{words}: a part of the outline that encloses no area is cut off")
+                polygon = parts[0]
+            yield polygon, layer, words
 
 
-def read_wkt(file: Path, tolerance: float) -> Found:
-    """Geometries in well-known text, one a line; a layer may stand before it, with a semicolon."""
-    wkt = load("shapely.wkt", "WKT")
-    for number, line in enumerate(read_text(file).splitlines(), 1):
-        layer, _, text = line.rpartition(";")
-        if not text.strip():
+def _snapped_shapes(shapes: list[tuple[Any, str, str]], snap: float, notes: Notes) -> list[tuple[Any, str]]:
+    """Polygons and layers, their corners moved by at most a distance if it is not 0."""
+    polygons = [polygon for polygon, _, _ in shapes]
+    if snap > 0.0:
+        polygons = snapped(polygons, snap, notes)
+    found = []
+    for polygon, (_, layer, words) in zip(polygons, shapes):
+        if polygon.is_empty or not polygon.is_valid or not polygon.area > 0.0:
+            notes.dropped.append(f"{words}: no outline is left where corners are joined")
             continue
-        try:
-            yield f"line {number}", wkt.loads(text), layer.strip()
-        except Exception as problem:  # shapely's errors differ by version
-            raise ValueError(f"expected WKT in line {number}, got: {problem}") from problem
-
-
-def read_geojson(file: Path, tolerance: float) -> Found:
-    """Features, or a geometry; the property role, layer or name is the layer."""
-    geometry = load("shapely.geometry", "GeoJSON")
-    try:
-        content = json.loads(read_text(file))
-    except json.JSONDecodeError as problem:
-        raise ValueError(f"expected JSON, got: {problem}") from problem
-    if isinstance(content, list) or "dtype" in content:
-        yield from read_compas(file)
-        return
-    for number, feature in enumerate(content.get("features", [content]), 1):
-        shape = feature.get("geometry", feature) if feature.get("type") == "Feature" else feature
-        known = feature.get("properties") or {}
-        layer = next((str(known[key]) for key in ("role", "layer", "name") if known.get(key)), "")
-        yield f"feature {number}", geometry.shape(shape) if shape else None, layer
-
-
-def read_compas(file: Path) -> Found:
-    """Blocks of an assembly, meshes or polygons of COMPAS: their faces at one end of the depth; supports are fixed."""
-    compas = load("compas", "a file of COMPAS")
-    content = compas.json_load(file)
-    parts = content if isinstance(content, list) else [content]
-    found: list[tuple[Any, str]] = []
-    for part in parts:
-        if hasattr(part, "graph"):
-            nodes = [part.graph.node_attributes(node) for node in part.graph.nodes()]
-            found += [(node["block"], "fixed" if node.get("is_support") else "") for node in nodes]
-        else:
-            found.append((part, ""))
-    axis = _depth([_faces(part) for part, _ in found])
-    for number, (part, layer) in enumerate(found, 1):
-        words, faces = f"{type(part).__name__} {number}", _faces(part)
-        if axis is None or not faces:
-            yield f"{words}: no outline of one depth", None, ""
-        else:
-            yield words, _end_face(faces, axis), layer
-
-
-def _faces(part: Any) -> list[list[list[float]]]:
-    """Faces of a mesh of COMPAS, or the one that a polygon is; none of what is neither."""
-    if hasattr(part, "face_coordinates"):
-        return [part.face_coordinates(face) for face in part.faces()]
-    return [[list(point) for point in part.points]] if hasattr(part, "points") else []
-
-
-def _depth(bodies: list[list[list[list[float]]]]) -> int | None:
-    """The axis along which all bodies have one depth or two ends: y where z is up, else z or x."""
-    for axis in (1, 2, 0):
-        ends = [{round(point[axis], 9) for face in faces for point in face} for faces in bodies]
-        if bodies and all(len(values) <= 2 for values in ends):
-            return axis
-    return None
-
-
-def _end_face(faces: list[list[list[float]]], axis: int) -> Any:
-    """The outline that a body has at the lower end of its depth."""
-    shape, join = load("shapely.geometry", "a file of COMPAS"), load("shapely.ops", "a file of COMPAS")
-    low = min(point[axis] for face in faces for point in face)
-    first, second = (place for place in range(3) if place != axis)
-    ends = [face for face in faces if all(abs(point[axis] - low) < 1e-9 for point in face)]
-    return join.unary_union([shape.Polygon([(point[first], point[second]) for point in face]) for face in ends])
-
-
-def read_mesh(file: Path, tolerance: float) -> Found:
-    """Polygons of a mesh, by meshio; the place of their kind is no layer."""
-    meshio = load("meshio", "a mesh")
-    geometry = load("shapely.geometry", "a mesh")
-    mesh = meshio.read(file)
-    for cells in mesh.cells:
-        for number, cell in enumerate(cells.data, 1):
-            words = f"{cells.type} {number}"
-            if len(cell) < 3 or cells.type not in ("triangle", "quad", "polygon"):
-                yield f"{words}: no polygon", None, ""
-                continue
-            yield words, geometry.Polygon(mesh.points[cell][:, :2]), ""
-
-
-#: How a file is read, by its ending
-READERS = {
-    ".dxf": read_dxf, ".geojson": read_geojson, ".json": read_geojson, ".wkt": read_wkt, ".msh": read_mesh,
-    ".vtk": read_mesh, ".vtu": read_mesh}
+        found.append((polygon, layer))
+    return found

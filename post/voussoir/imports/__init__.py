@@ -1,0 +1,1 @@
+"""Readers of drawings and files of geometry."""

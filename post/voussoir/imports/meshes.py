@@ -1,0 +1,50 @@
+"""Polygons of meshes, by meshio."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from voussoir.extras import load
+from voussoir.imports.limits import one_line
+from voussoir.imports.linework import Found
+from voussoir.imports.notes import Notes
+from voussoir.imports.plane import Plane
+
+
+def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
+    """Triangles, quadrilaterals and polygons of a mesh; points and lines are left out."""
+    geometry = load("shapely.geometry", "a mesh")
+    mesh = _mesh_of(file)
+    points = np.asarray(mesh.points, dtype=float)
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.all(abs(points) <= 1e12):
+        raise ValueError("expected points of a mesh with two or three numbers within 1e12, got others")
+    used: list[tuple[str, np.ndarray]] = []
+    for cells in mesh.cells:
+        if cells.type in ("vertex", "line", "line3"):
+            notes.left_out.append(f"{len(cells.data)} cells '{cells.type}'")
+            continue
+        for number, cell in enumerate(cells.data, 1):
+            words, corners = f"{cells.type} {number}", np.asarray(cell)
+            if cells.type not in ("triangle", "quad", "polygon") or len(corners) < 3:
+                yield f"{words}: no polygon", None, ""
+            elif corners.min() < 0 or corners.max() >= len(points):
+                raise ValueError(f"{words}: expected points from 1 to {len(points)}, got others")
+            else:
+                used.append((words, corners))
+    for words, corners in used:
+        yield words, geometry.Polygon(plane.flat(points[corners])), ""
+
+
+def _mesh_of(file: Path) -> Any:
+    """A mesh of meshio; ValueError, for any of its errors, if the file is none."""
+    meshio = load("meshio", "a mesh")
+    try:
+        return meshio.read(file)
+    except MemoryError:
+        raise
+    except (Exception, SystemExit) as problem:  # meshio ends the program, or fails with errors of any kind
+        words = "a broken file" if isinstance(problem, SystemExit) else f"{type(problem).__name__}: {one_line(problem)}"
+        raise ValueError(f"expected a mesh in a {file.suffix} file that meshio reads, got {words}") from None

@@ -1,0 +1,67 @@
+"""Corners that nearly meet become one; corners near an edge of another outline are moved onto it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from voussoir.extras import load
+from voussoir.imports.curves import Line, Points, on_curve
+from voussoir.imports.notes import Notes
+
+
+class Ends:
+    """Points, those within reach of an earlier one as that one."""
+
+    def __init__(self, reach: float) -> None:
+        self._reach = reach
+        self._cells: dict[tuple[int, int], list[complex]] = {}
+
+    def of(self, point: complex) -> complex:
+        """The nearest known point within reach of this one, or itself."""
+        i, j = round(point.real / self._reach), round(point.imag / self._reach)
+        around = [
+            known for di in (0, -1, 1) for dj in (0, -1, 1) for known in self._cells.get((i + di, j + dj), ())
+            if abs(known - point) <= self._reach]
+        if around:
+            return min(around, key=lambda known: abs(known - point))
+        self._cells.setdefault((i, j), []).append(point)
+        return point
+
+
+def snapped(polygons: list[Any], reach: float, notes: Notes) -> list[Any]:
+    """Polygons of shapely whose corners lie together, and on each other's edges, where they are within reach."""
+    shape = load("shapely.geometry", "polygons")
+    reach *= 1.0 + 1e-6  # a gap as wide as asked may be read wider
+    ends = Ends(reach)
+    given = [[_ring(ring) for ring in (polygon.exterior, *polygon.interiors)] for polygon in polygons]
+    joined = [[[ends.of(point) for point in ring] for ring in rings] for rings in given]
+    corners = Points([point for rings in joined for ring in rings for point in ring])
+    onto: dict[complex, complex] = {}
+    for ring in (ring for rings in joined for ring in rings):
+        for start, end in zip(ring, [*ring[1:], ring[0]]):
+            if start == end:
+                continue
+            for share, point in on_curve(Line(start, end), corners, reach, reach):
+                onto.setdefault(point, start + share * (end - start))
+    found = []
+    for rings, before in zip(joined, given):
+        moved = [[onto.get(point, point) for point in ring] for ring in rings]
+        notes.snapped += [
+            abs(new - old) for ring, olds in zip(moved, before) for new, old in zip(ring, olds) if new != old]
+        rows = [[(point.real, point.imag) for point in ring] for ring in map(_once, moved)]
+        found.append(shape.Polygon(rows[0], [row for row in rows[1:] if len(row) > 2]) if len(rows[0]) > 2
+                     else shape.Polygon())
+    return found
+
+
+def _ring(ring: Any) -> list[complex]:
+    """Corners of a ring, each once."""
+    points = np.asarray(ring.coords)[:-1]
+    return (points[:, 0] + 1j * points[:, 1]).tolist()
+
+
+def _once(ring: list[complex]) -> list[complex]:
+    """A ring without corners that follow themselves."""
+    return [point for number, point in enumerate(ring) if point != ring[number - 1]]
