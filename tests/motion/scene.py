@@ -108,6 +108,8 @@ class Scene:
     verdicts: tuple[str, ...] = ("completed",)
     #: Whether the answers are the same to the tolerances at every step, with 3 and with 6 unknowns at E = 1e12
     is_step_free: bool = False
+    #: Whether the tolerances are those of the deck's step, and fall with its square
+    is_second_order: bool = False
     #: Whether `undecided` is counted by itself rather than as wrong
     may_be_undecided: bool = False
 
