@@ -262,4 +262,4 @@ def test_a_block_that_slides_upright_and_holds_on_a_slope_is_found(tmp_path: Pat
     assert found["verdict"] == "found"
     assert float(found["critical"]) == pytest.approx(-90.0 - (turn - 25.0), rel=1e-6)
     other = (tmp_path / "deck" / "log.txt").read_text().rpartition("it also collapses at ")[2]
-    assert float(other) == pytest.approx(-90.0 - (turn + 25.0), rel=1e-6)
+    assert other.split()[0] == f"{-90.0 - (turn + 25.0):.6g}"
