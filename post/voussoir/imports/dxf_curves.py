@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Union
 
 import numpy as np
@@ -18,28 +18,24 @@ from voussoir.imports.plane import Plane
 class LinePart:
     """A straight line between two points of space."""
 
-    ends: np.ndarray
+    points: np.ndarray
 
-    def placed(self, placement: Placement, plane: Plane) -> Curve:
-        """The line in a placement, in a plane."""
-        return Line(*_flat(placement.points(self.ends), plane))
+    def curve(self, flat: list[complex]) -> Curve:
+        """The line by its points in a plane."""
+        return Line(flat[0], flat[1])
 
 
 @dataclass(frozen=True)
 class ArcPart:
-    """An arc of an ellipse: ends, centre and two half axes of space, and the angles from one to the other."""
+    """An arc of an ellipse by points of space, ends, centre and ends of two half axes, and the angles at its ends."""
 
-    ends: np.ndarray
-    centre: np.ndarray
-    half_axes: np.ndarray
+    points: np.ndarray
     angles: tuple[float, float]
 
-    def placed(self, placement: Placement, plane: Plane) -> Curve:
-        """The arc in a placement, in a plane."""
-        centre = placement.points(self.centre[None, :])
-        tips = placement.ways(self.half_axes) + centre
-        middle, first, second = _flat(np.vstack((centre, tips)), plane)
-        return Arc(*_flat(placement.points(self.ends), plane), middle, first - middle, second - middle, self.angles)
+    def curve(self, flat: list[complex]) -> Curve:
+        """The arc by its points in a plane."""
+        start, end, centre, first, second = flat
+        return Arc(start, end, centre, first - centre, second - centre, self.angles)
 
 
 @dataclass(frozen=True)
@@ -51,15 +47,15 @@ class SplinePart:
     points: np.ndarray
     weights: np.ndarray
 
-    def placed(self, placement: Placement, plane: Plane) -> Curve:
-        """The spline in a placement, in a plane."""
-        points = np.array(_flat(placement.points(self.points), plane))
-        low, high = self.knots[self.degree], self.knots[len(self.points)]
+    def curve(self, flat: list[complex]) -> Curve:
+        """The spline by its control points in a plane."""
+        points = np.array(flat)
+        low, high = self.knots[self.degree], self.knots[len(points)]
         inner, count = np.unique(self.knots[(self.knots > low) & (self.knots < high)], return_counts=True)
         kinks = tuple(float(knot - low) / float(high - low) for knot in inner[count >= self.degree])
         spline = Spline(0j, 0j, self.degree, self.knots, points, self.weights, kinks)
         start, end = spline.at(np.array([0.0, 1.0])).tolist()
-        return Spline(start, end, self.degree, self.knots, points, self.weights, kinks)
+        return replace(spline, start=start, end=end)
 
 
 @dataclass(frozen=True)
@@ -70,6 +66,18 @@ class Shape:
     is_closed: bool = False
     may_close: bool = False  #: The file does not say whether it is closed
 
+    def placed(self, placement: Placement, plane: Plane) -> list[Curve]:
+        """The curves in a placement, in a plane; affine maps of control points are those of curves."""
+        if not self.parts:
+            return []
+        flat = plane.flat(placement.points(np.vstack([part.points for part in self.parts])))
+        row = (flat[:, 0] + 1j * flat[:, 1]).tolist()
+        curves, first = [], 0
+        for part in self.parts:
+            curves.append(part.curve(row[first : first + len(part.points)]))
+            first += len(part.points)
+        return curves
+
 
 def curves_of(entry: Entry, vertices: list[Entry]) -> Shape | None:
     """The curves of an entity; None if it is no line. ValueError if its values make none."""
@@ -77,12 +85,6 @@ def curves_of(entry: Entry, vertices: list[Entry]) -> Shape | None:
     if entry.kind == "POLYLINE":
         return _polyline(entry, vertices)
     return reader(entry) if reader else None
-
-
-def _flat(points: np.ndarray, plane: Plane) -> list[complex]:
-    """Points of a plane as complex numbers."""
-    flat = plane.flat(points)
-    return (flat[:, 0] + 1j * flat[:, 1]).tolist()
 
 
 def _line(entry: Entry) -> Shape:
@@ -121,8 +123,9 @@ def _ellipse_of(centre: np.ndarray, half_axes: np.ndarray, start: float, turn: f
     stops = [start, start + turn / 2.0, start + turn] if whole else [start, start + turn]
     ends = [centre + half_axes[0] * math.cos(angle) + half_axes[1] * math.sin(angle) for angle in stops]
     ends[-1] = ends[0] if whole else ends[-1]
+    frame = [centre, *(centre + half_axes)]
     return Shape(
-        [ArcPart(np.array(ends[i : i + 2]), centre, half_axes, (stops[i], stops[i + 1])) for i in range(len(ends) - 1)],
+        [ArcPart(np.array([*ends[i : i + 2], *frame]), (stops[i], stops[i + 1])) for i in range(len(ends) - 1)],
         is_closed=whole)
 
 
@@ -165,8 +168,9 @@ def _chain(points: list, bulges: list[float], axes: np.ndarray, is_closed: bool,
         way = complex(end[0] - start[0], end[1] - start[1])
         spoke = -way * complex(0.5, (1.0 - bulge**2) / (4.0 * bulge))  # from the centre to the start
         centre = np.array(start) - np.array([spoke.real, spoke.imag, 0.0])
-        half_axes = np.array([[spoke.real, spoke.imag, 0.0], [-spoke.imag, spoke.real, 0.0]]) @ axes.T
-        parts.append(ArcPart(ends, axes @ centre, half_axes, (0.0, 4.0 * math.atan(bulge))))
+        half_axes = np.array([[spoke.real, spoke.imag, 0.0], [-spoke.imag, spoke.real, 0.0]])
+        frame = np.vstack((centre, centre + half_axes)) @ axes.T
+        parts.append(ArcPart(np.vstack((ends, frame)), (0.0, 4.0 * math.atan(bulge))))
     return Shape(parts, is_closed, may_close)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.imports.curves import Curve, Line
 from voussoir.imports.dxf_curves import curves_of
 from voussoir.imports.dxf_groups import Entry, sections_of
 from voussoir.imports.dxf_space import Placement
@@ -126,8 +127,7 @@ def read_dxf(drawing: Drawing, tolerance: float, snap: float, plane: Plane, note
         if shape is None:
             notes.dropped.append(f"{words}: no outline")
             continue
-        curves = tuple(
-            curve for part in shape.parts for curve in [part.placed(placement, plane)] if not _is_point(curve))
+        curves = tuple(curve for curve in shape.placed(placement, plane) if not _is_point(curve))
         if not curves:
             notes.dropped.append(f"{words}: no length")
             continue
@@ -135,7 +135,9 @@ def read_dxf(drawing: Drawing, tolerance: float, snap: float, plane: Plane, note
     yield from outlines(drawn, tolerance, snap, notes)
 
 
-def _is_point(curve: object) -> bool:
+def _is_point(curve: Curve) -> bool:
     """Whether a curve has no length."""
+    if isinstance(curve, Line):
+        return curve.start == curve.end
     points = curve.at(np.linspace(0.0, 1.0, 5))
     return bool(np.all(points == points[0])) or not math.isfinite(abs(points).max())

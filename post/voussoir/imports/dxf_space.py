@@ -13,6 +13,8 @@ from voussoir.imports.dxf_groups import Entry
 
 def object_axes(entry: Entry) -> np.ndarray:
     """Columns are the axes of an entity's own coordinates, by the arbitrary axis rule of DXF: (3, 3)."""
+    if not any(code == 210 for code, _ in entry.groups):
+        return np.eye(3)
     normal = np.array(entry.point(210, (0.0, 0.0, 1.0)))
     length = float(np.linalg.norm(normal))
     if not length > 0.0:
@@ -34,10 +36,6 @@ class Placement:
     def points(self, given: np.ndarray) -> np.ndarray:
         """Points (n, 3) of points."""
         return given @ self.matrix.T + self.shift
-
-    def ways(self, given: np.ndarray) -> np.ndarray:
-        """Vectors (n, 3) of vectors."""
-        return given @ self.matrix.T
 
     def inserts(self, insert: Entry, base: tuple[float, float, float], columns: int, rows: int) -> Iterator[Placement]:
         """Placements of a block that is inserted in this one, columns and rows of it."""
