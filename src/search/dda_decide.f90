@@ -65,7 +65,8 @@ contains
       logical :: begins
 
       begins = scene%settings%settles
-      if (present(onward)) begins = begins .and. onward%steps == 0
+      if (present(onward)) &
+         & begins = begins .and. onward%steps == 0 .and. .not. onward%time > 0.0_wp
       if (.not. begins) then
          call run_under(flow_rule%coulomb, scene%settings, scene%system, scene%contacts, decision, &
             & album, onward)
@@ -89,7 +90,7 @@ contains
       end if
       if (allocated(scene%system%velocity)) settled%system%velocity = scene%system%velocity
       decision%outcome = settled%outcome
-      march%held_force = rest%held_force
+      if (allocated(rest%held_force)) march%held_force = rest%held_force
       call run_under(flow_rule%coulomb, scene%settings, settled%system, settled%contacts, &
          & decision, album, march)
       if (present(onward)) onward = march

@@ -78,6 +78,7 @@ contains
          ! nothing can move
          outcome%verdict = merge(verdict%completed, verdict%stable, settings%dynamic)
          allocate (outcome%motion(settings%n_dof, 0))
+         if (present(onward)) onward%time = max(onward%time, settings%duration)
          return
       end if
       run%settings = settings

@@ -32,7 +32,8 @@ contains
    end procedure start_run
 
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
-   !> held otherwise than before begin without force. Scales are those of the run as it is now
+   !> held otherwise than before begin without force. Scales are those of the run as it is now.
+   !> Time has passed even where no block could move
    pure subroutine go_on(onward, run)
       type(march_t), intent(in) :: onward
       type(run_t), intent(inout) :: run
@@ -42,6 +43,7 @@ contains
          call measure_scales(run)
          run%march%dt = min(run%march%dt, run%march%longest)
       end if
+      run%march%time = onward%time
       if (.not. allocated(onward%held_force)) return
       if (size(onward%held_force) == size(run%equations%fixed%force)) &
          & run%equations%fixed%force = onward%held_force

@@ -199,3 +199,30 @@ def test_bad_stages_are_refused(tmp_path: Path, change: str, keys: str, message:
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stderr.startswith("scene.blocks:")
+
+
+@pytest.mark.parametrize("unknowns", [3, 6])
+@pytest.mark.parametrize("keys", ["", ", start = 'static'"])
+def test_a_block_that_is_built_while_nothing_can_move_falls_from_then_on(
+    tmp_path: Path, unknowns: int, keys: str
+) -> None:
+    """The only movable block, above the ground: it fell from the beginning."""
+    dynamic = (f"&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.41, time_step = 0.003,"
+               f" unknowns = {unknowns}{keys} /\n")
+    run(tmp_path, BASE + rectangle(0, 1, 1, 2) + "add block 2 at 0.3\nmeasure 0.5 1.5\n", dynamic)
+    ways = table(tmp_path / "out" / "points.csv")
+    assert float(ways[-1]["time"]) == pytest.approx(0.41, abs=1e-12)
+    for way in ways:
+        time = max(0.0, float(way["time"]) - 0.3)
+        assert float(way["v"]) == pytest.approx(-GRAVITY * time**2 / 2.0, abs=1e-12)
+        assert float(way["vy"]) == pytest.approx(-GRAVITY * time, abs=1e-12)
+
+
+def test_time_goes_on_between_a_block_that_goes_and_one_that_comes(tmp_path: Path) -> None:
+    """From 0.1 to 0.25 s nothing can move."""
+    dynamic = "&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.4, time_step = 0.004 /\n"
+    run(tmp_path, BASE + rectangle(0, 1, 1, 2) + rectangle(3, 1, 4, 2)
+        + "remove block 2 at 0.1\nadd block 3 at 0.25\nmeasure 3.5 1.5\n", dynamic)
+    last = table(tmp_path / "out" / "points.csv")[-1]
+    assert float(last["time"]) == pytest.approx(0.4, abs=1e-12)
+    assert float(last["v"]) == pytest.approx(-GRAVITY * 0.15**2 / 2.0, abs=1e-12)
