@@ -8,8 +8,10 @@ module dda_step
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
    use dda_step_context, only : in_time, run_t, step_outcome_t
+   use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
+   use dda_text, only : short_text
    use dda_velocity, only : solve_impacts
    use dda_verdict, only : measure_step
    implicit none
@@ -66,6 +68,14 @@ module dda_step
    !> Tries in which very many joints are swept before their faces agree
    integer, parameter :: hasty_tries = 3
 
+   !> Time hardly goes on by a step that is shorter than this share of the one that speeds allow; so
+   !> many of them in a row end a run, for as many again would not lead on by a step either
+   real(wp), parameter :: hardly = 1.0e-6_wp
+   integer, parameter :: most_stuck = 100
+
+   !> Why contacts find no forces where points are led
+   character(len=*), parameter :: jam = "contacts lock against a prescribed displacement"
+
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
 
@@ -105,8 +115,13 @@ contains
       run%step%accepted = outcome%accepted
       if (outcome%accepted) then
          call commit(run)
+         if (in_time(run)) call check_progress(run, error)
       else if (.not. run%march%clock%tries) then
-         call fatal_error(error, "open-close iteration does not converge for any time step")
+         if (leads(run)) then
+            call fatal_error(error, jam//" at "//short_text(run%march%time)//" s")
+         else
+            call fatal_error(error, "open-close iteration does not converge for any time step")
+         end if
       end if
    end subroutine advance
 
@@ -116,6 +131,34 @@ contains
 
       is_too_short = in_time(run) .and. run%march%dt < max(shortest_step, spacing(run%march%time))
    end function is_too_short
+
+   !> End a run in time whose steps no longer lead on: a prescribed displacement against friction
+   !> finds no motion at any speed
+   pure subroutine check_progress(run, error)
+      type(run_t), intent(inout) :: run
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: cause
+      real(wp) :: usual, speed
+
+      associate (march => run%march)
+         speed = largest_motion(run%system, run%step%velocity)
+         usual = march%longest
+         if (speed*usual > march%allowed_motion) usual = march%allowed_motion/speed
+         march%stuck = merge(march%stuck + 1, 0, run%step%dt < hardly*usual)
+         if (march%stuck < most_stuck) return
+         cause = "the contacts allow no longer steps"
+         if (leads(run)) cause = jam
+         call fatal_error(error, "steps of "//short_text(run%step%dt)//" s do not lead on at " &
+            & //short_text(march%time)//" s: "//cause)
+      end associate
+   end subroutine check_progress
+
+   !> Whether points are led in time
+   pure logical function leads(run)
+      type(run_t), intent(in) :: run
+
+      leads = in_time(run) .and. any(abs(run%equations%fixed%rate) > 0.0_wp)
+   end function leads
 
    !> Carry an accepted step over, and count it
    pure subroutine commit(run)

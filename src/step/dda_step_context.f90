@@ -99,6 +99,8 @@ module dda_step_context
       real(wp) :: time = 0.0_wp
       !> Clock of what is live in a static run
       type(load_clock_t) :: clock
+      !> Accepted steps in a row by which time hardly goes on
+      integer :: stuck = 0
       !> Steps accepted when the clock went on last
       integer :: begun = 0
       !> Largest motion of a corner since then, where blocks move or a displacement means collapse
