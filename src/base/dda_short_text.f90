@@ -41,6 +41,18 @@ contains
       end if
    end function coordinate_text
 
+   !> A positive number, at most three significant digits, rounded up
+   module procedure raised_text
+      character(len=13) :: form
+      real(wp) :: raised
+      integer :: stat
+
+      text = to_text(value)
+      write (form, "(ru, es13.2e3)") value
+      read (form, *, iostat=stat) raised
+      if (stat == 0) text = to_text(raised)
+   end procedure raised_text
+
    !> A number of things with their name, in the plural for all numbers but one
    module procedure counted
       text = to_text(number)//" "//thing

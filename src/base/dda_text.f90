@@ -6,7 +6,7 @@ module dda_text
    implicit none
    private
 
-   public :: to_text, short_text, place_text, counted, print_number, lower_case
+   public :: to_text, short_text, place_text, raised_text, counted, print_number, lower_case
    public :: read_number, read_integer, growing_text_t, add_line, bytes_of, fields, lines_of
 
    !> Shortest text that reads back as the same number
@@ -54,6 +54,12 @@ module dda_text
          real(wp), intent(in) :: place(2)       !! Its coordinates: (2) [m]
          character(len=:), allocatable :: text  !! Such as (1.5, -2)
       end function place_text
+
+      !> A positive number, at most three significant digits, rounded up: a bound that holds
+      pure module function raised_text(value) result(text)
+         real(wp), intent(in) :: value          !! Number to write
+         character(len=:), allocatable :: text  !! Text without blanks
+      end function raised_text
 
       !> A number of things with their name, in the plural for all numbers but one
       pure module function counted(number, thing) result(text)

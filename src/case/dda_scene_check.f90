@@ -2,6 +2,7 @@
 !> supports and units that the scene contradicts or makes doubtful
 module dda_scene_check
    use dda_block_scene, only : floating_block
+   use dda_contacts, only : joint_search_t
    use dda_deck, only : deck_t, has_group, keeps_velocities
    use dda_deck_check_case, only : check_model
    use dda_deck_scene, only : deck_scene
@@ -13,10 +14,12 @@ module dda_scene_check
    use dda_kinds, only : wp
    use dda_limerick_scene, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
+   use dda_near_miss, only : find_near_misses, near_miss_t
+   use dda_outline, only : outline_of
    use dda_read_deck, only : geometry_file
    use dda_scene, only : scene_t
    use dda_shape_check, only : check_shapes
-   use dda_text, only : to_text
+   use dda_text, only : place_text, raised_text, short_text, to_text
    use dda_watch, only : watch_t
    implicit none
    private
@@ -227,6 +230,7 @@ contains
       integer :: n_held
 
       call doubt_units(deck, scene, warnings)
+      call doubt_gaps(deck, scene, warnings)
       if (floating > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
          & //to_text(floating)//" has no support and falls freely", geometry_file(deck), &
          & deck%plan%line(floating))
@@ -235,6 +239,45 @@ contains
       if (allocated(deck%plan%boundary%held)) n_held = size(deck%plan%boundary%held)
       if (n_held == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
    end subroutine doubt_scene
+
+   !> Warn of blocks that almost touch, and whether they are joined
+   pure subroutine doubt_gaps(deck, scene, warnings)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
+      type(warnings_t), intent(inout) :: warnings
+      type(near_miss_t), allocatable :: miss(:)
+      type(joint_search_t) :: search
+      character(len=:), allocatable :: fate
+      integer :: i
+
+      search = scene%contacts%search
+      search%outline = outline_of(scene%system)
+      call find_near_misses(search, scene%system, miss)
+      do i = 1, size(miss)
+         fate = "They are not joined"
+         if (miss(i)%is_joined) fate = "They are joined"
+         if (scene%settings%dynamic .and. scene%settings%current) fate = "They may meet in time"
+         call add_warning(warnings, gap_text(miss(i), scene%origin)//". "//fate &
+            & //"; correct the corners or set scene%contact_tolerance = " &
+            & //raised_text(abs(miss(i)%gap)/miss(i)%allowed*search%tolerance), &
+            & geometry_file(deck), deck%plan%line(maxval(miss(i)%joint%block)))
+      end do
+   end subroutine doubt_gaps
+
+   !> Two blocks that almost touch, how far they are apart, and where
+   pure function gap_text(miss, origin) result(text)
+      type(near_miss_t), intent(in) :: miss
+      real(wp), intent(in) :: origin(2)  !! Where the origin of the scene is: (2) [m]
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: verb
+
+      verb = " have a gap of "
+      if (miss%gap < 0.0_wp) verb = " overlap by "
+      text = "blocks "//to_text(minval(miss%joint%block))//" and " &
+         & //to_text(maxval(miss%joint%block))//verb//short_text(abs(miss%gap))//" m at " &
+         & //place_text(miss%place + origin)//", contact_tolerance allows " &
+         & //short_text(miss%allowed)//" m"
+   end function gap_text
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
    !> then often millimetres

@@ -33,10 +33,6 @@ module dda_contact_search
    !> Rounding of ways, relative, with room to spare
    real(wp), parameter :: rounding = 1.0e-12_wp
 
-   !> Gaps below this share of the smallest block's size, of the two and of those that lie between
-   !> them, count as closed at the beginning
-   real(wp), parameter :: touching = 1.0e-4_wp
-
 contains
 
    !> Edges of different blocks whose boxes overlap, in the order of their blocks
@@ -149,13 +145,15 @@ contains
    end subroutine search_pairs
 
    !> Search for the joints of a system
-   pure type(joint_search_t) function new_joint_search(system, law)
+   pure type(joint_search_t) function new_joint_search(system, law, tolerance)
       type(block_system_t), intent(in) :: system
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), intent(in) :: law(:, :)
+      real(wp), intent(in), optional :: tolerance  !! The contact tolerance
 
       new_joint_search%outline = outline_of(system)
       allocate (new_joint_search%law, source=law)
+      if (present(tolerance)) new_joint_search%tolerance = tolerance
    end function new_joint_search
 
    !> Number of the law between two materials among the laws of the contacts
@@ -166,22 +164,57 @@ contains
       law_between = material(1) + size(search%law, 1)*(material(2) - 1)
    end function law_between
 
-   !> Joints of blocks that touch in the reference shape
-   pure subroutine touching_joints(search, system, joint)
+   !> Joints of blocks that touch in the reference shape: gaps below a share of the smallest block's
+   !> size, of the two and of those that lie between them, count as closed at the beginning
+   pure subroutine touching_joints(search, system, share, joint, size_of)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: share  !! The share, of the contact tolerance or wider
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
+      !> Size of the smallest block at each joint: (n_joint) [m]
+      real(wp), allocatable, intent(out), optional :: size_of(:)
       type(neighbourhood_t) :: near
-      real(wp) :: reach(size(system%area))
+      real(wp) :: beside(size(system%area)), reach(size(system%area))
+      integer :: j
 
-      reach = touching*sqrt(system%area)
+      reach = drawn_reach(system, share)
+      beside = least_beside(system, reach)
       near%vertex = system%vertex
       near%travel = 0.0_wp*system%vertex
       near%beginning = .true.
+      near%ends = search%tolerance/share
       allocate (near%closed(0))
-      call find_joints(search, system, reach, near, joint, least_beside(system, reach))
+      call find_joints(search, system, reach, near, joint, beside)
+      if (present(size_of)) size_of = [(least_reach(reach, beside, joint(j)%block)/share, &
+         & j=1, size(joint))]
    end subroutine touching_joints
+
+   !> A share of the size of each block, at most half its thickness: blocks on both sides of a sheet
+   !> do not touch
+   pure function drawn_reach(system, share) result(reach)
+      type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: share
+      real(wp) :: reach(size(system%area))  !! The reach: (n_block) [m]
+      integer :: b
+
+      do b = 1, size(reach)
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            reach(b) = min(share*sqrt(system%area(b)), system%area(b) &
+               & /sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1)))
+         end associate
+      end do
+   end function drawn_reach
+
+   !> The least reach of two blocks and of those that lie between them [m]
+   pure real(wp) function least_reach(reach, beside, block)
+      real(wp), intent(in) :: reach(:)   !! How far each block can reach: (n_block) [m]
+      real(wp), intent(in) :: beside(:)  !! Least reach beside each block: (n_block) [m]
+      integer, intent(in) :: block(2)    !! The two blocks
+
+      least_reach = min(minval(reach(block)), maxval(beside(block)))
+   end function least_reach
 
    !> The least reach of all blocks that a block meets, its own among them: a sheet between two
    !> blocks is thicker than its own reach, not than theirs
@@ -265,7 +298,7 @@ contains
             last = last + 1
          end do
          far = sum(reach(block))
-         if (present(beside)) far = min(minval(reach(block)), maxval(beside(block)))
+         if (present(beside)) far = least_reach(reach, beside, block)
          if (allocated(near%ahead) .and. all(near%outline%convex(block))) then
             call add_parted_joint(near, pair(:, first:last), far, list)
          else

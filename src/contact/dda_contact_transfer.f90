@@ -3,12 +3,13 @@
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_search, only : look_around, near_joints, touching_joints
+   use dda_contact_search, only : look_around, near_joints
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
       & place_joint, slip_at
    use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
    use dda_entrance, only : contact_key
    use dda_kinds, only : wp
+   use dda_near_miss, only : drawn_joints
    use dda_sort, only : place_in, rising_order
    implicit none
    private
@@ -35,16 +36,21 @@ module dda_contact_transfer
 contains
 
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
-   pure subroutine search_contacts(system, contacts)
+   pure subroutine search_contacts(system, contacts, closes_gaps)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is set
+      !> Whether blocks that almost touch are joined, too
+      logical, intent(in), optional :: closes_gaps
       type(joint_t), allocatable :: joint(:)
       type(joint_place_t) :: place
       real(wp) :: gap(3)
+      logical :: closes
       integer :: j
 
       contacts%law = pack(contacts%search%law, .true.)
-      call touching_joints(contacts%search, system, joint)
+      closes = .false.
+      if (present(closes_gaps)) closes = closes_gaps
+      call drawn_joints(contacts%search, system, closes, joint)
       do j = 1, size(joint)
          call lock_joint(system%vertex, joint(j))
          call place_joint(system%vertex, joint(j), place, gap)

@@ -8,7 +8,7 @@ module dda_contacts
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_outline, only : outline_t
-   use dda_settings, only : settings_t
+   use dda_settings, only : contact_tolerance, settings_t
    implicit none
    private
 
@@ -30,6 +30,8 @@ module dda_contacts
       type(outline_t) :: outline  !! How the corners follow one another
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), allocatable :: law(:, :)
+      !> Blocks lie together within this share of the smaller one's size
+      real(wp) :: tolerance = contact_tolerance
       type(edge_pairs_t) :: near  !! Where to look; joints do not depend on it
       !> Blocks that are not there, so that nothing meets them; unallocated if all are: (n_block)
       logical, allocatable :: absent(:)

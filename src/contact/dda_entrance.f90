@@ -28,6 +28,9 @@ module dda_entrance
       real(wp), allocatable :: ahead(:, :)
       !> Whether nothing has touched before
       logical :: beginning = .false.
+      !> At the beginning corners nearer to the end of an edge than this share of the reach have met
+      !> it
+      real(wp) :: ends = 1.0_wp
       !> Keys of the contacts that were closed, rising: (n_closed)
       integer(int64), allocatable :: closed(:)
    end type neighbourhood_t
@@ -176,7 +179,7 @@ contains
       view = view_corner(near%outline, near%vertex, corner, edge, reach)
       if (.not. view%faces) return
       ! in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
-      zone = merge(reach, meeting_zone(near, corner, edge), near%beginning)
+      zone = merge(near%ends*reach, meeting_zone(near, corner, edge), near%beginning)
       if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
       if (.not. is_convex(near%outline, near%vertex, near%outline%next(edge))) zone(2) = -zone(2)
       if (view%way < zone(1) .or. view%way > view%length - zone(2)) return

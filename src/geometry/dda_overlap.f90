@@ -14,7 +14,7 @@ contains
 
    !> Whether two polygons overlap by more than a tolerance
    pure subroutine find_overlap(first, second, tolerance, overlaps, inside, point, first_tree, &
-      & second_tree)
+      & second_tree, depth)
       real(wp), intent(in) :: first(:, :)   !! Corners of the first, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: second(:, :)  !! Corners of the second, counter-clockwise: (2, m) [m]
       real(wp), intent(in) :: tolerance     !! The tolerance [m]
@@ -26,11 +26,14 @@ contains
       type(box_tree_t), intent(in), optional :: first_tree
       !> Edges of the second, where they are many
       type(box_tree_t), intent(in), optional :: second_tree
+      !> How deep they overlap where they do: the tolerance that would take them [m]
+      real(wp), intent(out), optional :: depth
       real(wp) :: box(2, 2, 2), common(2, 2), deepest(2), place(2, 2)
 
       inside = 0
       overlaps = .false.
       point = first(:, 1)
+      if (present(depth)) depth = 0.0_wp
       box(:, :, 1) = box_of(first, first_tree)
       box(:, :, 2) = box_of(second, second_tree)
       common(:, 1) = maxval(box(:, 1, :), dim=2)
@@ -50,6 +53,7 @@ contains
       if (holds_all(second, first, box(:, :, 1), common, tolerance, second_tree)) inside = 1
       if (holds_all(first, second, box(:, :, 2), common, tolerance, first_tree)) inside = 2
       overlaps = any(deepest > tolerance) .or. inside > 0
+      if (present(depth)) depth = maxval(deepest)
    end subroutine find_overlap
 
    !> Box around a polygon

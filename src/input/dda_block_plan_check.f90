@@ -3,9 +3,12 @@
 submodule (dda_read_blocks) dda_block_plan_check
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_box_tree, only : find_boxes
+   use dda_deck_keys, only : deck_key
+   use dda_key_names, only : scene_contact_tolerance
    use dda_overlap, only : find_overlap
    use dda_polygon, only : find_crossing
    use dda_sort, only : rising_order
+   use dda_text, only : place_text, raised_text, short_text
    use dda_vector, only : area_moments, area_moments_t
    use dda_error, only : add_warning
    implicit none
@@ -15,8 +18,8 @@ submodule (dda_read_blocks) dda_block_plan_check
    !> A block thinner than this share of its extent is none
    real(wp), parameter :: too_thin = 1.0e-8_wp
 
-   !> Blocks may overlap by this share of the smaller one's size, for coordinates are rounded
-   real(wp), parameter :: rounded = 1.0e-4_wp
+   !> Blocks may overlap by this multiple of the contact tolerance, for corners of both are rounded
+   real(wp), parameter :: both = 2.0_wp
    !> Corners rounded to this share of their block's extent are doubtful
    real(wp), parameter :: few_digits = 1.0e-9_wp
    !> Blocks farther from zero than this multiple of their extent get an origin of their own
@@ -31,7 +34,6 @@ contains
       real(wp) :: extent, point(2), perimeter
       character(len=:), allocatable :: name
       integer :: edge(2)
-      character(len=60) :: where_to
 
       name = "block "//to_text(reading%n_block + 1)
       associate (corner => reading%entry%row(:2, :reading%entry%n_row), &
@@ -47,9 +49,8 @@ contains
       if (allocated(error)) return
       call find_crossing(vertex, edge, point)
       if (edge(1) > 0) then
-         write (where_to, "('(', es14.7, ', ', es14.7, ')')") point
          call fatal_error(error, name//" is no simple polygon: its edges " &
-            & //to_text(edge(1))//" and "//to_text(edge(2))//" meet at "//trim(where_to))
+            & //to_text(edge(1))//" and "//to_text(edge(2))//" meet at "//place_text(point))
          return
       end if
       moments = area_moments(vertex)
@@ -174,7 +175,7 @@ contains
 
    !> Whether no two blocks overlap
    module procedure check_overlaps
-      real(wp) :: size_of(size(plan%fixed)), point(2)
+      real(wp) :: size_of(size(plan%fixed)), depth, point(2), smaller
       type(area_moments_t) :: moments
       integer, allocatable :: near(:)
       logical :: overlaps
@@ -193,12 +194,13 @@ contains
             do k = 1, n_near
                j = near(k)
                if (j == i .or. j < i .and. .not. plan%fixed(j)) cycle
+               smaller = min(size_of(i), size_of(j))
                call find_overlap(vertex, &
                   & plan%vertex(:, plan%first_vertex(j):plan%first_vertex(j + 1) - 1), &
-                  & rounded*min(size_of(i), size_of(j)), overlaps, inside, point, &
-                  & site%edges(site%edges_of(i)), site%edges(site%edges_of(j)))
+                  & both*plan%tolerance*smaller, overlaps, inside, point, &
+                  & site%edges(site%edges_of(i)), site%edges(site%edges_of(j)), depth)
                if (.not. overlaps) cycle
-               call refuse_overlap(plan, [i, j], inside, point, error)
+               call refuse_overlap(plan, [i, j], inside, point, depth, depth/smaller, error)
                return
             end do
          end associate
@@ -225,24 +227,30 @@ contains
       end do
    end subroutine check_digits
 
-   !> Say which blocks overlap and where
-   pure subroutine refuse_overlap(plan, block, inside, point, error)
+   !> Say which blocks overlap, where, by how much, and which contact tolerance would take them
+   pure subroutine refuse_overlap(plan, block, inside, point, depth, share, error)
       type(block_plan_t), intent(in) :: plan
       integer, intent(in) :: block(2)  !! The two blocks
       !> Which of them lies wholly inside the other: 1, 2 or 0 for none
       integer, intent(in) :: inside
       real(wp), intent(in) :: point(2)  !! A point that both hold: (2) [m]
+      real(wp), intent(in) :: depth     !! How deep they overlap [m]
+      real(wp), intent(in) :: share     !! The same over the size of the smaller block
       type(error_t), allocatable, intent(out) :: error
-      character(len=60) :: where_to
+      character(len=:), allocatable :: advice
+      real(wp) :: largest
 
-      write (where_to, "('(', es14.7, ', ', es14.7, ')')") point + plan%origin
+      largest = maxval(deck_key(scene_contact_tolerance)%within)
+      advice = "; correct the corners"
+      if (share <= largest) advice = advice//" or set scene%contact_tolerance = " &
+         & //raised_text(share)
       if (inside > 0) then
          call fatal_error(error, "block "//to_text(block(inside))//" lies inside block " &
             & //to_text(block(3 - inside)), line=plan%line(block(inside)))
       else
          call fatal_error(error, "blocks "//to_text(minval(block))//" and " &
-            & //to_text(maxval(block))//" overlap near "//trim(where_to), &
-            & line=maxval(plan%line(block)))
+            & //to_text(maxval(block))//" overlap by "//short_text(depth)//" m near " &
+            & //place_text(point + plan%origin)//advice, line=maxval(plan%line(block)))
       end if
    end subroutine refuse_overlap
 

@@ -41,7 +41,12 @@ module dda_deck_keys
             meaning="File of lines or of blocks, beside the deck unless it begins with a slash."), &
       key_t("scene", "analysis", kind=key_kind%text, without="the keys of this deck", &
             varies=.false., &
-            meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
+            meaning="File of materials and loads for kind = 'lines'; keys of the deck take "// &
+            "precedence."), &
+      key_t("scene", "contact_tolerance", default="1e-4", within=[1.0e-12_wp, 1.0e-2_wp], &
+            varies=.false., &
+            meaning="Edges of blocks nearer than this share of the smaller block's size form a "// &
+            "joint.")]
 
    !> Keys of &material
    type(key_t), parameter :: material_keys(*) = [ &

@@ -5,7 +5,8 @@ module dda_key_names
 
    !> Keys, in the order of the registry
    enum, bind(c)
-      enumerator :: scene_title = 1, scene_kind, scene_geometry, scene_analysis
+      enumerator :: scene_title = 1, scene_kind, scene_geometry, scene_analysis, &
+         & scene_contact_tolerance
       enumerator :: arch_radius, arch_thickness_ratio, arch_half_angle_deg, arch_voussoirs, &
          & arch_joints_deg, arch_facet_deg, arch_springing, arch_abutment_size, &
          & arch_abutment_overhang, arch_shape, arch_span, arch_rise, arch_right_rise, &

@@ -99,13 +99,15 @@ module dda_read_blocks
 contains
 
    !> Blocks from the text of a file
-   subroutine parse_blocks(text, file, plan, warnings, error, watch)
+   subroutine parse_blocks(text, file, plan, warnings, error, watch, tolerance)
       character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
       character(len=*), intent(in) :: file  !! Name that errors will show
       type(block_plan_t), intent(out) :: plan
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       class(watch_t), intent(inout), optional :: watch
+      !> Blocks lie together within this share of the smaller one's size
+      real(wp), intent(in), optional :: tolerance
       type(reading_t) :: reading
       type(site_t) :: site
       type(line_t) :: line
@@ -113,6 +115,7 @@ contains
 
       reading%file = file
       call new_plan(reading%plan)
+      if (present(tolerance)) reading%plan%tolerance = tolerance
       allocate (reading%later(0), reading%entry%row(3, 0))
       call split_line("", 0, reading%entry%head, error)
       start = 1

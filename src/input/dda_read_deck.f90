@@ -11,8 +11,8 @@ module dda_read_deck
    use dda_error, only : error_t
    use dda_key_entry, only : find_key, key_group_t, read_groups, read_value
    use dda_key_names, only : analysis_mode, analysis_restart, arch_group, output_blocks, &
-      & output_joints, output_proof, output_reactions, scene_geometry, scene_kind, search_group, &
-      & search_parameter, sweep_group
+      & output_joints, output_proof, output_reactions, scene_contact_tolerance, scene_geometry, &
+      & scene_kind, search_group, search_parameter, sweep_group
    use dda_key_value, only : deck_place_t
    use dda_read_blocks, only : parse_blocks
    use dda_text, only : to_text
@@ -94,7 +94,8 @@ contains
       call read_text_file(geometry, text, error)
       call name_key(deck, scene_geometry, error)
       if (allocated(error)) return
-      call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
+      call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch, &
+         & deck%value(scene_contact_tolerance)%number)
       call add_file_mark(text_mark(text), deck)
       if (allocated(deck%plan%record_marks)) call add_file_mark(deck%plan%record_marks, deck)
       if (.not. allocated(error)) call check_block_file(deck, error)

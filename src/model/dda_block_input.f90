@@ -2,6 +2,7 @@
 module dda_block_input
    use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
+   use dda_settings, only : contact_tolerance
    use dda_water, only : water_t
    implicit none
    private
@@ -39,6 +40,8 @@ module dda_block_input
       !> Where the origin of the plan is: not at zero where the blocks are far from it, so that
       !> coordinates keep their digits: (2) [m]
       real(wp) :: origin(2) = 0.0_wp
+      !> Blocks lie together within this share of the smaller one's size
+      real(wp) :: tolerance = contact_tolerance
       !> Blocks that cannot move: (n_block)
       logical, allocatable :: fixed(:)
       !> Number of each block's material: (n_block)

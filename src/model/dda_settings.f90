@@ -6,7 +6,7 @@ module dda_settings
    private
 
    public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
-   public :: factor_of, full_push, verdict
+   public :: contact_tolerance, factor_of, full_push, verdict
 
    !> How a sliding joint moves
    type :: flow_rule_enum
@@ -30,6 +30,10 @@ module dda_settings
 
    !> Names of the verdicts
    type(verdict_enum), parameter :: verdict = verdict_enum()
+
+   !> Blocks lie together within this share of the smaller one's size, for corners of drawings are
+   !> rounded
+   real(wp), parameter :: contact_tolerance = 1.0e-4_wp
 
    !> Settings of an analysis; never changed while it runs
    type :: settings_t

@@ -248,8 +248,10 @@ contains
             system%bar%force = plan%boundary%bar%prestress
          end if
          scene%contacts%searched = .true.
-         scene%contacts%search = new_joint_search(system, law)
-         call search_contacts(system, scene%contacts)
+         scene%contacts%search = new_joint_search(system, law, plan%tolerance)
+         ! in time gaps are no more than they are drawn, and close as blocks move
+         call search_contacts(system, scene%contacts, closes_gaps=.not. &
+            & (scene%settings%dynamic .and. scene%settings%current))
          ! a run that moves blocks makes it again
          scene%contacts%search%outline = outline_t()
       end associate

@@ -121,7 +121,7 @@ def test_blocks_of_many_corners_fit_and_touch(tmp_path: Path) -> None:
     x, y = wave[peak].split()
     done = check(tmp_path, lower.replace(wave[peak], f"{x} {float(y) + 0.1:.6f}\n") + upper, groups)
     assert done.returncode == 2
-    assert f"many.blocks:{n + 5}: error: blocks 1 and 2 overlap near ( {float(x):.7E}" in done.stderr
+    assert f"many.blocks:{n + 5}: error: blocks 1 and 2 overlap by 0.1 m near ({float(x):.6g}, " in done.stderr
 
 
 def test_many_laws_and_materials_are_read(tmp_path: Path) -> None:

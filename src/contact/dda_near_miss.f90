@@ -1,0 +1,182 @@
+!> Joints of blocks as they are drawn, and near misses: edges that almost lie together
+!>
+!> Corners of drawings are rounded. Edges within the contact tolerance form a joint. A gap that is
+!> little wider is closed by displacements that are small beside the blocks: static runs join such
+!> blocks, too, and the user is warned.
+module dda_near_miss
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_block_system, only : block_system_t
+   use dda_contact_search, only : touching_joints
+   use dda_contact_types, only : joint_place_t, joint_t, place_joint, same_joint
+   use dda_contacts, only : joint_search_t
+   use dda_kinds, only : wp
+   use dda_sort, only : place_in, rising_order
+   implicit none
+   private
+
+   public :: near_miss_t, drawn_joints, find_near_misses
+
+   !> Two blocks that almost touch
+   type :: near_miss_t
+      type(joint_t) :: joint            !! The joint that they would have
+      real(wp) :: gap = 0.0_wp          !! Its widest gap, negative where the blocks overlap [m]
+      real(wp) :: place(2) = 0.0_wp     !! The corner there: (2) [m]
+      real(wp) :: allowed = 0.0_wp      !! Gap that the contact tolerance allows [m]
+      real(wp) :: tilt = 0.0_wp         !! Angle between its edges [rad]
+      logical :: is_joined = .false.    !! Whether static runs join the blocks
+   end type near_miss_t
+
+   !> Multiple of the contact tolerance up to which near misses are joined: corners of both edges
+   !> are rounded, in two directions, and decimal places come in tens
+   real(wp), parameter :: joined = 10.0_wp
+   !> Gaps above this share of the smaller block are meant. Within it blocks that move always look
+   !> for contacts
+   real(wp), parameter :: widest = 1.0e-3_wp
+
+contains
+
+   !> Joints of blocks as they are drawn
+   pure subroutine drawn_joints(search, system, closes_gaps, joint)
+      type(joint_search_t), intent(in) :: search
+      type(block_system_t), intent(in) :: system
+      !> Whether near misses are joined
+      logical, intent(in) :: closes_gaps
+      !> The joints, in the order of their blocks: (n_joint)
+      type(joint_t), allocatable, intent(out) :: joint(:)
+      type(near_miss_t), allocatable :: miss(:)
+      type(joint_t), allocatable :: whole(:)
+      integer(int64), allocatable :: key(:)
+      logical, allocatable :: kept(:)
+      integer :: i, j
+
+      call touching_joints(search, system, search%tolerance, joint)
+      if (.not. closes_gaps) return
+      call add_misses(search, system, joint, miss)
+      miss = pack(miss, miss%is_joined)
+      if (size(miss) == 0) return
+      ! a corner that touches is part of the joint of its edge
+      allocate (kept(size(joint)), source=.true.)
+      do i = 1, size(miss)
+         do j = 1, size(joint)
+            if (joint(j)%n_contact == 1 .and. miss(i)%joint%n_contact == 2) &
+               & kept(j) = kept(j) .and. .not. holds(miss(i)%joint, joint(j))
+         end do
+      end do
+      whole = [pack(joint, kept), miss%joint]
+      key = pair_key(whole, size(system%area))
+      joint = whole(rising_order(key))
+   end subroutine drawn_joints
+
+   !> Blocks that almost touch
+   pure subroutine find_near_misses(search, system, miss)
+      type(joint_search_t), intent(in) :: search
+      type(block_system_t), intent(in) :: system
+      !> The near misses, in the order of their blocks: (n)
+      type(near_miss_t), allocatable, intent(out) :: miss(:)
+      type(joint_t), allocatable :: joint(:)
+
+      call touching_joints(search, system, search%tolerance, joint)
+      call add_misses(search, system, joint, miss)
+   end subroutine find_near_misses
+
+   !> Near misses beside joints: pairs of edges that have none, and the nearest corner of blocks
+   !> that have none at all
+   pure subroutine add_misses(search, system, joint, miss)
+      type(joint_search_t), intent(in) :: search
+      type(block_system_t), intent(in) :: system
+      type(joint_t), intent(in) :: joint(:)  !! The joints: (n_joint)
+      type(near_miss_t), allocatable, intent(out) :: miss(:)
+      type(joint_t), allocatable :: wide(:)
+      type(near_miss_t), allocatable :: list(:)
+      type(near_miss_t) :: new
+      real(wp), allocatable :: size_of(:)
+      integer(int64) :: key(size(joint))
+      integer(int64), allocatable :: wide_key(:)
+      integer :: i, k, n
+
+      allocate (miss(0))
+      if (search%tolerance >= widest) return
+      call touching_joints(search, system, widest, wide, size_of)
+      key = pair_key(joint, size(system%area))
+      wide_key = pair_key(wide, size(system%area))
+      allocate (list(size(wide)))
+      n = 0
+      do i = 1, size(wide)
+         k = place_in(key, wide_key(i))
+         if (has_joint(joint, key, k, wide_key(i), wide(i))) cycle
+         new = measured(system, wide(i), size_of(i), search%tolerance)
+         if (wide(i)%n_contact == 2) then
+            if (.not. is_misfit(new, size_of(i))) cycle
+         else if (n > 0) then
+            ! of corners the nearest, and none beside edges
+            if (all(list(n)%joint%block == wide(i)%block)) then
+               if (list(n)%joint%n_contact == 1 .and. abs(new%gap) < abs(list(n)%gap)) list(n) = new
+               cycle
+            end if
+         end if
+         n = n + 1
+         list(n) = new
+      end do
+      miss = list(:n)
+   end subroutine add_misses
+
+   !> Whether blocks have a joint: this one of two edges, or for a corner any
+   pure logical function has_joint(joint, key, first, wanted, other)
+      type(joint_t), intent(in) :: joint(:)
+      integer(int64), intent(in) :: key(:)  !! Keys of their blocks, rising: (n_joint)
+      integer, intent(in) :: first          !! Where the joints of these blocks begin
+      integer(int64), intent(in) :: wanted  !! Key of the blocks
+      type(joint_t), intent(in) :: other
+      integer :: j
+
+      has_joint = .false.
+      do j = first, size(joint)
+         if (key(j) /= wanted) return
+         has_joint = other%n_contact == 1 .or. same_joint(joint(j), other)
+         if (has_joint) return
+      end do
+   end function has_joint
+
+   !> Measure a near miss
+   pure type(near_miss_t) function measured(system, joint, size_of, tolerance) result(miss)
+      type(block_system_t), intent(in) :: system
+      type(joint_t), intent(in) :: joint
+      real(wp), intent(in) :: size_of    !! Size of the smaller block [m]
+      real(wp), intent(in) :: tolerance  !! The contact tolerance
+      type(joint_place_t) :: place
+      real(wp) :: gap(3)
+      integer :: k
+
+      call place_joint(system%vertex, joint, place, gap)
+      k = maxloc(abs(gap(:joint%n_contact)), dim=1)
+      miss = near_miss_t(joint, gap(k), place%point(:, k), tolerance*size_of)
+      if (joint%n_contact == 2) miss%tilt = abs(gap(1) - gap(2))/joint%length
+      miss%is_joined = abs(miss%gap) <= max(tolerance, min(joined*tolerance, widest))*size_of
+   end function measured
+
+   !> Whether two edges are meant to lie together: they overlap by more than a corner, and any angle
+   !> between them is that of misplaced corners and not of a round or tapered block
+   pure logical function is_misfit(miss, size_of)
+      type(near_miss_t), intent(in) :: miss
+      real(wp), intent(in) :: size_of
+
+      is_misfit = miss%joint%length > widest*size_of .and. miss%tilt <= widest
+   end function is_misfit
+
+   !> Whether a joint of edges has the contact of a corner
+   pure logical function holds(edges, corner)
+      type(joint_t), intent(in) :: edges   !! The joint of edges
+      type(joint_t), intent(in) :: corner  !! The joint of a corner
+
+      holds = any(edges%contact%vertex == corner%contact(1)%vertex &
+         & .and. edges%contact%edge == corner%contact(1)%edge)
+   end function holds
+
+   !> Number that rises with the blocks of a joint
+   elemental integer(int64) function pair_key(joint, n_block)
+      type(joint_t), intent(in) :: joint
+      integer, intent(in) :: n_block  !! Number of all blocks
+
+      pair_key = int(joint%block(1), int64)*(n_block + 1) + joint%block(2)
+   end function pair_key
+end module dda_near_miss
