@@ -133,9 +133,12 @@ contains
       integer :: group(size(outline%block))
       integer(int64), allocatable :: key(:)
       integer, allocatable :: found(:, :)
+      integer :: i
 
       group = merge(outline%block, 0, equation(outline%block) > 0)
       call box_pairs(low, high, group, found)
+      if (.not. all(outline%turns)) found = found(:, pack([(i, i=1, size(found, 2))], &
+         & outline%turns(found(1, :)) .and. outline%turns(found(2, :))))
       associate (block => outline%block, n => size(equation) + 1)
          allocate (key(size(found, 2)))
          key = int(block(found(1, :)), int64)*n + int(block(found(2, :)), int64)
@@ -299,6 +302,7 @@ contains
          end do
          far = sum(reach(block))
          if (present(beside)) far = least_reach(reach, beside, block)
+         near%level = search%tolerance*sqrt(minval(system%area(block)))
          if (allocated(near%ahead) .and. all(near%outline%convex(block))) then
             call add_parted_joint(near, pair(:, first:last), far, list)
          else

@@ -26,6 +26,9 @@ module dda_entrance
       real(wp), allocatable :: travel(:, :)
       !> Where the corners would be then, where lines part convex blocks: (2, n_vertex) [m]
       real(wp), allocatable :: ahead(:, :)
+      !> Depth within which two blocks lie together: what goes in no deeper has not crossed a line
+      !> [m]
+      real(wp) :: level = 0.0_wp
       !> Whether nothing has touched before
       logical :: beginning = .false.
       !> At the beginning corners nearer to the end of an edge than this share of the reach have met

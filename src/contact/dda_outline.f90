@@ -1,4 +1,5 @@
-!> Corners and edges of all blocks by one number each: edge i runs from corner i to the next corner
+!> Corners and edges of all blocks by one number each: edge i runs from corner i to the next corner.
+!> Vertices on a straight side are no corners: nothing meets them
 module dda_outline
    use dda_block_system, only : block_system_t
    use dda_kinds, only : wp
@@ -11,6 +12,7 @@ module dda_outline
    !> How corners follow one another: (n_vertex) each
    type :: outline_t
       integer, allocatable :: block(:)     !! Block that owns the corner
+      logical, allocatable :: turns(:)     !! Whether the outline turns there; otherwise no corner
       integer, allocatable :: next(:)      !! The next corner of the block, counter-clockwise
       integer, allocatable :: previous(:)  !! The corner before
       !> Unit vector along each edge where the corners are, once it is measured: (2, n_vertex)
@@ -32,7 +34,7 @@ module dda_outline
 
    !> Sine of the angle by which the sides of a corner may dip below the edge that it points to
    real(wp), parameter :: dip = 0.05_wp
-   !> A corner bent inwards by less than this sine counts as flat
+   !> A corner bent by less than this sine counts as flat
    real(wp), parameter :: flat = 1.0e-9_wp
 
 contains
@@ -43,7 +45,7 @@ contains
       integer :: b, first, last, n, v
 
       n = size(system%vertex, 2)
-      allocate (outline%block(n), outline%next(n), outline%previous(n))
+      allocate (outline%block(n), outline%next(n), outline%previous(n), outline%turns(n))
       allocate (outline%convex(size(system%first_vertex) - 1))
       do b = 1, size(system%first_vertex) - 1
          first = system%first_vertex(b)
@@ -53,12 +55,48 @@ contains
             outline%next(v) = merge(first, v + 1, v == last)
             outline%previous(v) = merge(last, v - 1, v == first)
          end do
+         outline%turns(first:last) = [(turns_at(outline, system%vertex, v), v=first, last)]
+         call skip_straight(first, last, outline)
          outline%convex(b) = .true.
          do v = first, last
             outline%convex(b) = outline%convex(b) .and. is_convex(outline, system%vertex, v)
          end do
       end do
    end function outline_of
+
+   !> Whether the outline of a block turns at a vertex
+   pure logical function turns_at(outline, vertex, v)
+      type(outline_t), intent(in) :: outline
+      real(wp), intent(in) :: vertex(:, :)  !! Vertices: (2, n_vertex) [m]
+      integer, intent(in) :: v              !! Number of the vertex
+      real(wp) :: before(2), after(2)
+
+      before = vertex(:, v) - vertex(:, outline%previous(v))
+      after = vertex(:, outline%next(v)) - vertex(:, v)
+      turns_at = abs(cross(before, after)) > flat*norm2(before)*norm2(after) &
+         & .or. dot_product(before, after) < 0.0_wp
+   end function turns_at
+
+   !> Let the edges of a block run from corner to corner, past vertices where it does not turn
+   pure subroutine skip_straight(first, last, outline)
+      integer, intent(in) :: first  !! First vertex of the block
+      integer, intent(in) :: last   !! Its last vertex
+      type(outline_t), intent(inout) :: outline
+      integer :: v
+
+      ! a round block may turn everywhere by less than is seen
+      if (count(outline%turns(first:last)) < 3) outline%turns(first:last) = .true.
+      do v = first, last
+         do while (.not. outline%turns(outline%next(v)))
+            outline%next(v) = outline%next(outline%next(v))
+         end do
+      end do
+      do v = last, first, -1
+         do while (.not. outline%turns(outline%previous(v)))
+            outline%previous(v) = outline%previous(outline%previous(v))
+         end do
+      end do
+   end subroutine skip_straight
 
    !> Measure all edges, which are asked for again and again
    pure subroutine measure_edges(vertex, outline)

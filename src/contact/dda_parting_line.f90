@@ -22,8 +22,6 @@ module dda_parting_line
    !> A line that has parted two blocks in touch goes on while no other does better by more than
    !> this share of the edge
    real(wp), parameter :: lasting = 1.0e-9_wp
-   !> A corner no deeper than this share of the edge has not crossed its line
-   real(wp), parameter :: slack = 1.0e-6_wp
 
 contains
 
@@ -118,7 +116,7 @@ contains
       integer, intent(in) :: edge   !! Number of the edge
       integer, intent(in) :: block  !! The other block
       real(wp), allocatable :: height(:)
-      real(wp) :: after, margin
+      real(wp) :: after
       integer :: next
 
       associate (from => near%first_vertex(block), to => near%first_vertex(block + 1) - 1)
@@ -126,18 +124,17 @@ contains
          line%edge = edge
          allocate (height(from:to))
          height(:) = heights(near%vertex, edge, next, from, to)
+         where (.not. near%outline%turns(from:to)) height = huge(1.0_wp)
          line%corner = from - 1 + minloc(height, dim=1)
          line%gap = minval(height)
          height(:) = heights(near%ahead, edge, next, from, to)
          after = minval(height)
       end associate
-      margin = slack*near%outline%length(edge)
-      line%time = sign(huge(1.0_wp), line%gap + margin)
-      if (line%gap - after > tiny(1.0_wp)) then
-         if (line%gap + margin < huge(1.0_wp)**0.5_wp*(line%gap - after)) &
-            & line%time = (line%gap + margin)/(line%gap - after)
-      end if
-      if (line%gap < -margin) line%time = -huge(1.0_wp)
+      associate (left => line%gap + near%level, way => line%gap - after)
+         line%time = sign(huge(1.0_wp), left)
+         if (left < 0.0_wp .or. .not. way > tiny(1.0_wp)) return
+         if (left < huge(1.0_wp)**0.5_wp*way) line%time = left/way
+      end associate
    end function line_of
 
    !> Edge at the nearest corner of a line that looks at it most squarely

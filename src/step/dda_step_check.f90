@@ -72,7 +72,7 @@ contains
 
    !> Check the separating axes of a settled step
    module procedure check_axes
-      real(wp) :: before, gap, matters, told
+      real(wp) :: before, gap, level, matters, told
       logical :: entered, held_off
       integer :: j
 
@@ -80,17 +80,19 @@ contains
       held_off = .false.
       associate (system => run%system, step => run%step)
          do j = 1, size(run%contacts%joint)
-            associate (block => run%contacts%joint(j)%block)
+            associate (block => run%contacts%joint(j)%block, n => run%contacts%joint(j)%n_contact)
                if (.not. all(run%contacts%search%outline%convex(block))) cycle
                matters = no_matter*sqrt(minval(system%area(block)))
                gap = block_gap(system%first_vertex, step%after%moved, block)
-               ! what forces have left at the contacts themselves is no fault of their line
-               told = minval(step%end_gap(:run%contacts%joint(j)%n_contact, j))
+               ! what forces have left at the contacts themselves is no fault of their line, nor is
+               ! the depth at which they are closed
+               told = minval(step%end_gap(:n, j))
+               level = minval(step%end_gap(:n, j) + run%contacts%joint(j)%contact(:n)%closed_at)
                if (gap > max(0.0_wp, told) + matters .and. .not. all(step%state%face(j)%open)) &
                   & held_off = .true.
                if (gap > -matters) cycle
                before = min(0.0_wp, block_gap(system%first_vertex, system%moved, block))
-               if (gap < before + min(0.0_wp, told) - matters) entered = .true.
+               if (gap < min(before + min(0.0_wp, told), level) - matters) entered = .true.
             end associate
          end do
          outcome%dt = step%dt
@@ -117,8 +119,8 @@ contains
       found = run%contacts
       call update_contacts(run%step, run%settings, found, breaks)
       call update_blocks(run%step, run%settings, after)
-      call renew_contacts(after, travel_of(after, run%settings, run%march), run%march%reach, &
-         & run%settings%penalty_ratio, run%settings%n_dof, found)
+      call renew_contacts(after, travel_of(after, run%settings, run%march, found), &
+         & run%march%reach, run%settings%penalty_ratio, run%settings%n_dof, found)
       if (depth(after, found) > max(deep, 1.1_wp*depth(run%system, run%contacts))) &
          & outcome = half_step(run)
    end function check_penetration

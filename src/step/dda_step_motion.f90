@@ -57,7 +57,7 @@ contains
          if (.not. run%settings%current) return
          call turn_masses(run%system, run%equations)
          if (.not. run%contacts%searched) return
-         step%travel = travel_of(run%system, run%settings, run%march)
+         step%travel = travel_of(run%system, run%settings, run%march, run%contacts)
          if (run%contacts%remember) step%kept = run%contacts
       end associate
       if (.not. in_time(run)) return

@@ -2,6 +2,7 @@
 module dda_step_reach
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
@@ -125,21 +126,26 @@ contains
    end function corner_motion
 
    !> How the corners are about to move: as their speed and the loads have it, or as they did in the
-   !> step before
-   pure function travel_of(system, settings, march) result(travel)
+   !> step before. What lies on others does not fall
+   pure function travel_of(system, settings, march, contacts) result(travel)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
-      real(wp) :: travel(2, size(system%vertex, 2))  !! The motion: (2, n_vertex) [m]
+      type(contacts_t), intent(in), optional :: contacts  !! The contacts of the step before
+      real(wp) :: travel(2, size(system%vertex, 2))       !! The motion: (2, n_vertex) [m]
       real(wp) :: motion(6, maxval(system%equation))
+      logical :: lies(size(system%area))
       integer :: b, e
 
+      lies = .false.
+      if (present(contacts)) lies = in_touch(contacts, size(lies))
       motion = 0.0_wp
       do b = 1, size(system%area)
          e = system%equation(b)
          if (e == 0) cycle
          if (settings%dynamic) then
             motion(:, e) = march%dt*system%velocity(:, b)
+            if (lies(b)) cycle
             motion(1:2, e) = motion(1:2, e) + load_direction(settings)*system%unit_weight(b) &
                & *march%dt**2/(2.0_wp*system%density(b))
          else if (allocated(march%last_motion)) then
@@ -148,6 +154,22 @@ contains
       end do
       travel = travel_by(system, motion)
    end function travel_of
+
+   !> Blocks with a closed contact
+   pure function in_touch(contacts, n_block) result(touch)
+      type(contacts_t), intent(in) :: contacts
+      integer, intent(in) :: n_block  !! Number of blocks
+      logical :: touch(n_block)       !! Whether each has one: (n_block)
+      integer :: j
+
+      touch = .false.
+      if (.not. allocated(contacts%face)) return
+      do j = 1, size(contacts%joint)
+         associate (joint => contacts%joint(j))
+            if (.not. all(contacts%face(j)%open(:joint%n_contact))) touch(joint%block) = .true.
+         end associate
+      end do
+   end function in_touch
 
    !> How a motion of the blocks moves their corners
    pure function travel_by(system, motion) result(travel)
