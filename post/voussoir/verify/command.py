@@ -221,7 +221,7 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         corners.setdefault(int(row["block"]), []).append([float(row["x"]), float(row["y"])])
         fixed[int(row["block"])] = row["state"] == "fixed"
     blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
-    joints = find_joints(blocks)
+    joints = find_joints(blocks, deck.number("scene%contact_tolerance"))
     source = Source()
     if deck.text("scene%kind") == "blocks":
         source = read_blocks(*_files_of(deck, places), deck)

@@ -15,6 +15,7 @@ from voussoir.verify.rational import sine_cosine
 DEFAULTS: dict[str, str] = {
     "scene%kind": "arch",
     "scene%geometry": "",
+    "scene%contact_tolerance": "1e-4",
     "arch%radius": "10",
     "arch%thickness_ratio": "0.15",
     "arch%half_angle_deg": "90",

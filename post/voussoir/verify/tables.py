@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify.contacts import WIDEST, Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import loads_on, sizes_on
 from voussoir.verify.proofs import Finding, Row, Scene, digits_of, largest_of, push
@@ -99,11 +99,13 @@ def _is_held(scene: Scene, number: int) -> bool:
 
 def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> Joint | None:
     """The joint with two ends."""
-    reach = TOUCH * scene.blocks[first - 1].size
-    for joint in joints:
-        if min(np.abs(joint.ends - ends).max(), np.abs(joint.ends[::-1] - ends).max()) <= reach:
-            return joint
-    return None
+    def apart(joint: Joint) -> float:
+        """Largest distance of an end."""
+        return float(min(np.abs(joint.ends - ends).max(), np.abs(joint.ends[::-1] - ends).max()))
+
+    nearest = min(joints, key=apart, default=None)
+    # ends are corners of the one or the other block, which near misses hold apart
+    return nearest if nearest and apart(nearest) <= WIDEST * scene.blocks[first - 1].size else None
 
 
 def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, finding: Finding) -> None:
