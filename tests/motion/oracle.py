@@ -82,6 +82,8 @@ class World:
     time: float = 0.0
     #: Times of impacts and the greatest speed of approach of each
     impacts: list[tuple[float, float]] = field(default_factory=list)
+    #: Whether a body has turned on a contact that stays: the motion is no free flight or uniform slide
+    has_rolled: bool = False
     #: States of the last contact forces, tried first
     last: dict[Contact, int] = field(default_factory=dict)
 
@@ -360,6 +362,8 @@ class World:
             spin, speed = float(np.abs(self.speed[:, 2]).max()), float(np.abs(self.speed[:, :2]).max())
             h = min(STEP, end - self.time, TURN / (spin + 1e-9), 0.2 * self.size / (speed + 1e-9))
             self.acceleration(contacts, self.place, self.speed, slips)
+            turning = {k for c in contacts for k in (c.one, c.other) if abs(self.speed[k, 2]) > 1e-6}
+            self.has_rolled = self.has_rolled or bool(turning)
             part, (self.place, self.speed) = self.until_event(contacts, slips, h)
             self.time += part
             self.project()
