@@ -266,3 +266,16 @@ def test_binary_drawings_are_read(tmp_path: Path) -> None:
     assert first[2] == second[2] == (1e-3, "the drawing") and len(first[0]) == 3
     for one, two in zip(first[0], second[0]):
         assert one.polygon.equals_exact(two.polygon, 1e-12)
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_options_go_together(tmp_path: Path, capsys) -> None:
+    stones = [polyline("fixed", box(-1000, -500, 3000, 500)), polyline("stones", box(0, 0, 999.8, 1000)),
+              polyline("stones", box(1000, 0, 1000, 1000)), line("axes", (0, 0), (1, 0))]
+    (tmp_path / "a.dxf").write_text(drawing(*stones))
+    words = ["import", str(tmp_path / "a.dxf"), "--out", str(tmp_path / "a.nml"), "--unit", "mm", "--snap", "0.0005",
+             "--plane", "xy", "--allow-dropped"]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "dropped: LINE on layer axes" in printed and "snapped: 2 points, by at most 0.0002 m" in printed
+    assert "3 blocks, 1 of them fixed; a unit is 0.001 m (given)" in printed

@@ -44,7 +44,9 @@ def snapped(polygons: list[Any], reach: float, notes: Notes) -> list[Any]:
             if start == end:
                 continue
             for share, point in on_curve(Line(start, end), corners, reach, reach):
-                onto.setdefault(point, start + share * (end - start))
+                target = start + share * (end - start)
+                if abs(target - point) > 1e-14 * (abs(start) + abs(end)):  # else it lies there but for rounding
+                    onto.setdefault(point, target)
     found = []
     for rings, before in zip(joined, given):
         moved = [[onto.get(point, point) for point in ring] for ring in rings]
