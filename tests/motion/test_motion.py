@@ -10,16 +10,11 @@ import run
 
 #: Families with wrong answers, and why; a cure removes its line
 LOST, APART = "restitution is lost in an impact within a solved step", "corners of one face meet one after the other"
-FLOOR = "the joint of two level blocks is an obstacle"
 WRONG = {
     "train": APART, "train_whole_steps": LOST, "train_nearly_smooth": APART, "train_rough": APART, "train_stops": APART,
     "elastic_row": APART, "spin_smooth": LOST, "spin_smooth_gravity": LOST, "spin_rough": LOST,
     "spin_rough_gravity": LOST, "tilted_block": LOST, "polygon_on_resting": LOST, "polygons_meet": LOST,
     "drop_on_resting": LOST, "reversing_slide": "a slide that reverses is of first order",
-    "slider_joints_smooth": FLOOR, "slider_joints_nearly_smooth": FLOOR, "slider_kinks_smooth": FLOOR,
-    "slider_rounded_smooth": FLOOR, "slider_rounded_nearly_smooth": FLOOR,
-    "slider_collinear_smooth": "blocks sink at collinear corners",
-    "slider_collinear_nearly_smooth": "blocks sink at collinear corners",
 }
 #: Families whose answers depend on the step or the unknowns
 STEPS = {"train": APART, "train_rough": APART, "spin_rough": LOST}
