@@ -69,7 +69,8 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
     place = {(float(x), float(y)): np.array([x, y]) for block in corners for x, y in block}
     # blocks that are not there in the last stage touch nothing
     there = [block for block in rounded if not source.changes or block.number in fixed]
-    return ExactScene(Scene(blocks, find_joints(there, float(deck.number("scene%contact_tolerance"))), source, deck), corners, place)
+    joints = find_joints(there, float(deck.number("scene%contact_tolerance")))
+    return ExactScene(Scene(blocks, joints, source, deck), corners, place)
 
 
 def _abutment(voussoir: np.ndarray, right: bool) -> np.ndarray:
