@@ -109,17 +109,16 @@ def rocking(pick: random.Random) -> Scene:
                  is_second_order=True)
 
 
-def added(pick: random.Random) -> Scene:
-    """Blocks that are added fall from rest from then on; others move before."""
+def added(pick: random.Random, is_alone: bool) -> Scene:
+    """A block that is added falls from rest from then on; another one, if there is one, falls before."""
     duration, start = pick.uniform(0.4, 0.8), pick.uniform(0.1, 0.35)
-    alone = pick.random() < 0.5
     shape, other = rectangle(0.0, 0.0, pick.uniform(0.3, 1.0), 0.9), rectangle(3.0, 0.0, 1.0, 0.7)
     text = block(rectangle(-50.0, -10.0, 100.0, 1.0), "fixed") + block(shape)
     checks = end_checks(0, shape, _fallen(shape, duration - start), (1.0, 5.0))
-    if not alone:
+    if not is_alone:
         text += block(other)
         checks += end_checks(1, other, _fallen(other, duration), (1.0, 5.0))
-    text += f"add block 2 at {start!r}\n" + measured(2, shape) + (measured(3, other) if not alone else "")
+    text += f"add block 2 at {start!r}\n" + measured(2, shape) + (measured(3, other) if not is_alone else "")
     return Scene(text, in_time(pick, duration, pick.choice([0.0, 0.5])), checks, joint(30.0), {"young": 1e12},
                  is_step_free=True)
 
@@ -193,7 +192,7 @@ def slide_over(pick: random.Random, friction: float, kind: str) -> Scene:
 
 FAMILIES = {
     "reversing_slide": reversing_slide, "steady_slide": steady_slide, "pendulum": pendulum, "rocking": rocking,
-    "added": added, "removed": removed,
+    "added": lambda pick: added(pick, False), "added_alone": lambda pick: added(pick, True), "removed": removed,
     **{f"slider_{kind}_{name}": slider(friction, kind) for kind in ("joints", "collinear", "kinks", "rounded")
        for name, friction in (("smooth", 0.0), ("nearly_smooth", 0.001), ("rough", 20.0))},
 }
