@@ -10,7 +10,7 @@ module dda_balance
    implicit none
    private
 
-   public :: free_acceleration, gyration, is_drowned, measure_balance
+   public :: free_acceleration, gyration, is_drowned, measure_balance, measure_way_to_rest
 
    !> A block that bears less than this share of the mean load, or of the mean mass, is light
    real(wp), parameter :: light = 1.0e-2_wp
@@ -115,6 +115,30 @@ contains
       end do
       call measure_strain(system, equations, around, step)
    end subroutine measure_balance
+
+   !> Forces that nothing balances at the end of a static step, and how far blocks would go until
+   !> these vanish if they went on to change with the motion as in this step
+   pure subroutine measure_way_to_rest(equations, step)
+      type(equations_t), intent(in) :: equations
+      type(step_context_t), intent(inout) :: step  !! The step; those of the step before in
+      real(wp) :: unbalanced(size(equations%felt, 1), size(equations%felt, 2)), finish, start
+      integer :: e
+
+      do e = 1, size(unbalanced, 2)
+         unbalanced(:, e) = matmul(equations%mass(:, :, e), step%state%motion(:, e)) &
+            & *(2.0_wp/step%dt**2)
+      end do
+      step%way_to_rest = 0.0_wp
+      if (allocated(step%unbalanced)) then
+         start = sum(step%unbalanced*step%state%motion)
+         finish = sum(unbalanced*step%state%motion)
+         if (start > 0.0_wp) step%way_to_rest = huge(start)
+         if (start > finish) step%way_to_rest = step%farthest*max(0.0_wp, finish/(start - finish))
+      end if
+      step%unbalanced = unbalanced
+      step%is_shorter = step%dt < step%last_dt
+      step%last_dt = step%dt
+   end subroutine measure_way_to_rest
 
    !> Share of a whole that may be nothing
    elemental real(wp) function share_of(part, whole)

@@ -14,7 +14,7 @@ module dda_forward
    use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : next_interval
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
-      & outcome_t
+      & outcome_t, points_to_rest
    implicit none
    private
 
@@ -149,8 +149,10 @@ contains
             if (settings%current .and. on_path) march%moved &
                & = largest_displacement(run%system, settings%current, run%rest%state%system)
          end if
-         if (settings%current .and. .not. settings%dynamic) march%has_fallen &
-            & = has_fallen(run%system, run%neighbours, settings%boundary%held)
+         if (.not. settings%current .or. settings%dynamic) return
+         march%has_fallen = has_fallen(run%system, run%neighbours, settings%boundary%held)
+         if (points_to_rest(run%step)) &
+            & march%expected_rest = max(march%expected_rest, march%moved + run%step%way_to_rest)
       end associate
    end subroutine measure_way
 

@@ -122,7 +122,9 @@ contains
          march%first_motion = 0.0_wp
          march%last_acceleration = march%free_acceleration
          march%has_fallen = .false.
+         march%expected_rest = 0.0_wp
          if (allocated(march%last_motion)) deallocate (march%last_motion)
+         if (allocated(run%step%unbalanced)) deallocate (run%step%unbalanced)
          call set_interval(run%settings, march)
       end associate
    end subroutine begin_stride

@@ -89,6 +89,15 @@ module dda_step_context
       real(wp) :: work = 0.0_wp     !! Work of the loads [J/m]
       real(wp) :: kinetic = 0.0_wp  !! Twice the kinetic energy that the work was turned into [J/m]
       real(wp) :: stored = 0.0_wp   !! Growth of the energy stored in blocks and springs [J/m]
+      !> Forces that nothing balances at its end, which its inertia bears: (n_dof, n_equation); not
+      !> allocated before the first step of a run, or of a stride of its path
+      real(wp), allocatable :: unbalanced(:, :)
+      real(wp) :: last_dt = 0.0_wp    !! Length of the step before [s]
+      !> Whether this one is shorter: stiff parts relax less in it, so their forces may grow
+      logical :: is_shorter = .false.
+      !> Farther motion, in the direction of this one, that would bring the blocks to rest; 0 where
+      !> nothing drove them at its beginning, huge where nothing slows them [m]
+      real(wp) :: way_to_rest = 0.0_wp
    end type step_context_t
 
    !> What is carried from step to step beside blocks and contacts
@@ -141,6 +150,12 @@ module dda_step_context
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
+      !> Size of all that can move: no elastic motion is as large [m]
+      real(wp) :: extent = 0.0_wp
+      !> Farthest rest that the forces of a step have pointed to since the clock went on, at least
+      !> the motion of the first step, where blocks move: the elastic motion of blocks that walls
+      !> hold, which the glued ones hide [m]
+      real(wp) :: expected_rest = 0.0_wp
       !> Acceleration that the loads would give to free blocks [m/s2]
       real(wp) :: free_acceleration = 0.0_wp
       !> Acceleration in the step before [m/s2]

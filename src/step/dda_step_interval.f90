@@ -33,7 +33,7 @@ module dda_step_interval
    !> next one does not fail twice; and where blocks move, less than the cut after rattling, so that
    !> this bears fruit
    real(wp), parameter :: calm_growth = 3.0_wp
-   !> Rattling below this share of the displacement is no matter
+   !> Rattling below this share of the displacement is no matter, nor within rounding
    real(wp), parameter :: rattle_share = 1.0e-4_wp
    !> By what a step that did not settle is cut
    real(wp), parameter :: cut = 0.3_wp
@@ -157,12 +157,33 @@ contains
          end do
          march%last_acceleration = march%free_acceleration
          march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
+         march%extent = extent_of_movable(system)
          if (run%settings%current) march%rounding = feigned_motion(system)
          march%allowed_motion = run%settings%max_displacement_ratio &
             & *sqrt(minval(system%area, mask=system%equation > 0))
          if (run%settings%dynamic) march%longest = dynamic_step(run%settings, march)
       end associate
    end subroutine measure_scales
+
+   !> Size of all blocks that can move: the diagonal of the box around them
+   pure function extent_of_movable(system) result(extent)
+      type(block_system_t), intent(in) :: system
+      real(wp) :: extent  !! The diagonal [m]
+      real(wp) :: low(2), high(2)
+      integer :: b
+
+      low = huge(low)
+      high = -huge(high)
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            low = min(low, minval(vertex, dim=2))
+            high = max(high, maxval(vertex, dim=2))
+         end associate
+      end do
+      extent = norm2(high - low)
+   end function extent_of_movable
 
    !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
    !> a block, and that moves its far end by the block's aspect ratio times as much; errors of many
@@ -287,7 +308,8 @@ contains
 
       alike = sum(march%last_motion*step%state%motion) &
          & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))
-      rattles = alike < rattling .and. step%farthest > rattle_share*march%displacement
+      rattles = alike < rattling &
+         & .and. step%farthest > max(march%rounding, rattle_share*march%displacement)
    end function rattles
 
    !> Largest motion of a point at the radius of gyration by the strain of its block

@@ -7,7 +7,7 @@
 !>
 !> Termination criteria of a run: stable, collapsed, or not known yet
 module dda_verdict
-   use dda_balance, only : measure_balance
+   use dda_balance, only : measure_balance, measure_way_to_rest
    use dda_bar_springs, only : bar_energies
    use dda_block_inertia, only : kinetic_energy
    use dda_block_system, only : block_system_t
@@ -17,11 +17,12 @@ module dda_verdict
    use dda_kinds, only : pi, wp
    use dda_settings, only : settings_t, verdict
    use dda_step_context, only : march_t, run_t, step_context_t
+   use dda_step_interval, only : longest_motion
    implicit none
    private
 
    public :: has_fallen, has_collapsed, still_moves_away, tests_collapse
-   public :: measure_step, judge_verdict, largest_displacement, outcome_t
+   public :: measure_step, judge_verdict, largest_displacement, outcome_t, points_to_rest
 
    !> A block that has turned by this angle has fallen [rad]
    real(wp), parameter :: turned = pi/4.0_wp
@@ -40,8 +41,11 @@ module dda_verdict
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion, and of
    !> the round-off of coordinates
    real(wp), parameter :: collapse_multiple = 100.0_wp
-   !> What has moved as far and loses more than half of its acceleration in a step may come to rest
-   real(wp), parameter :: slowing = 0.5_wp
+   !> And this multiple of the farthest rest that forces of a step pointed to. They do where they
+   !> lose so much in it that the way to rest is this multiple of its motion at most
+   real(wp), parameter :: beyond_rest = 10.0_wp
+   !> A step that moves by this share of the most that it may is a full one
+   real(wp), parameter :: full = 0.5_wp
    !> At rest the strains of every block are in balance except for this share of what strains it
    real(wp), parameter :: unstrained = 1.0e-11_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
@@ -209,6 +213,7 @@ contains
       integer :: b, e
 
       call measure_balance(run%system, run%contacts%springs, run%equations, run%step)
+      if (.not. run%settings%dynamic) call measure_way_to_rest(run%equations, run%step)
       associate (system => run%system, equations => run%equations, step => run%step, &
          & motion => run%step%state%motion)
          bar = bar_energies(equations%bars, motion)
@@ -234,17 +239,16 @@ contains
       type(march_t), intent(in) :: march  !! The march, with the acceleration of the step before
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
-      logical :: at_rest, falls, goes_on
-      real(wp) :: far, moved
+      logical :: at_rest, falls
 
-      far = far_away(march, settings)
-      moved = march%displacement
-      if (settings%current .and. .not. settings%collapse_displacement > 0.0_wp) moved = march%moved
-      ! blocks that slip far into a notch come to rest there
-      goes_on = settings%collapse_displacement > 0.0_wp &
-         & .or. step%acceleration > slowing*march%last_acceleration
-      falls = proves_fall(march, step, settings)
-      if (far > 0.0_wp) falls = moved > far .and. goes_on
+      if (settings%collapse_displacement > 0.0_wp) then
+         falls = march%displacement > settings%collapse_displacement
+      else if (settings%current) then
+         falls = march%moved > far_away(march, settings) .and. step%way_to_rest > march%extent &
+            & .and. relaxes_enough(march, step)
+      else
+         falls = proves_fall(march, step, settings)
+      end if
       at_rest = is_at_rest(march, step, settings)
       judge_verdict = verdict%undecided
       if (march%has_fallen .and. (at_rest .or. .not. settings%collapse_displacement > 0.0_wp)) then
@@ -256,18 +260,34 @@ contains
       end if
    end function judge_verdict
 
-   !> Displacement that means collapse; 0 where none does [m]
+   !> Displacement that may prove a fall where blocks move [m]
    pure real(wp) function far_away(march, settings)
       type(march_t), intent(in) :: march
       type(settings_t), intent(in) :: settings
 
-      far_away = settings%collapse_displacement
-      if (.not. settings%current .or. far_away > 0.0_wp) return
-      far_away = collapse_multiple*max(march%elastic_motion, march%rounding)
+      far_away = max(collapse_multiple*max(march%elastic_motion, march%rounding), &
+         & beyond_rest*march%expected_rest)
       ! on a path blocks may leap to another rest
       if (march%begun > 0) &
          & far_away = max(far_away, march%allowed_motion/settings%max_displacement_ratio)
    end function far_away
+
+   !> Whether a step is no shorter than the one before, so that its forces do not grow because stiff
+   !> parts relax less in it; or shorter only because it goes as far as a step may
+   pure logical function relaxes_enough(march, step)
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+
+      relaxes_enough = .not. step%is_shorter .or. step%farthest >= full*longest_motion(march)
+   end function relaxes_enough
+
+   !> Whether the forces of a step tell where blocks would come to rest: they lose a good part in
+   !> it, or have turned
+   pure logical function points_to_rest(step)
+      type(step_context_t), intent(in) :: step
+
+      points_to_rest = step%way_to_rest <= beyond_rest*step%farthest
+   end function points_to_rest
 
    !> Whether the forces of a step balance all loads. Where blocks move, a step that comes to rest
    !> has only proven the shape it started from
