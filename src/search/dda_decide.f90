@@ -46,9 +46,10 @@ contains
          ! what slides as it opens wears another way, so that its fall proves nothing
          if (.not. any(weakens(contacts%law(contacts%joint%law)))) then
             call run_under(flow_rule%associated, settings, system, contacts, decision, album)
-            if (decision%outcome%verdict /= verdict%stable) return
+            if (decision%outcome%verdict == verdict%collapsed) return
             if (settings%verdict_flow == flow_rule%associated) return
-            if (.not. any(decision%contacts%face%slip /= 0)) return
+            if (decision%outcome%verdict == verdict%stable &
+               & .and. .not. any(decision%contacts%face%slip /= 0)) return
             if (present(album)) album = blank_album(album)
          end if
          call run_under(flow_rule%coulomb, settings, system, contacts, decision, album)
