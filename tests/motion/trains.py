@@ -126,7 +126,9 @@ def draw(pick: random.Random, options: Options, restitution: float) -> tuple[Tra
     """A train before its motion, its densities, its height, and its longest step."""
     count, height = pick.randint(*options.count), pick.uniform(0.3, 1.5)
     step = pick.choice([4e-3, 2e-3, 1e-3, 2.5e-3])
-    widths = [pick.uniform(0.3, 1.2) for _ in range(count)]
+    mu = math.tan(math.radians(options.friction_deg))
+    # a narrower block tips over as friction slows its foot
+    widths = [max(pick.uniform(0.3, 1.2), 1.1 * mu * height) for _ in range(count)]
     densities = [pick.choice([2400.0, pick.uniform(1000.0, 9000.0)]) for _ in range(count)]
     speeds = [pick.uniform(-2.0, 2.0) if pick.random() < 0.6 else 0.0 for _ in range(count)]
     speeds[0] = pick.uniform(0.5, 3.0)
@@ -141,7 +143,6 @@ def draw(pick: random.Random, options: Options, restitution: float) -> tuple[Tra
         lefts = [lefts[0] - gaps[-1] - 1.0, *lefts, lefts[-1] + widths[-1] + pick.uniform(0.05, 0.8)]
         widths, speeds, densities = [1.0, *widths, 1.0], [0.0, *speeds, 0.0], [0.0, *densities, 0.0]
         masses = [math.inf, *masses, math.inf]
-    mu = math.tan(math.radians(options.friction_deg))
     return Train(lefts, widths, masses, speeds, restitution, mu * G), densities, height, step
 
 
