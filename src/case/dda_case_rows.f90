@@ -57,11 +57,13 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
-      if (this%has_worst) row%worst_position = &
-         & some_number(this%family%deck%value(vehicle_position)%number)
-      if (this%has_worst .and. row%verdict /= "collapsed") remark = joined(remark, &
-         & "the least load factor is carried with the first axle at " &
-         & //short_text(row%worst_position%value)//" m")
+      if (this%has_worst) then
+         row%worst_position = some_number(this%family%deck%value(vehicle_position)%number)
+         row%worst_direction = merge("backward", "forward ", this%drives_backward)
+         remark = joined(remark, trim(merge("dead loads collapse", "least load factor  ", &
+            & row%verdict == "collapsed"))//" with the leftmost axle at " &
+            & //short_text(row%worst_position%value)//" m, driving "//trim(row%worst_direction))
+      end if
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)

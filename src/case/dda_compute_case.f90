@@ -34,6 +34,9 @@ module dda_compute_case
    type :: least_factor_t
       real(wp) :: factor = no_limit  !! The factor
       real(wp) :: place = 0.0_wp     !! The place [m]
+      logical :: backward = .false.  !! Whether the vehicle drives the other way there
+      !> Whether the loading path there has an end; else the factor is how far it came
+      logical :: decided = .true.
    end type least_factor_t
 
    interface

@@ -23,7 +23,7 @@ submodule (dda_compute_case) dda_worst_load
    !> Relative gap of a limit
    real(wp), parameter :: gap = 1.0e-9_wp
    !> A factor that is smaller by less than this share is none
-   real(wp), parameter :: smaller = 1.0e-5_wp
+   real(wp), parameter :: smaller = 1.0e-7_wp
    !> Loads that differ by less than this share of the largest are one
    real(wp), parameter :: same = 1.0e-7_wp
 
@@ -41,7 +41,8 @@ contains
       if (.not. stands) then
          call decide_load(graph, dead, decision)
          if (decision%state == load_state%falls) then
-            least = least_factor_t(0.0_wp, 0.5_wp*(arc(1)%from + arc(size(arc))%to))
+            least%factor = 0.0_wp
+            least%place = 0.5_wp*(arc(1)%from + arc(size(arc))%to)
             return
          end if
          chase%stands = decision%state == load_state%stands

@@ -11,10 +11,12 @@ submodule (dda_compute_case) dda_worst_position
    use dda_deck, only : deck_t, has_group, parameter_t, put_number
    use dda_deck_scene, only : deck_scene
    use dda_error, only : error_t
-   use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
-   use dda_key_names, only : fill_group, vehicle_position
+   use dda_fill_loads, only : fill_of, fill_t, live_side, live_total, press_side, side_changes
+   use dda_key_names, only : analysis_flow, fill_group, vehicle_axles, vehicle_both_directions, &
+      & vehicle_position, vehicle_spacings
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
+   use dda_load_coefficient, only : added_loads, can_follow, full_loads, knows_no_order, &
+      & with_coefficient
    use dda_scene_graph, only : has_limit_analysis, scene_graph
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
@@ -42,40 +44,171 @@ submodule (dda_compute_case) dda_worst_position
       integer :: side = 0                     !! Where the live load is on it, see live_side
    end type stretch_t
 
+   interface
+
+      !> Follow the loading paths of positions along the road
+      pure module subroutine follow_road(this, bridge, least)
+         !> The case, whose deck has the vehicle as it drives; where it stands changes
+         type(case_t), intent(inout) :: this
+         type(bridge_t), intent(in) :: bridge
+         type(least_factor_t), intent(inout) :: least
+      end subroutine follow_road
+
+      !> Follow the loading path of a position
+      pure module subroutine try_place(this, place, least, inverse)
+         type(case_t), intent(inout) :: this  !! Likewise
+         real(wp), intent(in) :: place        !! The position [m]
+         type(least_factor_t), intent(inout) :: least
+         !> Inverse of the factor of the first collapse; of a path without an end, of how far it
+         !> came
+         real(wp), intent(out), optional :: inverse
+      end subroutine try_place
+
+   end interface
+
 contains
 
    !> Put the vehicle where the least load factor is carried
    module procedure place_vehicle
       type(bridge_t) :: bridge
-      type(error_t), allocatable :: error
       type(least_factor_t) :: least
-      type(parameter_t) :: position
       type(scene_t) :: scene
+      integer :: ways
+
+      associate (deck => this%family%deck)
+         call deck_scene(deck, scene)
+         if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
+         call take_bridge(deck, scene, bridge)
+         ways = merge(2, 1, deck%value(vehicle_both_directions)%flag .and. .not. is_symmetric(deck))
+         call drive(this, bridge, ways, .false., least)
+         if (.not. least%factor > 0.0_wp) then
+            ! dead loads that fall do so under either rule; the associated one knows no order of
+            ! loads and would go on to live loads that prop them
+            deck%value(analysis_flow)%text = "coulomb"
+         else if (has_path(bridge)) then
+            call begin_paths(this, least)
+            ! where the least limit is not decided, nothing is
+            if (least%decided) call drive(this, bridge, ways, .true., least)
+         end if
+         ! what falls wherever the axles stand, and leans against nothing, has no worst position
+         this%has_worst = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
+         if (.not. this%has_worst) return
+         this%drives_backward = least%backward
+         if (least%backward) call turn_round(deck)
+         call put_vehicle(least%place, deck)
+      end associate
+   end procedure place_vehicle
+
+   !> Follow the loading path where the associated limit is least
+   pure subroutine begin_paths(this, least)
+      type(case_t), intent(inout) :: this
+      !> The least associated limit in; out, what ends the path there
+      type(least_factor_t), intent(inout) :: least
+      logical :: known
+
+      known = least%factor < no_limit
+      least%factor = no_limit
+      if (.not. known) return
+      if (least%backward) call turn_round(this%family%deck)
+      call try_place(this, least%place, least)
+      if (least%backward) call turn_round(this%family%deck)
+   end subroutine begin_paths
+
+   !> Drive the vehicle along the road in search of the least factor, one way or both
+   pure subroutine drive(this, bridge, ways, by_path, least)
+      type(case_t), intent(inout) :: this      !! Its deck has the vehicle as it drives
+      type(bridge_t), intent(inout) :: bridge  !! Likewise; both end as they were
+      integer, intent(in) :: ways              !! How many ways it drives, 1 or 2
+      logical, intent(in) :: by_path           !! By loading paths, else by associated limits
+      type(least_factor_t), intent(inout) :: least
+      real(wp) :: before
+      integer :: way
+
+      do way = 1, ways
+         before = least%factor
+         if (by_path) then
+            call follow_road(this, bridge, least)
+         else
+            call seek_along_road(bridge, least)
+         end if
+         if (least%factor < before) least%backward = way == 2
+         if (ways == 1) return
+         call turn_round(this%family%deck)
+         call seat_vehicle(this%family%deck, bridge)
+      end do
+   end subroutine drive
+
+   !> Whether the first collapse on a loading path may come before the associated limit
+   pure logical function has_path(bridge)
+      type(bridge_t), intent(in) :: bridge
+      type(joint_graph_t) :: graph
+
+      associate (scene => bridge%scene)
+         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+         has_path = can_follow(searched_load%factor, scene, 1.0_wp) &
+            & .and. .not. knows_no_order(scene%settings, graph)
+      end associate
+   end function has_path
+
+   !> Seek the least associated limit along the road
+   pure subroutine seek_along_road(bridge, least)
+      type(bridge_t), intent(in) :: bridge
+      type(least_factor_t), intent(inout) :: least
       type(stretch_t), allocatable :: stretch(:)
       integer :: first, last
 
-      call deck_scene(this%family%deck, scene)
-      if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
-      call take_bridge(this%family%deck, scene, bridge)
       call part_road(bridge, stretch)
       first = 1
       do while (first <= size(stretch) .and. least%factor > 0.0_wp)
-         last = first
-         do while (last < size(stretch))
-            if (stretch(last + 1)%side /= stretch(first)%side) exit
-            last = last + 1
-         end do
+         last = last_of_side(stretch, first)
          call seek_on_side(bridge, stretch(first:last), least)
          first = last + 1
       end do
-      ! what falls wherever the axles stand, and leans against nothing, has no worst position
-      this%has_worst = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
-      if (.not. this%has_worst) return
-      position%key = vehicle_position
-      associate (deck => this%family%deck)
-         call put_number(deck, position, least%place, deck%value(position%key)%place, error)
+   end subroutine seek_along_road
+
+   !> The last of the stretches from one on along which the bridge leans against the same fill
+   pure integer function last_of_side(stretch, first) result(last)
+      type(stretch_t), intent(in) :: stretch(:)  !! The stretches, from left to right: (n)
+      integer, intent(in) :: first               !! Number of the first
+
+      last = first
+      do while (last < size(stretch))
+         if (stretch(last + 1)%side /= stretch(first)%side) return
+         last = last + 1
+      end do
+   end function last_of_side
+
+   !> Whether the vehicle of a deck is its own mirror image
+   pure logical function is_symmetric(deck)
+      type(deck_t), intent(in) :: deck
+
+      associate (axle => deck%value(vehicle_axles)%numbers, &
+         & spacing => deck%value(vehicle_spacings)%numbers)
+         is_symmetric = .not. (any(abs(axle - axle(size(axle):1:-1)) > 0.0_wp) &
+            & .or. any(abs(spacing - spacing(size(spacing):1:-1)) > 0.0_wp))
       end associate
-   end procedure place_vehicle
+   end function is_symmetric
+
+   !> Turn the vehicle of a deck round
+   pure subroutine turn_round(deck)
+      type(deck_t), intent(inout) :: deck
+
+      associate (axle => deck%value(vehicle_axles)%numbers, &
+         & spacing => deck%value(vehicle_spacings)%numbers)
+         axle = axle(size(axle):1:-1)
+         spacing = spacing(size(spacing):1:-1)
+      end associate
+   end subroutine turn_round
+
+   !> Put the vehicle of a deck at a position
+   pure subroutine put_vehicle(place, deck)
+      real(wp), intent(in) :: place  !! The position [m]
+      type(deck_t), intent(inout) :: deck
+      type(error_t), allocatable :: error
+
+      call put_number(deck, parameter_t(key=vehicle_position), place, &
+         & deck%value(vehicle_position)%place, error)
+   end subroutine put_vehicle
 
    !> Whether there is fill that the bridge can lean against
    pure logical function leans(bridge)
@@ -104,10 +237,8 @@ contains
          call shape_assembly(deck, assembly, problem)
          allocate (bridge%fill)
          bridge%fill = fill_of(deck, assembly)
-         bridge%vehicle = vehicle_of(deck, bridge%fill)
-      else
-         bridge%vehicle = vehicle_of(deck)
       end if
+      call seat_vehicle(deck, bridge)
       ! the loads of the vehicle are the last
       axles = axle_loads(bridge%vehicle, bridge%road, scene%origin)
       associate (loaded => scene%settings%boundary%loaded)
@@ -117,6 +248,15 @@ contains
       bridge%scene%settings = with_coefficient(bridge%scene%settings, searched_load%factor, 1.0_wp)
       bridge%stands = stands_alone(bridge%scene)
    end subroutine take_bridge
+
+   !> Take the vehicle of a deck as it drives
+   pure subroutine seat_vehicle(deck, bridge)
+      type(deck_t), intent(in) :: deck
+      type(bridge_t), intent(inout) :: bridge
+
+      ! what is not allocated is not present
+      bridge%vehicle = vehicle_of(deck, bridge%fill)
+   end subroutine seat_vehicle
 
    !> Whether a bridge stands without live loads, and without leaning against fill, which could only
    !> help
@@ -140,49 +280,41 @@ contains
       type(bridge_t), intent(in) :: bridge
       !> The stretches, from left to right: (n)
       type(stretch_t), allocatable, intent(out) :: stretch(:)
-      real(wp), allocatable :: passage(:)
-      real(wp) :: at(4), turn
-      integer :: side(2), i, k, n
+      real(wp), allocatable :: cut(:), passage(:)
+      real(wp) :: from, gap, to
+      integer :: i, k
 
       allocate (passage, source=passages(bridge%vehicle, bridge%road, bridge%scene%origin))
-      allocate (stretch(2*size(passage)))
-      n = 0
+      gap = beside*bridge%road%size
+      allocate (stretch(0))
       do k = 1, size(passage) - 1
-         at = [passage(k), passage(k), passage(k + 1), passage(k + 1)] &
-            & + [1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]*beside*bridge%road%size
-         if (.not. at(4) > at(1)) cycle
-         side = [side_at(bridge, at(1)), side_at(bridge, at(4))]
-         if (side(1) == side(2)) then
-            stretch(n + 1) = stretch_t(at(1), at(4), side(1))
-            n = n + 1
-         else
-            turn = turning_point(bridge, at(1), at(4))
-            at(2:3) = turn + [-1.0_wp, 1.0_wp]*beside*bridge%road%size
-            do i = 1, 2
-               if (.not. at(2*i) > at(2*i - 1)) cycle
-               stretch(n + 1) = stretch_t(at(2*i - 1), at(2*i), side(i))
-               n = n + 1
-            end do
-         end if
+         if (.not. passage(k + 1) - passage(k) > 2.0_wp*gap) cycle
+         cut = [passage(k), turns(bridge, passage(k) + gap, passage(k + 1) - gap), passage(k + 1)]
+         do i = 1, size(cut) - 1
+            from = cut(i) + gap
+            to = cut(i + 1) - gap
+            if (to > from) stretch = [stretch, &
+               & stretch_t(from, to, side_at(bridge, 0.5_wp*(from + to)))]
+         end do
       end do
-      stretch = stretch(:n)
    end subroutine part_road
 
-   !> Position between two others at which the bridge begins to lean against other fill
-   pure real(wp) function turning_point(bridge, from, to) result(middle)
+   !> Positions between two others at which the bridge begins to lean against other fill
+   pure function turns(bridge, from, to) result(at)
       type(bridge_t), intent(in) :: bridge
-      real(wp), intent(in) :: from, to  !! The two positions [m]
-      real(wp) :: ends(2)
-      integer :: side
+      real(wp), intent(in) :: from, to   !! The two positions, the loads smooth between them [m]
+      real(wp), allocatable :: at(:)     !! Those between, rising: (n) [m]
+      real(wp) :: total(2, 3)
+      integer :: i
 
-      ends = [from, to]
-      side = side_at(bridge, from)
-      do
-         middle = 0.5_wp*sum(ends)
-         if (ends(2) - ends(1) <= 0.1_wp*beside*bridge%road%size) return
-         ends(merge(1, 2, side_at(bridge, middle) == side)) = middle
+      allocate (at(0))
+      if (.not. allocated(bridge%fill)) return
+      do i = 1, 3
+         total(:, i) = live_total(bridge%scene%settings%boundary%loaded) &
+            & + live_total(axles_at(bridge, from + 0.5_wp*real(i - 1, wp)*(to - from)))
       end do
-   end function turning_point
+      at = from + (to - from)*side_changes(bridge%fill, bridge%scene%origin, total)
+   end function turns
 
    !> Which fill the bridge leans against with the vehicle at a position
    pure integer function side_at(bridge, position) result(side)

@@ -126,7 +126,9 @@ module dda_deck_keys
       key_t("vehicle", "position", unit="m", without="must be given, or worst", &
             within=[-1.0e15_wp, 1.0e15_wp], meaning="Where the first axle is, along x."), &
       key_t("vehicle", "worst", kind=key_kind%flag, default=".false.", &
-            meaning="Whether the position of the least load factor is sought.")]
+            meaning="Whether the position of the least load factor is sought."), &
+      key_t("vehicle", "both_directions", kind=key_kind%flag, default=".true.", &
+            meaning="Whether worst tries both directions of travel.")]
 
    !> Keys of &ground
    type(key_t), parameter :: ground_keys(*) = [ &

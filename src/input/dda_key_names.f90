@@ -21,7 +21,7 @@ module dda_key_names
          & load_load_factor, load_live_horizontal, load_displacement_factor, load_water_rise
       enumerator :: live_x, live_y, live_fx, live_fy
       enumerator :: vehicle_axles, vehicle_spacings, vehicle_length, vehicle_position, &
-         & vehicle_worst
+         & vehicle_worst, vehicle_both_directions
       enumerator :: fill_height, fill_unit_weight, fill_friction_deg, fill_spread, &
          & fill_passive_coefficient, fill_passive_share, fill_passive_stiffness, &
          & fill_backing_height, fill_backing_unit_weight

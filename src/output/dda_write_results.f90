@@ -84,7 +84,8 @@ module dda_write_results
       type(number_t) :: thrust_min, thrust_max
       !> Time to which the histories of a static run were followed [s]
       type(number_t) :: path_time
-      type(number_t) :: worst_position      !! Where the first axle of a vehicle is worst [m]
+      type(number_t) :: worst_position      !! Where the leftmost axle of a vehicle is worst [m]
+      character(len=8) :: worst_direction = ""  !! forward, backward; blank without such a place
       logical :: tells_condition = .false.  !! Whether the table has a column of condition numbers
       type(number_t) :: condition           !! Estimated condition number of the last equations
    end type result_row_t
@@ -212,7 +213,7 @@ contains
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
          & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns," &
          & //"exact_low,exact_high,imbalance,law_violation,mechanism_power,safety_thickness," &
-         & //"thrust_min,thrust_max,path_time,worst_position"
+         & //"thrust_min,thrust_max,path_time,worst_position,worst_direction"
       if (tells_condition) line = line//",condition"
    end function results_header
 
@@ -233,7 +234,7 @@ contains
          & //to_text(row%seconds)//","//to_text(row%unknowns)//"," &
          & //number_fields([row%exact_low, row%exact_high, row%imbalance, row%law_violation, &
          & row%mechanism_power, row%safety_thickness, row%thrust_min, row%thrust_max, &
-         & row%path_time, row%worst_position])
+         & row%path_time, row%worst_position])//","//trim(row%worst_direction)
       if (row%tells_condition) line = line//","//number_fields([row%condition])
    end function results_line
 

@@ -13,10 +13,12 @@ module dda_fill_loads
    use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
+   use dda_sort, only : sorted_order
    implicit none
    private
 
-   public :: fill_t, add_fill_weight, fill_of, fill_yields, live_side, press_fill, press_side
+   public :: fill_t, add_fill_weight, fill_of, fill_yields, live_side, live_total, press_fill
+   public :: press_side, side_changes
 
    !> The fill of a case
    type :: fill_t
@@ -270,9 +272,8 @@ contains
       type(loaded_point_t), intent(in), optional :: more(:)  !! More of them: (m)
       real(wp) :: total(2), x
 
-      total = 0.0_wp
-      call add_live(loaded, total)
-      if (present(more)) call add_live(more, total)
+      total = live_total(loaded)
+      if (present(more)) total = total + live_total(more)
       side = 0
       if (.not. total(1) > 0.0_wp) return
       x = total(2)/total(1) + origin(1)
@@ -281,6 +282,48 @@ contains
          & abs(x - fill%crown_x(side)) <= at_crown*width_of(fill))
    end function live_side
 
+   !> Shares of a way at which the side of the live loads changes: where their resultant passes a
+   !> crown or is as near to one crown as to the next
+   pure function side_changes(fill, origin, total) result(share)
+      type(fill_t), intent(in) :: fill
+      real(wp), intent(in) :: origin(2)
+      !> Totals of the live loads at the beginning, half way and at the end, quadratic between:
+      !> (2, 3) [N/m, N]
+      real(wp), intent(in) :: total(2, 3)
+      real(wp), allocatable :: share(:)  !! Between 0 and 1, rising: (n)
+      real(wp), allocatable :: line(:)
+      real(wp) :: root(2)
+      integer :: i, j
+
+      associate (n => size(fill%crown_x))
+         line = [fill%crown_x, 0.5_wp*(fill%crown_x(2:) + fill%crown_x(:n - 1))] - origin(1)
+      end associate
+      allocate (share(0))
+      do i = 1, size(line)
+         root = quadratic_roots(total(2, :) - line(i)*total(1, :))
+         do j = 1, 2
+            if (root(j) > 0.0_wp .and. root(j) < 1.0_wp) share = [share, root(j)]
+         end do
+      end do
+      share = share(sorted_order(spread(0, 1, size(share)), share))
+   end function side_changes
+
+   !> Zeros of a parabola by its values at 0, 1/2 and 1; -1 in the place of those it does not have
+   pure function quadratic_roots(value) result(root)
+      real(wp), intent(in) :: value(3)  !! The values: (3)
+      real(wp) :: root(2)               !! The zeros: (2)
+      real(wp) :: bend, half_slope, part, square
+
+      root = -1.0_wp
+      bend = 2.0_wp*(value(1) - 2.0_wp*value(2) + value(3))
+      half_slope = 0.5_wp*(4.0_wp*value(2) - 3.0_wp*value(1) - value(3))
+      square = half_slope**2 - bend*value(1)
+      if (square < 0.0_wp) return
+      part = -(half_slope + sign(sqrt(square), half_slope))
+      if (abs(part) < huge(part)*abs(bend)) root(1) = part/bend
+      if (abs(value(1)) < huge(part)*abs(part)) root(2) = value(1)/part
+   end function quadratic_roots
+
    !> How wide the fill is [m]
    pure real(wp) function width_of(fill)
       type(fill_t), intent(in) :: fill
@@ -288,15 +331,16 @@ contains
       width_of = maxval(fill%chord%right(1)) - minval(fill%chord%left(1))
    end function width_of
 
-   !> Add the sizes of live loads, and their moments along x
-   pure subroutine add_live(loaded, total)
+   !> Sum of the sizes of live loads, and of their moments along x
+   pure function live_total(loaded) result(total)
       type(loaded_point_t), intent(in) :: loaded(:)
-      real(wp), intent(inout) :: total(2)  !! The sums: (2) [N/m, N]
+      real(wp) :: total(2)  !! The sums: (2) [N/m, N]
       integer :: i
 
+      total = 0.0_wp
       do i = 1, size(loaded)
          if (loaded(i)%live) total = total + norm2(loaded(i)%force%value(:, 1)) &
             & *[1.0_wp, loaded(i)%point(1)]
       end do
-   end subroutine add_live
+   end function live_total
 end module dda_fill_loads

@@ -22,6 +22,10 @@ from voussoir.results import Results, Table
 
 #: Positions of the first axle in the diagram
 POSITIONS = 41
+#: Share of the least factor by which that of a fixed position may be smaller
+SMALLER = 1e-6
+#: Columns of a row that tell its load factor
+_OF_FACTOR = ("verdict", "critical", "critical_low", "critical_high", "collapses_at", "exact_low", "exact_high")
 #: The file that a deck is computed from
 _COPY = re.compile(rf"\S*voussoir-[^/\s]+/[^:\s]+(?=:\d)|\bdeck\.nml(?=:\d)")
 #: What the diagram of positions shows, of arches and of arches in rings
@@ -98,9 +102,27 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
         text += f" It falls when the live loads are multiplied by {factor['critical']:.4g}."
     elif factor is not None and factor["verdict"] == "stable":
         text += " No multiple of the live loads brings it down."
+    elif factor is not None and factor["verdict"] == "collapsed" and not math.isnan(factor["worst_position"]):
+        text += f" Its dead loads alone collapse it with the vehicle at {factor['worst_position']:.4g} m."
     elif factor is not None:
         text += f" The search for the load factor is {factor['verdict']}."
-    return text, own["verdict"] != "stable"
+    return text, own["verdict"] != "stable" or factor is not None and factor["verdict"] == "collapsed"
+
+
+def least_of(factor: dict[str, Any] | None, cases: Table | None) -> dict[str, Any] | None:
+    """The row of the search for the load factor, or what a fixed position says against it."""
+    if factor is None or cases is None or math.isnan(factor["worst_position"]):
+        return factor
+    for row in cases.rows():
+        falls = row["verdict"] == "collapsed" or row["verdict"] == "found" and row["collapses_at"] == "low"
+        value = 0.0 if falls else row["critical"]
+        if not value < (1.0 - SMALLER) * {"stable": math.inf, "collapsed": 0.0}.get(
+                factor["verdict"], factor["critical"]):
+            continue
+        factor = {**factor, **{name: row[name] for name in _OF_FACTOR}, "worst_position": row["position"]}
+        if falls:
+            factor["verdict"] = "collapsed"
+    return factor
 
 
 def assess(text: str, deck: Path) -> str:
@@ -114,27 +136,28 @@ def assess(text: str, deck: Path) -> str:
     bare = without(text, "search")
     found, factor = load_search(bare)
     place = math.nan if factor is None else factor.get("worst_position", math.nan)
-    fixed = _at_position(bare, place)
-    own_run = run_deck(fixed)
+    fixed, way = _at_position(bare, place), _turned(found)
+    own_run = run_deck(fixed, **way)
     own = own_run.case(1)
     steps = [float(word) for word in own_run.settings("vehicle%spacings")]
     start = float(own_run.setting("vehicle%position") or "nan")
     placed = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))]
     safety = thickness_safety(own_run)
     own_run.cases["safety_thickness"][0] = safety[0]
-    if factor is not None:  # the title has the factor of the page
-        own_run.cases["critical"][0] = factor["critical"]
     free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
     height = own_run.setting("fill%height")
     surface = None if height is None else float(free[:, 1].max()) + float(height)
+    flow = {"analysis%flow": "associated"} if _slides(own_run) else {}
+    cases = _positions(fixed, free[:, 0], steps, place, {**way, **flow}) if placed else None
+    factor = least_of(factor, cases)
+    if factor is not None:  # the title has the factor of the page
+        own_run.cases["critical"][0] = factor["critical"]
     with house_style():
         scheme = draw_scheme(own_run, placed, surface)
         parts = [
             ("Drawing", figure_of(scheme, f"Blocks, supports (hatched), axles in place. {dimensions_of(own_run)}")),
             ("Safety", table_of(_numbers(own, factor, safety, force_unit(own_run)))),
         ]
-        flow = {"analysis%flow": "associated"} if _slides(own_run) else {}
-        cases = _positions(fixed, free[:, 0], steps, place, flow) if placed else None
         if cases is not None and "found" in cases["verdict"]:
             chart = draw_positions(own_run, cases, None if math.isnan(place) else place)
             parts.append(("Position of the vehicle", figure_of(chart, _POSITIONS[_slides(own_run)])))
@@ -152,6 +175,15 @@ def _at_position(text: str, place: float) -> str:
     if not _TRUE.search(re.sub(r"!.*", "", text)):
         return text
     return _TRUE.sub(f"position = {0.0 if math.isnan(place) else float(place)!r}", text)
+
+
+def _turned(found: Results | None) -> dict[str, list[float]]:
+    """Keys of a vehicle that stands worst as it drives the other way; none of one that drives as the deck says."""
+    if found is None or found.case(1).get("worst_direction", "") != "backward":
+        return {}
+    lists = {name: [float(word) for word in found.settings(name)[::-1]] for name in ("vehicle%axles",
+                                                                                    "vehicle%spacings")}
+    return {name: values for name, values in lists.items() if values}
 
 
 def _slides(run: Results) -> bool:
@@ -198,7 +230,8 @@ def _numbers(
             text += f"; limit analysis (associated): between {ends_of(factor['exact_low'], factor['exact_high'])}"
         rows.append(("Load factor", text))
     if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):
-        rows.append(("Worst position", f"first axle at {factor['worst_position']:.4f} m"))
+        way = factor["worst_direction"]
+        rows.append(("Worst position", f"leftmost axle at {factor['worst_position']:.4f} m, driving {way}"))
     thrust = thrust_of(own, unit)
     rows.append(("Range of thrust", f"{thrust} at the crown" if thrust else "not told"))
     return rows

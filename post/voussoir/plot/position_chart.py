@@ -17,7 +17,7 @@ WIDTH, HEIGHT, LOWEST, HIGHEST = 4.6, 2.6, 0.5, 3.0
 
 
 def draw_positions(run: Results, cases: Table, worst: float | None = None) -> Figure:
-    """Draw the load factor against the position of the first axle, and the blocks of case 1 below it.
+    """Draw the load factor against the position of the leftmost axle, and the blocks of case 1 below it.
 
     Cases without a factor leave a gap; the worst position is by default that of the least factor of the sweep [m].
     """
@@ -47,5 +47,5 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None) -> Fi
     below.set_ylim(low[1], high[1] + 0.05 * (high[1] - low[1]))
     below.set_xlim(left, right)
     below.set_yticks([])
-    below.set_xlabel("position of the first axle [m]")
+    below.set_xlabel("position of the leftmost axle [m]")
     return figure

@@ -20,7 +20,8 @@ _WHOLE = frozenset(
 )
 #: Columns of words; what is left are numbers
 _WORDS = frozenset(
-    ("deck mode geometry verdict collapses_at collapse_mode springing_hinge state state_1 state_2 mechanism").split()
+    ("deck mode geometry verdict collapses_at collapse_mode springing_hinge state state_1 state_2 mechanism"
+     " worst_direction").split()
 )
 #: What to do about a table that is damaged
 _AGAIN = "run the deck again with --resume"

@@ -1,0 +1,145 @@
+!> The position of the first collapse on the loading path
+!>
+!> Where joints slide, a path under Coulomb friction may end below the associated limit, by more at
+!> one position than at another. No mechanism of one position bounds the factor of the next. So
+!> paths are followed at positions all along the road. Intervals are halved while the inverse
+!> factor, which is nearly as smooth as the loads, may exceed its maximum: at either end, plus its
+!> change per interval.
+submodule (dda_compute_case:dda_worst_position) dda_worst_path
+   use dda_search, only : critical_t, search_t
+   implicit none
+
+   !> Positions of a road to begin with
+   integer, parameter :: first_trials = 48
+   !> A path is followed so far beyond the least factor: its last part takes longest
+   real(wp), parameter :: reach = 1.1_wp
+   !> A factor that is smaller by less than this share is none
+   real(wp), parameter :: no_smaller = 1.0e-7_wp
+   !> Positions so near, over the size of all, are not parted
+   real(wp), parameter :: nearest = 1.0e-7_wp
+
+   !> Positions along a part of the road, from left to right
+   type :: trials_t
+      real(wp), allocatable :: place(:)    !! The positions: (n) [m]
+      real(wp), allocatable :: inverse(:)  !! Inverses of the factors: (n)
+   end type trials_t
+
+contains
+
+   !> Follow the paths of positions along the road
+   module procedure follow_road
+      type(stretch_t), allocatable :: stretch(:)
+      type(trials_t) :: trials
+      real(wp) :: step
+      integer :: first, last
+
+      call part_road(bridge, stretch)
+      if (size(stretch) == 0) return
+      step = (stretch(size(stretch))%to - stretch(1)%from)/real(first_trials, wp)
+      first = 1
+      do while (first <= size(stretch) .and. least%factor > 0.0_wp)
+         last = last_of_side(stretch, first)
+         call begin_trials(this, stretch(first)%from, stretch(last)%to, step, least, trials)
+         call close_in(this, nearest*bridge%road%size, least, trials)
+         first = last + 1
+      end do
+   end procedure follow_road
+
+   !> Try positions on a part of the road with the same fill to lean against
+   pure subroutine begin_trials(this, from, to, step, least, trials)
+      type(case_t), intent(inout) :: this
+      real(wp), intent(in) :: from, to  !! Its ends [m]
+      real(wp), intent(in) :: step      !! Distance of positions at most [m]
+      type(least_factor_t), intent(inout) :: least
+      type(trials_t), intent(out) :: trials
+      integer :: k, n
+
+      n = max(1, ceiling((to - from)/step))
+      trials%place = [(from + (to - from)*real(k, wp)/real(n, wp), k=0, n)]
+      allocate (trials%inverse(n + 1))
+      do k = 1, n + 1
+         call try_place(this, trials%place(k), least, trials%inverse(k))
+      end do
+   end subroutine begin_trials
+
+   !> Try positions between others until none may have a smaller factor
+   pure subroutine close_in(this, near, least, trials)
+      type(case_t), intent(inout) :: this
+      real(wp), intent(in) :: near  !! Positions so near are not parted [m]
+      type(least_factor_t), intent(inout) :: least
+      type(trials_t), intent(inout) :: trials
+      real(wp) :: inverse, middle
+      logical, allocatable :: open(:)
+      integer :: k
+
+      do
+         open = may_hide_more(near, least, trials)
+         if (.not. (any(open) .and. least%decided .and. least%factor > 0.0_wp)) return
+         ! from the right, so that those to the left keep their numbers
+         do k = size(open), 1, -1
+            if (.not. open(k)) cycle
+            middle = 0.5_wp*(trials%place(k) + trials%place(k + 1))
+            call try_place(this, middle, least, inverse)
+            trials%place = [trials%place(:k), middle, trials%place(k + 1:)]
+            trials%inverse = [trials%inverse(:k), inverse, trials%inverse(k + 1:)]
+         end do
+      end do
+   end subroutine close_in
+
+   !> Between which positions and the next there may be a smaller factor than the least so far
+   pure function may_hide_more(near, least, trials) result(open)
+      real(wp), intent(in) :: near
+      type(least_factor_t), intent(in) :: least
+      type(trials_t), intent(in) :: trials
+      logical, allocatable :: open(:)  !! Whether: (n - 1)
+      real(wp) :: change(size(trials%place) - 1)
+      integer :: k, n
+
+      n = size(change)
+      associate (place => trials%place, inverse => trials%inverse)
+         change = abs(inverse(2:) - inverse(:n))
+         open = [(max(inverse(k), inverse(k + 1)) + usual(change(max(1, k - 1):min(n, k + 1))) &
+            & > (1.0_wp + no_smaller)/least%factor .and. place(k + 1) - place(k) > near, k=1, n)]
+      end associate
+   end function may_hide_more
+
+   !> The middle one of three changes, for the largest may be a jump of the path; of fewer changes
+   !> the largest
+   pure real(wp) function usual(change)
+      real(wp), intent(in) :: change(:)  !! The changes: (1 to 3)
+
+      usual = maxval(change)
+      if (size(change) == 3) usual = sum(change) - usual - minval(change)
+   end function usual
+
+   !> Follow the loading path of a position, no farther than matters
+   module procedure try_place
+      type(critical_t) :: critical
+      type(search_t) :: search
+      real(wp) :: factor
+
+      call put_vehicle(place, this%family%deck)
+      search = this%search
+      if (least%factor < no_limit .and. reach*least%factor > search%low) &
+         & search%high = min(search%high, reach*least%factor)
+      search%start = min(search%start, search%high)
+      call find_critical(this%family, search, critical)
+      select case (critical%verdict)
+      case (verdict%found)
+         factor = critical%stop
+      case (verdict%stable)
+         factor = search%high
+         if (.not. search%high < this%search%high) factor = no_limit
+      case (verdict%collapsed)
+         factor = 0.0_wp
+      case default
+         factor = critical%undecided_at
+      end select
+      if (present(inverse)) inverse = 1.0_wp/max(factor, tiny(factor))
+      if (.not. factor < least%factor) return
+      least%factor = factor
+      least%place = place
+      least%decided = critical%verdict /= verdict%undecided
+   end procedure try_place
+
+end submodule dda_worst_path

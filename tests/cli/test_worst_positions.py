@@ -1,0 +1,91 @@
+"""The worst position of a vehicle: both directions of travel, dead loads that fall, no fixed position that is worse."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+from random_bridges import Bridge, check, random_bridge
+
+DDA = os.environ["DDA"]
+#: An arch that is higher on its right: the heavier axle stands worst on one side
+STEPPED = Bridge(
+    "&arch shape = 'segmental', span = 8, rise = 1.5, right_rise = 2.5, thickness = 0.5, voussoirs = 25 /\n"
+    "&fill height = 0.3, unit_weight = 18e3 /\n", [60e3, 20e3], [2.5], 0.3, "coulomb")
+#: Its dead loads stand only where fill presses its right side
+LEANING = Bridge(
+    "&arch shape = 'circular', span = 6.0, rise = 2.9, thickness = 0.25, voussoirs = 20 /\n"
+    "&joint friction_deg = 60.0 /\n&load horizontal_coefficient = 0.2 /\n"
+    "&fill height = 0.3, unit_weight = 18e3, passive_coefficient = 1.0, spread = 0.25 /\n", [60e3], [], 0.5,
+    "associated")
+#: Rings that slide on one another: the first collapse is least elsewhere than the associated limit
+SLIDING = Bridge(
+    "&arch shape = 'pointed', span = 8.872, voussoirs = 8, rise = 5.999, thickness = 0.7555, rings = 2 /\n"
+    "&joint friction_deg = 34.74 /\n&fill height = 1.205, unit_weight = 16510.0, passive_coefficient = 0.8731 /\n"
+    "&material unit_weight = 25800.0 /\n", [14830.0], [], 0.3, "coulomb")
+
+
+def row_of(folder: Path, deck: str) -> dict[str, str]:
+    """The row of a deck of one case."""
+    (folder / "x.nml").write_text(deck)
+    assert run_dda("run", "x.nml", "--quiet", cwd=folder).returncode == 0
+    with (folder / "x" / "results.csv").open(newline="") as lines:
+        (row,) = csv.DictReader(lines)
+    return row
+
+
+def test_the_worse_direction_is_found_and_named(tmp_path: Path) -> None:
+    """By the axles the other way round in the deck: 3.946 and 2.569."""
+    turned = Bridge(STEPPED.groups, STEPPED.axles[::-1], STEPPED.spacings, STEPPED.length, STEPPED.flow)
+    one_way = "worst = .true., both_directions = .false."
+    forward = row_of(tmp_path, STEPPED.deck(one_way))
+    backward = row_of(tmp_path, turned.deck(one_way))
+    assert float(forward["critical"]) == pytest.approx(3.946, abs=5e-4)
+    assert float(backward["critical"]) == pytest.approx(2.569, abs=5e-4)
+    assert forward["worst_direction"] == backward["worst_direction"] == "forward"
+    for bridge, way in ((STEPPED, "backward"), (turned, "forward")):
+        row = row_of(tmp_path, bridge.deck("worst = .true."))
+        assert row["worst_direction"] == way
+        assert float(row["critical"]) == pytest.approx(float(backward["critical"]), rel=1e-9)
+        # the leftmost axle stands at the position, so that a deck of the axles in that order has the same factor
+        place = f"position = {row['worst_position']}"
+        fixed = row_of(tmp_path, bridge.deck(place, backward=way == "backward"))
+        assert float(fixed["critical"]) == pytest.approx(float(row["critical"]), rel=1e-9)
+        assert fixed["worst_position"] == fixed["worst_direction"] == ""
+
+
+def test_the_log_names_position_and_direction(tmp_path: Path) -> None:
+    row = row_of(tmp_path, STEPPED.deck("worst = .true."))
+    said = r"least load factor with the leftmost axle at (\S+) m, driving backward"
+    place = re.search(said, (tmp_path / "x" / "log.txt").read_text())
+    assert float(place[1]) == pytest.approx(float(row["worst_position"]), rel=1e-5)
+
+
+@pytest.mark.parametrize("flow", ["coulomb", "associated"])
+def test_dead_loads_that_fall_with_the_vehicle_on_one_side_collapse(tmp_path: Path, flow: str) -> None:
+    bridge = Bridge(LEANING.groups, LEANING.axles, LEANING.spacings, LEANING.length, flow)
+    row = row_of(tmp_path, bridge.deck("worst = .true."))
+    assert row["verdict"] == "collapsed" and row["critical"] == ""
+    place = f"position = {row['worst_position']}"
+    tiny = bridge.deck(place).replace("&search parameter = 'load_factor' /", "&load load_factor = 1e-9 /")
+    tiny = tiny.replace("&load horizontal_coefficient = 0.2 /\n", "").replace(
+        "load_factor = 1e-9", "load_factor = 1e-9, horizontal_coefficient = 0.2")
+    assert row_of(tmp_path, tiny)["verdict"] == "collapsed"
+
+
+def test_a_first_collapse_that_is_least_beside_the_least_limit_is_found(tmp_path: Path) -> None:
+    """9.82 at the position of the least associated limit; 9.10 and less elsewhere."""
+    verdict, faults = check(DDA, tmp_path, SLIDING)
+    assert (verdict, faults) == ("found", [])
+    assert float(row_of(tmp_path, SLIDING.deck("worst = .true."))["critical"]) < 9.1
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 9, 11, 12])
+def test_no_fixed_position_is_worse_than_the_worst(tmp_path: Path, seed: int) -> None:
+    verdict, faults = check(DDA, tmp_path, random_bridge(seed))
+    assert verdict in ("found", "collapsed", "stable")
+    assert not faults
