@@ -73,8 +73,10 @@ contains
       type(bridge_t) :: bridge
       type(least_factor_t) :: least
       type(scene_t) :: scene
+      real(wp) :: before
       integer :: ways
 
+      before = this%family%deck%value(vehicle_position)%number
       associate (deck => this%family%deck)
          call deck_scene(deck, scene)
          if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
@@ -92,7 +94,7 @@ contains
          end if
          ! what falls wherever the axles stand, and leans against nothing, has no worst position
          this%has_worst = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
-         if (.not. this%has_worst) return
+         if (.not. this%has_worst) least = least_factor_t(place=before)
          this%drives_backward = least%backward
          if (least%backward) call turn_round(deck)
          call put_vehicle(least%place, deck)

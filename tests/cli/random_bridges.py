@@ -136,6 +136,35 @@ def random_bridge(seed: int | str) -> Bridge:
     return Bridge(groups, axles, spacings, length, pick.choice(("coulomb", "associated")))
 
 
+def random_study(seed: int | str) -> str:
+    """A deck of a seed: a decision, a search of any kind or a sweep of a bridge of all keys, its vehicle in place."""
+    pick = random.Random(f"study {seed}")
+    bridge = random_bridge(f"study {seed}")
+    span = float(bridge.groups.split("span = ")[1].split(",")[0])
+    vehicle = pick.choice(("worst = .true.", f"position = {rounded(span * pick.uniform(-0.45, 0.3))}"))
+    deck = bridge.deck(vehicle)
+    if pick.random() < 0.2:
+        # axles as point loads of a group of their own are no vehicle's
+        deck = re.sub("&vehicle.*\n", "", deck)
+    search = "&search parameter = 'load_factor' /\n"
+    kind = pick.random()
+    if kind < 0.6 and "worst" not in deck or "&vehicle" not in deck:
+        deck = deck.replace(search, pick.choice((
+            f"&load load_factor = {rounded(10.0 ** pick.uniform(-2.0, 1.5))} /\n",
+            "&search parameter = 'horizontal_coefficient' /\n",
+            "&search parameter = 'friction_deg', low = 5, high = 80 /\n",
+            f"&search parameter = 'thickness', low = {rounded(0.01 * span)}, high = {rounded(0.4 * span)} /\n",
+            "&search parameter = 'gravity_direction_deg', low = -90, high = -50 /\n",
+        )))
+        if deck.count("&load ") > 1 or "horizontal_coefficient' /" in deck:
+            deck = re.sub(r"&load horizontal_coefficient.*\n", "", deck)
+        if "'thickness'" in deck:
+            deck = re.sub("&vehicle.*\n", "", deck)
+    if pick.random() < 0.25:
+        deck += "&sweep parameter = 'joint%friction_deg', values = 25, 45, 90 /\n"
+    return deck
+
+
 def run(dda: str, folder: Path, name: str, deck: str) -> list[dict[str, str]]:
     """Rows of the results of a deck; none if it is refused."""
     (folder / f"{name}.nml").write_text(deck)
