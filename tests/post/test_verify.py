@@ -20,6 +20,7 @@ from voussoir.verify.deck import read_record  # noqa: E402
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
 from live_assemblies import programme, random_assembly  # noqa: E402
+from random_bridges import random_study  # noqa: E402
 
 HEAD = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
 SEARCH = "&search parameter = 'load_factor' /\n"
@@ -116,6 +117,27 @@ DECKS = {
         + "&search parameter = 'compressive_strength', low = 1e4, high = 1e9 /\n",
     "a push on what crushes": CRUSHED.format(1e6).split("&vehicle")[0] + "&analysis flow = 'associated' /\n"
         + "&search parameter = 'horizontal_coefficient' /\n",
+    "no slip on buttresses": "&arch shape = 'segmental', span = 6.0, rise = 1.5, thickness = 0.4, voussoirs = 9, "
+        "buttress_width = 2.0, buttress_height = 2.0, springing = 'no-slip' /\n&joint friction_deg = 20 /\n"
+        "&search parameter = 'horizontal_coefficient' /\n",
+    "no slip on a pier": "&arch shape = 'segmental', span = 4.0, rise = 1.2, thickness = 0.4, voussoirs = 7, "
+        "spans = 2, pier_width = 1.2, pier_height = 2.0, springing = 'no-slip' /\n&joint friction_deg = 18 /\n"
+        "&search parameter = 'horizontal_coefficient' /\n",
+    "fill on an overhanging arch": "&arch shape = 'circular', span = 2.0, rise = 1.45, thickness = 0.25, "
+        "voussoirs = 20 /\n&fill height = 0.2, unit_weight = 16e3 /\n",
+    "a vehicle that drives backward": "&arch shape = 'segmental', span = 8, rise = 1.5, right_rise = 2.5, "
+        "thickness = 0.5, voussoirs = 25 /\n&fill height = 0.3, unit_weight = 18e3 /\n"
+        "&vehicle axles = 60e3, 20e3, spacings = 2.5, worst = .true. /\n" + SEARCH,
+    "a vehicle without which dead loads fall": "&arch shape = 'circular', span = 6, rise = 2.9, thickness = 0.25, "
+        "voussoirs = 20 /\n&joint friction_deg = 60 /\n&load horizontal_coefficient = 0.2 /\n"
+        "&fill height = 0.3, unit_weight = 18e3, passive_coefficient = 1, spread = 0.25 /\n"
+        "&vehicle axles = 6e4, length = 0.5, worst = .true. /\n&analysis flow = 'associated' /\n" + SEARCH,
+    "a vehicle that a flat arch carries at any factor": "&arch shape = 'flat', span = 3.483, voussoirs = 18, "
+        "half_angle_deg = 24.64, thickness = 0.7518, spans = 2, pier_width = 0.9679, pier_height = 1.42 /\n"
+        "&joint friction_deg = 37.15 /\n&vehicle axles = 19330, length = 0, worst = .true. /\n" + SEARCH,
+    "an arch as thin as 2e-6 of its radius": "&arch half_angle_deg = 5.7, voussoirs = 30 /\n&search /\n",
+    "a thin segment by its thickness": "&arch shape = 'segmental', span = 10, rise = 0.158, thickness = 0.001, "
+        "voussoirs = 57 /\n&search parameter = 'thickness', low = 1e-6, high = 1 /\n",
     "friction": HEAD + "&load load_factor = 5.0 /\n&search parameter = 'friction_deg' /\n",
 }
 #: Files of blocks with bars and water, each with a deck
@@ -173,6 +195,17 @@ def test_proofs_of_bars_and_water_hold(
     folder = run_deck(tmp_path, HEAD + scene[1], scene[0])
     assert main(["verify", str(folder)]) == 0, capsys.readouterr().out
     assert "1 of 1 cases have proofs, 0 fail" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3, 5, 6, 7, 9])
+def test_random_bridges_of_all_keys_are_accepted(
+    tmp_path: Path, seed: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "x.nml").write_text(random_study(seed))
+    done = subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=tmp_path, capture_output=True, text=True)
+    if done.returncode == 2:
+        return  # keys that exclude one another: no folder
+    assert main(["verify", str(tmp_path / "x")]) == 0, capsys.readouterr().out
 
 
 def test_stages_that_were_left_out_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

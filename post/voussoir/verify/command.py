@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -12,19 +12,18 @@ import numpy as np
 
 from voussoir.verify.blocks import Source, arch_corners, read_blocks
 from voussoir.verify.contacts import TOUCH, Block, find_joints, make_block
-from voussoir.verify.deck import Deck, VerifyError, read_record
+from voussoir.verify.deck import LENGTHS, Deck, VerifyError, read_record
 from voussoir.verify.exact import MOST_JOINTS, check_exactly
 from voussoir.verify.lines import read_lines
 from voussoir.verify.loads import loads_on
-from voussoir.verify.proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
+from voussoir.verify.proofs import TOLERANCE, Finding, Scene, check_forces, check_motion
+from voussoir.verify.read import COLUMNS, Row, read_table
 from voussoir.verify.sums import sums_of, told_sums
 from voussoir.verify.tables import check_joints, check_rigid
 
 #: A collapse that no limit analysis tells is that of blocks that strain, which may be so far from rigid
 STRAIN = 1e-3
-TABLES = ("results", "joints", "blocks", "proof_forces", "proof_motion", "bars")
-#: Tables that not every run leaves
-OPTIONAL = ("bars",)
+TABLES = tuple(COLUMNS)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,21 +50,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked."""
     try:
-        deck = read_record(arguments.folder)
-        tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
-        places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
-        found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}
-        if not arguments.ignore_sums:
-            _check_sums(arguments.folder, found)
-        if arguments.exact:
-            for number, finding in found.items():
-                if finding.figures:
-                    rows = {name: tables[name].get(number, []) for name in TABLES}
-                    check_exactly(*_case_of(deck, number, rows["results"][0], places), rows, finding)
-    except (VerifyError, KeyError, IndexError, ValueError) as error:
-        sys.stderr.write(f"{arguments.folder}: error: {error}\n")
-        return 1 if isinstance(error, (KeyError, IndexError)) else 2
+        with np.errstate(all="ignore"):  # numbers beyond all bounds keep no law
+            found = _check_folder(arguments)
+    except (ArithmeticError, LookupError, OSError, TypeError, ValueError) as error:
+        has_place = re.search(r":\d+: error: ", str(error))
+        words = str(error) if has_place or isinstance(error, VerifyError) else f"damaged files: {error!r}"
+        place = "" if has_place else f"{arguments.folder}: error: "
+        sys.stderr.write(f"{place}{' '.join(words.split())}\n")
+        return 2
     return _report(found, arguments.quiet)
+
+
+def _check_folder(arguments: argparse.Namespace) -> dict[int, Finding]:
+    """Check every case of a folder: what was found of each."""
+    deck = read_record(arguments.folder)
+    tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
+    places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
+    found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}
+    if not arguments.ignore_sums:
+        _check_sums(arguments.folder, found)
+    if arguments.exact:
+        for number, finding in found.items():
+            if finding.figures:
+                rows = {name: tables[name].get(number, []) for name in TABLES}
+                check_exactly(*_case_of(deck, number, rows["results"][0], places), rows, finding)
+    return found
 
 
 def _check_sums(folder: Path, found: dict[int, Finding]) -> None:
@@ -99,19 +108,6 @@ def _report(found: dict[int, Finding], quiet: bool) -> int:
     return 1 if failed else 0
 
 
-def read_table(path: Path) -> dict[int, list[Row]]:
-    """Rows of a table by their case."""
-    if not path.exists():
-        if path.stem in OPTIONAL:
-            return {}
-        raise VerifyError(f"no {path.name}: run the deck with output%joints = .true. and output%blocks = .true.")
-    rows: dict[int, list[Row]] = {}
-    with path.open(newline="", encoding="utf-8") as lines:
-        for row in csv.DictReader(lines):
-            rows.setdefault(int(row["case"]), []).append(row)
-    return rows
-
-
 def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]], places: list[Path]) -> Finding:
     """Check the proofs of one case."""
     finding = Finding()
@@ -137,7 +133,7 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
             check_forces(scene, rows, finding)
             _check_bound(result, carried, rows[0]["value"], finding)
         else:
-            power = check_motion(scene, rows, finding)
+            power = check_motion(scene, rows, finding, _apart(of_case, result))
             if power < -TOLERANCE or deck.searched is None and not power > 0.0:
                 finding.faults.append(f"the loads do not drive the mechanism: power {power:.3e}")
             if deck.searched is None:
@@ -156,6 +152,9 @@ def _case_of(deck: Deck, number: int, result: Row, places: list[Path]) -> tuple[
     of_case = deck.case(number)
     if result["worst_position"]:
         of_case.values["vehicle%position"] = [result["worst_position"]]
+        if result["worst_direction"] == "backward":
+            for name in ("vehicle%axles", "vehicle%spacings"):
+                of_case.values[name] = of_case.values.get(name, [])[::-1]
     of_case.values["path_time"] = [result["path_time"]]
     return of_case, _files_of(of_case, places)
 
@@ -182,13 +181,39 @@ def _check_told(
     elif deck.searched is not None:
         return
     scene = scene_of(at_value, rows["blocks"], places, Finding())
+    _check_numbers(scene, rows)
     _check_stage(scene.source, result, finding)
     bars = [float(row["force"]) for row in rows["bars"]] if result["verdict"] in ("stable", "found") else None
     # where a path ends, the forces are those of the very end
     there, here = (loads_on(of, scene.source, scene.blocks) for of in (at_end or at_value, at_value))
-    check_joints(scene, rows["joints"], bars, finding, there - here)
+    check_joints(scene, rows["joints"], bars, finding, there - here, _apart(of_case, result))
     strain = 0.0 if result["exact_high"] else STRAIN
     check_rigid(scene, rows["blocks"], finding, math.inf if result["verdict"] == "stable" else strain)
+
+
+def _apart(of_case: Deck, result: Row) -> float:
+    """How far corners at the two ends of a bracket are apart: blocks are told at one of them [m]."""
+    name = of_case.searched
+    if name is None or result["verdict"] != "found" or of_case.text("scene%kind") != "arch":
+        return 0.0
+    ends = [result["critical_low"], result["critical_high"]]
+    if not of_case.is_shape():
+        low, high = (arch_corners(of_case.with_value(name, end)) for end in ends)
+        return max(float(np.abs(there - here).max()) for there, here in zip(low, high))
+    # lengths move corners by as much as they change; other keys of &arch leave corners of a shape or are refused
+    lengths = [key.split("%")[1] for key in LENGTHS]
+    return abs(float(ends[1]) - float(ends[0])) if name.split("%")[-1] in lengths else 0.0
+
+
+def _check_numbers(scene: Scene, rows: dict[str, list[Row]]) -> None:
+    """Check that rows name blocks of the scene, which are numbered from 1."""
+    if [block.number for block in scene.blocks] != list(range(1, len(scene.blocks) + 1)):
+        raise VerifyError("blocks.csv: expected blocks numbered from 1 without a gap")
+    for name in ("joints", "proof_forces", "proof_motion"):
+        for row in rows[name]:
+            for column in {"block", "block_1", "block_2"} & row.keys():
+                if int(row[column]) > len(scene.blocks):
+                    raise VerifyError(f"{name}.csv: expected blocks up to {len(scene.blocks)}, got {row[column]}")
 
 
 def _check_stage(source: Source, result: Row, finding: Finding) -> None:
@@ -222,6 +247,10 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         fixed[int(row["block"])] = row["state"] == "fixed"
     blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
     joints = find_joints(blocks, deck.number("scene%contact_tolerance"))
+    for block in blocks:
+        if not 0.0 < block.size < math.inf:
+            raise VerifyError(f"blocks.csv: block {block.number} has no area")
+    joints = find_joints(blocks)
     source = Source()
     if deck.text("scene%kind") == "blocks":
         source = read_blocks(*_files_of(deck, places), deck)
@@ -238,6 +267,9 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
         _check_supports(blocks, finding)
     elif deck.is_shape():
+        movable = sum(1 for block in blocks if not block.fixed)
+        if not 0 < deck.voussoirs <= movable:
+            raise VerifyError(f"expected {deck.voussoirs:.4g} voussoirs by deck.record, got {movable} blocks that move")
         _check_supports(blocks, finding)
     return Scene(blocks, joints, source, deck)
 

@@ -75,6 +75,13 @@ SHAPES = tuple(f"arch%{name}" for name in (
 ))
 
 
+#: Lengths of an arch of any shape
+LENGTHS = tuple(f"arch%{name}" for name in (
+    "span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "pier_width", "pier_height",
+    "buttress_width", "buttress_height",
+))
+
+
 class VerifyError(ValueError):
     """Something that cannot be verified, with the reason."""
 
@@ -98,11 +105,22 @@ class Deck:
 
     def text(self, key: str) -> str:
         """A single value as text."""
-        return self.values.get(key, [DEFAULTS.get(key, "")])[0]
+        values = self.values.get(key, [DEFAULTS.get(key, "")])
+        if not values:
+            raise VerifyError(f"deck.record: expected a value of {key}, got none")
+        return values[0]
 
     def read(self, text: str) -> float:
         """A number from its decimal, whose exponent may begin with d; a fraction where all is exact."""
-        return (Fraction if self.exact else float)(text.lower().replace("d", "e"))
+        decimal = text.lower().replace("d", "e")
+        try:
+            number = float(decimal)
+        except ValueError:
+            number = math.nan
+        # what underflows would take a fraction of any length
+        if not math.isfinite(number) or number == 0 and re.search("[1-9]", decimal.partition("e")[0]):
+            raise VerifyError(f"expected a number in the deck or its files, got {text[:40]!r}")
+        return Fraction(decimal) if self.exact else number
 
     def number(self, key: str) -> float:
         """A single number."""
@@ -144,12 +162,17 @@ class Deck:
         if known:
             full = known[0]
             new = list(values.get(full, [""]))
-            new[int(item) - 1 if item else 0] = value
+            place = int(item) - 1 if item else 0
+            if not 0 <= place < len(new):
+                raise VerifyError(f"deck.record: expected {name} in a list of {len(new)}")
+            new[place] = value
             values[full] = new
         return replace(self, values=values)
 
     def case(self, number: int) -> Deck:
         """The deck of one case; the last sweep runs fastest, a linked one goes with the one before."""
+        if not all(sweep.values for sweep in self.sweeps) or any(sweep.linked for sweep in self.sweeps[:1]):
+            raise VerifyError("deck.record: expected values of every sweep, and the first one not linked")
         deck, rest, positions = self, number - 1, [0] * len(self.sweeps)
         for s in range(len(self.sweeps) - 1, -1, -1):
             if not self.sweeps[s].linked:
@@ -157,6 +180,8 @@ class Deck:
         for s, sweep in enumerate(self.sweeps):
             if sweep.linked:
                 positions[s] = positions[s - 1]
+            if positions[s] >= len(sweep.values):
+                raise VerifyError(f"deck.record: expected as many values of {sweep.name} as it is linked to")
             deck = deck.with_value(sweep.name, sweep.values[positions[s]])
         return deck
 
@@ -165,7 +190,12 @@ class Deck:
         """Name of the searched parameter."""
         if "&search" not in self.values:
             return None
-        return self.values.get("search%parameter", ["thickness_ratio"])[0]
+        return self.text("search%parameter") if self.gives("search%parameter") else "thickness_ratio"
+
+    @property
+    def voussoirs(self) -> int:
+        """Number of voussoirs of an arch of any shape, which come before its supports."""
+        return round(math.prod(float(self.number(f"arch%{name}")) for name in ("voussoirs", "rings", "spans")))
 
     def direction(self) -> tuple[float, float]:
         """Direction of gravity."""
@@ -191,22 +221,24 @@ class Deck:
 
 def read_record(folder: Path) -> Deck:
     """The deck of a folder of results: its given keys and sweeps."""
-    try:
-        lines = read_text(folder / "deck.record").splitlines()
-    except OSError as error:
-        raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written") from error
+    path = folder / "deck.record"
+    if not path.is_file():
+        raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written")
+    first, *lines = read_text(path).split("\n")
+    if not first.startswith("dda "):
+        raise VerifyError(f"{path}:1: error: expected the version of dda, got {first[:40]!r}")
     values: dict[str, list[str]] = {}
     sweeps: list[Sweep] = []
     target: list[str] | None = None
-    for line in lines[1:]:
-        if line.startswith("&sweep "):
-            words = line.split()
+    for number, line in enumerate(lines, 2):
+        words = line.split()
+        if line.startswith("&sweep ") and len(words) > 1:
             sweeps.append(Sweep(words[1], words[-1] == "linked"))
             target = sweeps[-1].values
-        elif line.startswith("&"):
-            values[line.strip()] = target = []
         elif line.startswith("  ") and target is not None:
             target.append(line.strip())
-        elif "%" in line and not line.startswith("files"):
-            target = values[line.strip()] = []
+        elif re.fullmatch(r"&(?!sweep)\w+|\w+%\w+", line):
+            values[line] = target = []
+        elif line and not line.startswith("files"):
+            raise VerifyError(f"{path}:{number}: error: expected a group, a key or its value, got {line[:40]!r}")
     return Deck(values, sweeps)

@@ -57,16 +57,22 @@ def has_fill(deck: Deck) -> bool:
 
 
 def chords_of(deck: Deck, blocks: list[Block]) -> list[Chord]:
-    """Upper edges of what can move that no other block lies on; voussoirs come first, span by span."""
-    in_span = round(float(deck.number("arch%rings") * deck.number("arch%voussoirs")))
+    """Chords of the extrados that have their voussoir below them, span by span, then what is open of piers."""
     spans = round(float(deck.number("arch%spans")))
+    in_span, in_ring = deck.voussoirs // spans, deck.voussoirs // spans // round(float(deck.number("arch%rings")))
     chords = []
     for block in blocks:
-        for right, left in zip(block.corners, np.roll(block.corners, -1, axis=0)):
-            if block.fixed or not left[0] < right[0] or is_covered(blocks, block, right, left):
-                continue
-            span = (block.number - 1) // in_span + 1
-            chords.append(Chord(block.number, left, right, span if span <= spans else 0))
+        if block.fixed:
+            continue
+        span, place = (block.number - 1) // in_span + 1, (block.number - 1) % in_span
+        edges = list(zip(block.corners, np.roll(block.corners, -1, axis=0)))
+        if span > spans:
+            edges = [edge for edge in edges if edge[1][0] < edge[0][0] and not is_covered(blocks, block, *edge)]
+        else:
+            # corners go along the intrados, then back along the extrados, which is the outermost ring's
+            edges = edges[len(edges) // 2 : -1] if place >= in_span - in_ring else []
+        chords += [Chord(block.number, left, right, span if span <= spans else 0)
+                   for right, left in edges if left[0] < right[0]]
     return chords
 
 

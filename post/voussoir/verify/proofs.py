@@ -13,13 +13,15 @@ from voussoir.verify.contacts import TOUCH, Block, Joint, depth, numbers_of
 from voussoir.verify.deck import Deck
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import friction_of, loads_on, may_hold, pulls_of, sizes_on, strength_of
+from voussoir.verify.read import Row
 
-Row = dict[str, str]
 #: Largest figure of a proof that holds
 TOLERANCE = 1e-8
 #: What rounding leaves of forces, as a share of the largest
 DIGITS = 2e-15
 
+#: Rounding of a corner as a share of its coordinates: written once, computed with a few operations
+CORNERS = 16 * np.finfo(float).eps
 #: Imbalance that rounding of forces far larger than the loads excuses at most
 JAMMED = 1e-6
 
@@ -73,8 +75,12 @@ class Scene:
 
     def friction(self, joint: Joint) -> float:
         """Coefficient of friction of a joint."""
-        springing = self.blocks[joint.first - 1].fixed or self.blocks[joint.second - 1].fixed
-        return friction_of(self.deck, self.source, joint, springing)
+        if self.deck.is_shape():
+            # voussoirs come before what they stand on: piers, buttresses, what is fixed
+            supports = [number > self.deck.voussoirs for number in (joint.first, joint.second)]
+        else:
+            supports = [self.blocks[number - 1].fixed for number in (joint.first, joint.second)]
+        return friction_of(self.deck, self.source, joint, supports[0] != supports[1])
 
 
     def crush(self, joint: Joint) -> float:
@@ -90,7 +96,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed for block in scene.blocks])
     largest = largest_of(sizes_on(scene.deck, scene.source, scene.blocks)[free], scene.length)
-    pairs = numbers_of(scene.joints)
+    pairs, allowed = numbers_of(scene.joints), np.zeros((len(scene.blocks), 3))
     used: set[int] = set()
     spent: set[int] = set()
     for row in rows:
@@ -118,8 +124,21 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
                            (force[2] * way * joint.tangent, ends.mean(axis=0))):
             push(left, scene.blocks[pair[1] - 1], at, vector)
             push(left, scene.blocks[pair[0] - 1], at, -vector)
+            for number in pair:
+                allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding_of(scene.blocks[number - 1])
     most = max((abs(float(row[name] or 0)) for row in rows for name in ("normal_1", "normal_2", "shear")), default=0.0)
-    finding.keep("imbalance", largest_of(left[free], scene.length) / largest, TOLERANCE + digits_of(most / largest))
+    finding.keep("imbalance", largest_of(left[free], scene.length) / largest,
+                 TOLERANCE + digits_of(most / largest) + largest_of(allowed[free], scene.length) / largest)
+
+
+def rounding_of(block: Block) -> float:
+    """How far rounding of its corners may move a corner of a block, or where a force acts on it [m]."""
+    return CORNERS * float(np.abs(block.corners.astype(float)).max())
+
+
+def reach_of(block: Block) -> float:
+    """Length of the diagonal of a block's box [m]."""
+    return float(np.linalg.norm(np.ptp(block.corners.astype(float), axis=0)))
 
 
 def digits_of(force: float) -> float:
@@ -192,9 +211,10 @@ def largest_of(load: np.ndarray, length: float) -> float:
     return max(float(np.abs(load[:, :2]).max()), float(np.abs(load[:, 2]).max()) / length, 1e-300)
 
 
-def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
+def check_motion(scene: Scene, rows: list[Row], finding: Finding, apart: float = 0.0) -> float:
     """Check that velocities (rows of proof_motion.csv) open or leave every joint and that the load drives them.
 
+    Corners may be so far `apart` from those of the mechanism as the two ends of a bracket are [m].
     Gives the power of the loads, less what bars and fill take at most, over what the loads could do.
     """
     velocity = np.zeros((len(scene.blocks), 3))
@@ -205,7 +225,10 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
         at = np.array([float(row["x"]), float(row["y"])])
         u, v, spin = (float(row[name]) for name in ("u", "v", "spin"))
         off = block.centre - at
-        finding.keep("place of centres", float(np.linalg.norm(off)) / block.size)
+        # a corner that is off by its rounding changes the width of a thin block, and so where its middle is
+        digits = rounding_of(block) * reach_of(block) ** 2 / block.area
+        finding.keep("place of centres", float(np.linalg.norm(off)) / block.size,
+                     TOLERANCE + (apart + digits) / block.size)
         velocity[block.number - 1] = [u - spin * off[1], v + spin * off[0], spin]
     fastest = max(float(np.abs(velocity[:, :2]).max()), scene.length * float(np.abs(velocity[:, 2]).max()), 1e-300)
     power = 0.0

@@ -24,11 +24,16 @@ def told_sums(folder: Path) -> dict[int, int]:
     path = folder / "sizes.record"
     if not path.exists():
         raise VerifyError("no sizes.record: run the deck again, or check proofs alone by --ignore-sums")
-    first, *lines = read_text(path).splitlines()
+    first, *lines = read_text(path).splitlines() or [""]
     if first != "case,bytes,sum":
         raise VerifyError("sizes.record tells no sums: run the deck again, or check proofs alone by --ignore-sums")
-    rows = [[int(word) for word in line.split(",")] for line in lines]
-    return {case: total for case, _, total in rows}
+    sums = {}
+    for number, line in enumerate(lines, 2):
+        if not re.fullmatch(r"\d{1,10},\d{1,20},\d{1,10}", line, re.ASCII):
+            raise VerifyError(f"{path}:{number}: error: expected a case, its bytes and their sum, got {line[:40]!r}")
+        case, _, total = line.split(",")
+        sums[int(case)] = int(total)
+    return sums
 
 
 def sums_of(folder: Path) -> dict[int, int]:

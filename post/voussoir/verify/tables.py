@@ -9,10 +9,13 @@ import numpy as np
 from voussoir.verify.contacts import WIDEST, Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import loads_on, sizes_on
-from voussoir.verify.proofs import Finding, Row, Scene, digits_of, largest_of, push
+from voussoir.verify.proofs import TOLERANCE, Finding, Scene, digits_of, largest_of, push, reach_of, rounding_of
+from voussoir.verify.read import Row
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
 TOLD = 1e-7
+#: Share of the largest load to which told forces have settled
+SETTLED = 1e-8
 #: How far the told forces of what falls may be beyond a law: they are those of the last step
 FALLING = 1e-5
 #: What rounding leaves between columns that say the same
@@ -22,17 +25,21 @@ NONE = 1e-12
 
 
 def check_joints(
-    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: np.ndarray
+    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: np.ndarray, off: float
 ) -> None:
     """Check that told joint forces keep the law of every joint, and balance the loads of what stands.
 
     `bars` are told forces, None where nothing stands and forces need not balance; `allowed` (n, 3) is what the forces
-    may leave besides, as the bracket of a search is so wide.
+    may leave besides, as the bracket of a search is so wide, and `off` how far corners differ between its ends [m].
     """
+    allowed = allowed.copy()
+    rounding = [off + rounding_of(block) for block in scene.blocks]
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
     size = sizes_on(scene.deck, scene.source, scene.blocks)
     largest = largest_of(size[free], scene.length) if free.any() else 1.0
+    # a force that is off by a share of the largest load turns a thin block by its arm, many times the joint's length
+    allowed[:, 2] += [SETTLED * largest * reach_of(block) for block in scene.blocks]
     pairs, digits = numbers_of(scene.joints), 0.0
     for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
         beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
@@ -54,7 +61,8 @@ def check_joints(
         apart = max(abs(way * float(vector @ joint.normal) - normal), abs(way * float(vector @ joint.tangent) - shear))
         digits = max(digits, digits_of(float(np.abs(vector).max()) / largest))
         finding.keep("columns of a joint", apart / largest, SAME + digits)
-        _check_place(row, joint, at, normal, scene.crush(joint) if bars is not None else math.inf, finding)
+        crush = scene.crush(joint) if bars is not None else math.inf
+        _check_place(row, joint, at, normal, crush, rounding_of(scene.blocks[first - 1]), finding)
         friction = scene.friction(joint)
         beyond = max(0.0, -normal)
         if math.isfinite(friction):
@@ -63,6 +71,8 @@ def check_joints(
         # the shear force acts halfway, where its moment is that of anywhere along the joint
         push(left, scene.blocks[second - 1], at, vector)
         push(left, scene.blocks[first - 1], at, -vector)
+        for number in (first, second):
+            allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding[number - 1]
     if bars is None:
         return
     for block in scene.blocks:
@@ -108,17 +118,22 @@ def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> Jo
     return nearest if nearest and apart(nearest) <= WIDEST * scene.blocks[first - 1].size else None
 
 
-def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, finding: Finding) -> None:
-    """The force acts between the ends of its joint, which has room for the strip that bears it, where it is told."""
+def _check_place(
+    row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, rounding: float, finding: Finding
+) -> None:
+    """The force acts between the ends of its joint, which has room for the strip that bears it, where it is told.
+
+    Corners are off by `rounding` [m].
+    """
     middle, length = joint.ends.mean(axis=0), float(np.linalg.norm(joint.ends[1] - joint.ends[0]))
     if joint.single or not normal > 0.0:
         return
-    beyond = max(0.0, float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5)
-    finding.keep("place of a force", beyond, TOLD)
-    finding.keep("place off its joint", abs(float((at - middle) @ joint.normal)) / length)
+    beyond, digits = float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5, rounding / length
+    finding.keep("place of a force", max(0.0, beyond), TOLD + digits)
+    finding.keep("place off its joint", abs(float((at - middle) @ joint.normal)) / length, TOLERANCE + digits)
     if row["eccentricity_ratio"]:
         told = abs(float(row["eccentricity_ratio"]))
-        finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - told), SAME)
+        finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - told), SAME + digits)
 
 
 def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
