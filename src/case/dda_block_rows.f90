@@ -16,7 +16,8 @@ module dda_block_rows
    implicit none
    private
 
-   public :: contact_state, contact_states, frame_joint_rows, joint_rows, scale_to_one, tell_blocks
+   public :: contact_state, contact_states, ends_on_path, fallen_contacts, frame_joint_rows
+   public :: joint_rows, scale_to_one, tell_blocks
    public :: tell_mechanism, tell_mechanism_motion, tell_nearest, tell_roles, tell_total_motion
 
    !> Words for the roles of a joint, by their number: those of the columns state and mechanism
@@ -296,6 +297,11 @@ contains
          call tell_joints(scene, critical%fallen%contacts, critical, joint_row)
       end if
       if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+      if (ends_on_path(critical%standing)) then
+         if (size(critical%standing%system%moved) == size(blocks%corner)) &
+            & call tell_total_motion(critical%standing%system, .true., blocks)
+         return
+      end if
       if (.not. allocated(critical%fallen)) return
       associate (fallen => critical%fallen)
          if (allocated(fallen%outcome%motion)) then
@@ -308,6 +314,15 @@ contains
       end associate
    end subroutine tell_scene
 
+   !> Whether blocks have moved along a path of histories or prescribed displacements to their rest
+   pure logical function ends_on_path(standing)
+      type(decision_t), intent(in), allocatable :: standing  !! The decision, if there is one
+
+      ends_on_path = allocated(standing)
+      if (ends_on_path) ends_on_path = standing%outcome%has_path &
+         & .and. allocated(standing%system%moved)
+   end function ends_on_path
+
    !> Joints of one side of the bracket, and what they do in the collapse
    pure subroutine tell_joints(scene, contacts, critical, joint_row)
       type(scene_t), intent(in) :: scene
@@ -318,9 +333,21 @@ contains
       if (.not. allocated(contacts%joint)) return
       joint_row = joint_rows(scene%system, contacts, scene%joint_angle_deg, scene%origin)
       if (size(joint_row) > 0 .and. allocated(critical%fallen)) call tell_roles( &
-         & critical%fallen%contacts, scene%system, contacts, joint_row, &
+         & fallen_contacts(critical%fallen), scene%system, contacts, joint_row, &
          & critical%fallen%outcome%motion)
    end subroutine tell_joints
+
+   !> Contacts of the step that has shown a collapse
+   pure type(contacts_t) function fallen_contacts(fallen) result(contacts)
+      !> The collapse, which may have been followed beyond that step
+      type(decision_t), intent(in) :: fallen
+
+      if (allocated(fallen%outcome%fallen)) then
+         contacts = fallen%outcome%fallen
+      else
+         contacts = fallen%contacts
+      end if
+   end function fallen_contacts
 
    !> Fill the columns of a collapse
    pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
@@ -330,13 +357,7 @@ contains
       type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 
-      associate (outcome => fallen%outcome)
-         if (allocated(outcome%fallen)) then
-            call mechanism_of(outcome%fallen, joint_angle_deg, mechanism, outcome%motion)
-         else
-            call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, outcome%motion)
-         end if
-      end associate
+      call mechanism_of(fallen_contacts(fallen), joint_angle_deg, mechanism, fallen%outcome%motion)
       row%collapse_mode = mechanism%mode
       row%sliding_share = some_number(mechanism%sliding_share)
       row%intrados_hinge_deg = mechanism%intrados_deg

@@ -1,11 +1,10 @@
 !> A computed case as rows of the result tables
 module dda_case_rows
-   use dda_block_rows, only : joint_rows, tell_blocks, tell_mechanism, tell_mechanism_motion, &
-      & tell_nearest, tell_roles, tell_total_motion
+   use dda_block_rows, only : ends_on_path, fallen_contacts, joint_rows, tell_blocks, &
+      & tell_mechanism, tell_mechanism_motion, tell_nearest, tell_roles, tell_total_motion
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
-   use dda_contacts, only : contacts_t
    use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
@@ -15,7 +14,7 @@ module dda_case_rows
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : verdict
    use dda_text, only : counted, short_text, to_text
-   use dda_verdict, only : outcome_t
+   use dda_verdict, only : largest_displacement, outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
    private
@@ -138,6 +137,9 @@ contains
             remark = joined(remark, path_remark(outcome))
          end if
          remark = joined(remark, jump_remark(outcome%jumps, outcome%largest_jump))
+         if (outcome%verdict == verdict%completed &
+            & .and. .not. (this%limerick .or. this%scene%settings%current)) &
+            & remark = joined(remark, small_displacement_remark(this%decision%system))
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
             & .and. .not. this%plan%velocities .and. source_of(this%family%deck) /= "arch") &
             & remark = joined(remark, fall_remark(this%scene%system, outcome%motion))
@@ -193,6 +195,8 @@ contains
                & //short_text(critical%stands)
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
+         if (ends_on_path(critical%standing)) &
+            & row%path_time = some_number(critical%standing%outcome%path_time)
          if (critical%limit%known) then
             row%exact_low = some_number(minval(critical%limit%value))
             row%exact_high = some_number(maxval(critical%limit%value))
@@ -245,18 +249,6 @@ contains
          & some_number((row%critical%value - row%exact%value)/row%exact%value)
    end subroutine tell_bracket
 
-   !> Contacts of the step that has shown a collapse
-   pure type(contacts_t) function fallen_contacts(fallen) result(contacts)
-      !> The collapse, which may have been followed beyond that step
-      type(decision_t), intent(in) :: fallen
-
-      if (allocated(fallen%outcome%fallen)) then
-         contacts = fallen%outcome%fallen
-      else
-         contacts = fallen%contacts
-      end if
-   end function fallen_contacts
-
    !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
    pure function fall_remark(system, motion) result(remark)
       type(block_system_t), intent(in) :: system  !! The blocks at the beginning
@@ -284,6 +276,16 @@ contains
       end do
       if (n > most_named) remark = remark//" and others"
    end function fall_remark
+
+   !> Say that a dynamic run of blocks that keep their places shows no collapse
+   pure function small_displacement_remark(system) result(remark)
+      type(block_system_t), intent(in) :: system  !! The blocks at the end
+      character(len=:), allocatable :: remark
+
+      remark = "geometry = 'reference' shows no collapse: blocks keep their places, the largest " &
+         & //"displacement is "//short_text(largest_displacement(system, .false.))//" m. " &
+         & //"Set geometry = 'current' to let them move."
+   end function small_displacement_remark
 
    !> What the user should know of the path of a static run
    pure function path_remark(outcome) result(remark)

@@ -152,7 +152,7 @@ contains
    end subroutine keep_decision
 
    !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
-   !> for their bars, which the family makes anew at any value
+   !> for their bars, which the family makes anew at any value, unless a path has moved them
    pure subroutine shed(decision, keeps_joints)
       type(decision_t), intent(inout) :: decision
       !> Whether it keeps its joints: a load coefficient moves none
@@ -161,10 +161,12 @@ contains
 
       if (keeps_joints) call place_all_joints(decision%system, decision%contacts)
       if (.not. keeps_joints) deallocate (decision%contacts%joint)
-      if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
-      decision%system = block_system_t()
-      if (allocated(bar)) call move_alloc(bar, decision%system%bar)
       decision%contacts%springs = joint_springs_t()
+      if (.not. decision%outcome%has_path) then
+         if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
+         decision%system = block_system_t()
+         if (allocated(bar)) call move_alloc(bar, decision%system%bar)
+      end if
       if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
          & deallocate (decision%outcome%motion)
    end subroutine shed

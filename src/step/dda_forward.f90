@@ -14,7 +14,7 @@ module dda_forward
    use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : next_interval
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
-      & outcome_t, points_to_rest
+      & is_full, outcome_t, points_to_rest
    implicit none
    private
 
@@ -97,6 +97,10 @@ contains
          & outcome%condition = factored_condition(run%equations%matrix, run%equations%factor)
       outcome%motion = run%step%state%motion
       if (present(album)) call end_pictures(run, outcome, album)
+      if (outcome%verdict == verdict%collapsed .and. allocated(run%onset)) then
+         call move_alloc(run%onset, outcome%fallen)
+         call move_alloc(run%onset_motion, outcome%motion)
+      end if
       call conclude(run, error, outcome)
       call move_system(run%system, system)
       call move_contacts(run%contacts, contacts)
@@ -153,6 +157,10 @@ contains
          march%has_fallen = has_fallen(run%system, run%neighbours, settings%boundary%held)
          if (points_to_rest(run%step)) &
             & march%expected_rest = max(march%expected_rest, march%moved + run%step%way_to_rest)
+         if (on_path .and. .not. allocated(run%onset) .and. is_full(march, run%step)) then
+            allocate (run%onset, source=run%contacts)
+            run%onset_motion = run%step%state%motion
+         end if
       end associate
    end subroutine measure_way
 

@@ -125,6 +125,7 @@ contains
          march%expected_rest = 0.0_wp
          if (allocated(march%last_motion)) deallocate (march%last_motion)
          if (allocated(run%step%unbalanced)) deallocate (run%step%unbalanced)
+         if (allocated(run%onset)) deallocate (run%onset, run%onset_motion)
          call set_interval(run%settings, march)
       end associate
    end subroutine begin_stride

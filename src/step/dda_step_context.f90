@@ -193,6 +193,10 @@ module dda_step_context
       type(rest_t), allocatable :: rest  !! The last rest on a path; not allocated before the first
       !> The pairs of blocks that touched at the beginning: (2, n_pair)
       integer, allocatable :: neighbours(:, :)
+      !> Contacts after the first full step from the last rest on a path: if the blocks fall, that
+      !> is how it begins
+      type(contacts_t), allocatable :: onset
+      real(wp), allocatable :: onset_motion(:, :)  !! Motion of that step: (n_dof, n_equation)
    end type run_t
 
    !> A contact is closed if its gap is below this share of the smaller block

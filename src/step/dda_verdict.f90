@@ -22,7 +22,7 @@ module dda_verdict
    private
 
    public :: has_fallen, has_collapsed, still_moves_away, tests_collapse
-   public :: measure_step, judge_verdict, largest_displacement, outcome_t, points_to_rest
+   public :: measure_step, judge_verdict, largest_displacement, outcome_t, is_full, points_to_rest
 
    !> A block that has turned by this angle has fallen [rad]
    real(wp), parameter :: turned = pi/4.0_wp
@@ -69,7 +69,8 @@ module dda_verdict
       real(wp) :: condition = 0.0_wp
       !> Motion of the step that gave the verdict: (n_dof, n_equation)
       real(wp), allocatable :: motion(:, :)
-      !> Contacts after that step, if a collapse has been followed from there for its pictures
+      !> Contacts after that step, if a collapse has been followed from there, for its pictures or
+      !> beyond the step in which it began
       type(contacts_t), allocatable :: fallen
       !> Whether histories were followed, or points led, in a static run
       logical :: has_path = .false.
@@ -278,8 +279,16 @@ contains
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
 
-      relaxes_enough = .not. step%is_shorter .or. step%farthest >= full*longest_motion(march)
+      relaxes_enough = .not. step%is_shorter .or. is_full(march, step)
    end function relaxes_enough
+
+   !> Whether a step goes about as far as it may
+   pure logical function is_full(march, step)
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+
+      is_full = step%farthest >= full*longest_motion(march)
+   end function is_full
 
    !> Whether the forces of a step tell where blocks would come to rest: they lose a good part in
    !> it, or have turned

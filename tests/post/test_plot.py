@@ -154,6 +154,24 @@ def test_any_scene_of_blocks_is_drawn(tmp_path: Path, deck: str, settings, words
     assert np.all(points >= low) and np.all(points <= high)
 
 
+def test_search_along_a_path_is_drawn_where_the_blocks_come_to_rest(tmp_path: Path) -> None:
+    """A lintel whose right support is led away until it falls: support, lintel and held points are drawn there."""
+    boxes = ((-1.0, -1.0, 0.0, 0.0, "fixed"), (1.0, -1.0, 2.0, 0.0, ""), (-0.2, 0.0, 1.2, 0.3, ""))
+    (tmp_path / "x.blocks").write_text("".join(
+        f"block {words}\n{a} {b}\n{c} {b}\n{c} {d}\n{a} {d}\n" for a, b, c, d, words in boxes)
+        + "displacement 1.2 -0.5 1 0\ndisplacement 1.8 -0.5 1 0\n")
+    run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = 'current' /\n"
+                            "&search parameter = 'displacement_factor', low = 0, high = 1, tolerance = 1e-3 /\n")
+    row = run.case(1)
+    assert row["verdict"] == "found"
+    with house_style():
+        axes = draw_case(run, 1).axes[0]
+    marks = sorted(line.get_xydata()[0][0] for line in axes.lines if line.get_marker() == "^")
+    assert marks == pytest.approx([1.2 + row["critical_low"], 1.8 + row["critical_low"]], abs=0.01)
+    drawn = np.vstack(scene_of(run, 1).shapes(1.0))
+    assert drawn[:, 0].max() == pytest.approx(2.0 + row["critical_low"], abs=0.01)
+
+
 def test_ways_of_measured_points_end_where_the_points_are(rocking: results.Results) -> None:
     with house_style():
         axes = draw_case(rocking, 1, magnify=1.0).axes[0]

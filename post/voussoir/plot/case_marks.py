@@ -55,11 +55,11 @@ def draw_loads(axes: Axes, source: Source, size: float) -> list[Artist]:
     return entries
 
 
-def draw_held(axes: Axes, source: Source) -> list[Artist]:
+def draw_held(axes: Axes, source: Source, scene: CaseScene) -> list[Artist]:
     """Draw points and lines that are held, and bars; gives the entries of the legend."""
     entries = []
     for along, (mark, words) in _HELD.items():
-        ends = [pair[:2] for pair in source.held if pair[2] == along]
+        ends = [(scene.held_at(pair[0]), scene.held_at(pair[1])) for pair in source.held if pair[2] == along]
         for start, end in ends:
             axes.plot(
                 *zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8, markeredgecolor=INK[0], **mark)

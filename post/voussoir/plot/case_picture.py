@@ -83,7 +83,7 @@ def draw_case(
     entries += draw_ways(axes, scene, ways, factor)
     if joints is not None:
         entries += draw_joints(axes, scene, joints, size, with_forces)
-    entries += draw_loads(axes, source, size) + draw_held(axes, source)
+    entries += draw_loads(axes, source, size) + draw_held(axes, source, scene)
     if numbers:
         draw_numbers(axes, scene, shapes)
     if coordinates:

@@ -1,0 +1,60 @@
+"""What a search reports of the shape in which blocks stand and fall, and what runs without shape cannot show."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from block_scene import block, rows_of, run_blocks
+from dda_command import run_dda
+
+
+def spreading_arch(thickness: float) -> str:
+    """A semicircular arch of 12 voussoirs of mean radius 1, whose springings go apart by 1 each."""
+    low, high, n = 1.0 - thickness / 2.0, 1.0 + thickness / 2.0, 12
+    rays = [(math.cos(math.pi * i / n), math.sin(math.pi * i / n)) for i in range(n + 1)]
+    text = "".join(block([(low * c, low * s), (high * c, high * s), (high * d, high * t), (low * d, low * t)])
+                   for (c, s), (d, t) in zip(rays, rays[1:]))
+    for left, way in ((-high, -1.0), (low, 1.0)):
+        text += block([(left, -0.2), (left + thickness, -0.2), (left + thickness, 0.0), (left, 0.0)])
+        for share in (0.25, 0.75):
+            text += f"displacement {left + share * thickness!r} -0.1 {way} 0\n"
+    return text
+
+
+@pytest.mark.parametrize("thickness", [0.2, 0.25])
+def test_search_for_a_spread_reports_the_displaced_shape_and_how_it_falls(tmp_path: Path, thickness: float) -> None:
+    row = run_blocks(tmp_path, spreading_arch(thickness), (
+        "&joint friction_deg = 50 /\n&analysis geometry = 'current' /\n"
+        "&search parameter = 'displacement_factor', low = 0, high = 1, tolerance = 1e-3 /\n"))
+    assert row["verdict"] == "found"
+    assert row["collapse_mode"] == "rotational"
+    assert float(row["path_time"]) == 0.0
+    spread = float(row["critical_low"])
+    corners = rows_of(tmp_path / "out" / "blocks.csv")
+    held = [float(corner["u"]) for corner in corners if corner["state"] == "held"]
+    # corners go with the held points but for the turn of the springing
+    assert max(held) == pytest.approx(spread, rel=0.05)
+    assert min(held) == pytest.approx(-spread, rel=0.05)
+    places = [(float(one["x"]) + float(one["u"]), float(one["y"]) + float(one["v"])) for one in corners]
+    joints = rows_of(tmp_path / "out" / "joints.csv")
+    assert sum(joint["mechanism"].startswith("hinge") for joint in joints) >= 2
+    for joint in joints:
+        x, y = float(joint["x_intrados"]), float(joint["y_intrados"])
+        assert min(math.hypot(x - a, y - b) for a, b in places) < 1e-4
+
+
+@pytest.mark.parametrize("ratio, moves", [(0.09, True), (0.12, False)])
+def test_run_in_time_without_moving_blocks_says_that_it_shows_no_collapse(
+        tmp_path: Path, ratio: float, moves: bool) -> None:
+    (tmp_path / "x.nml").write_text(
+        f"&arch thickness_ratio = {ratio} /\n"
+        "&analysis mode = 'dynamic', duration = 1, time_step = 0.01, steps = 1000 /\n")
+    done = run_dda("run", "x.nml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0
+    log = (tmp_path / "out" / "log.txt").read_text()
+    assert "geometry = 'reference' shows no collapse" in log
+    assert "geometry = 'reference' shows no collapse" in done.stdout
+    way = float(log.split("displacement is ")[1].split(" m")[0])
+    assert (way > 0.1) == moves
