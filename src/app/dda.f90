@@ -1,8 +1,9 @@
 !> The command dda
 program dda
    use, intrinsic :: iso_fortran_env, only : error_unit
+   use dda_blas_threads, only : blas_has_locks, set_one_blas_thread
    use dda_command_line, only : command_t, read_command
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave, survive_file_limit, worst_status
@@ -15,8 +16,13 @@ program dda
 
    status = exit_status%success
    call keep_memory()
+   call set_one_blas_thread()
    call survive_file_limit()
    call read_command(command, error)
+   if (.not. allocated(error) .and. command%jobs > 1) then
+      if (.not. blas_has_locks()) call fatal_error(error, "--jobs: the BLAS library has no locks" &
+         & //" (a serial OpenBLAS). Install libopenblas-openmp-dev, or use --jobs 1.")
+   end if
    if (allocated(error)) then
       write (error_unit, "(a)") error_line(error)
       call leave(exit_status%bad_input)

@@ -12,38 +12,37 @@
 !> call LAPACK.
 module dda_block_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : elimination_plan_t, most_columns, plan_panels
-   use dda_kinds, only : rk => wp, wp
+   use dda_block_plan, only : elimination_plan_t, plan_panels
+   use dda_fronts, only : assemble_fronts, eliminate_fronts, substitute_fronts
+   use dda_kinds, only : wp
+   use dda_lapack, only : dlacn2
    implicit none
    private
 
-   public :: block_factor_t, factorise, factorise_in_place, plan_factor, substitute
+   public :: block_factor_t, factorise, plan_factor, substitute
    public :: factored_condition
-
-   include "dda_panel_type.inc"
 
    !> Factor of a block matrix
    type :: block_factor_t
       type(elimination_plan_t) :: plan  !! Which numbers there are
-      type(panels_t) :: panels          !! The numbers
+      real(wp), allocatable :: number(:)    !! The numbers
+      integer, allocatable :: exchange(:)   !! Exchanges of rows, where the matrix is not symmetric
       !> Whether the factor can be used: the matrix was positive definite, or if it is not
       !> symmetric, no pivot was zero
       logical :: usable = .false.
    end type block_factor_t
 
-   !> Most steps of the ascent; two or three do
-   integer, parameter :: max_steps = 5
-
 contains
 
    !> Lay out the factor of a matrix
    pure subroutine plan_factor(matrix, factor)
-      !> The matrix, of which the pattern counts; three or six unknowns a block
+      !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
       type(block_factor_t), intent(out) :: factor  !! The factor, without numbers
 
       call plan_panels(matrix, factor%plan)
-      call new_panels(factor%plan, matrix%symmetric, factor%panels)
+      allocate (factor%number(factor%plan%start(size(factor%plan%start)) - 1))
+      allocate (factor%exchange(merge(1, size(matrix%diagonal(1, :, :)), matrix%symmetric)))
    end subroutine plan_factor
 
    !> Factor a matrix; one that is not positive definite, or not symmetric and singular, gives a
@@ -59,56 +58,30 @@ contains
 
       anew = .true.
       if (present(changed) .and. factor%usable) then
-         associate (plan => factor%plan, n => factor%plan%n_triple)
+         anew = .false.
+         associate (plan => factor%plan)
             do p = 1, size(anew)
-               associate ( &
-                  & block => plan%block((plan%first(p) + n - 1)/n:(plan%first(p + 1) - 1)/n), &
-                  & source => plan%source(1, plan%first_source(p):plan%first_source(p + 1) - 1))
-                  anew(p) = any(changed(block)) .or. any(anew(source))
-               end associate
+               if (any(changed(plan%block(plan%first(p):plan%first(p + 1) - 1)))) anew(p) = .true.
+               if (anew(p)) anew(plan%panel(plan%row(plan%first_row(p): &
+                  & plan%first_row(p + 1) - 1))) = .true.
             end do
          end associate
       end if
-      call eliminate(factor%plan, anew, factor%panels, matrix%diagonal, matrix%coupling, &
-         & matrix%upper)
-      factor%usable = factor%panels%usable
+      call assemble_fronts(factor%plan, matrix, anew, factor%number)
+      call eliminate_fronts(factor%plan, anew, factor%number, factor%exchange, factor%usable)
    end subroutine factorise
-
-   !> Factor what has been added up in the panels
-   pure subroutine factorise_in_place(factor)
-      type(block_factor_t), intent(inout) :: factor
-      integer :: p
-
-      call eliminate(factor%plan, [(.true., p=1, size(factor%plan%first) - 1)], factor%panels)
-      factor%usable = factor%panels%usable
-   end subroutine factorise_in_place
 
    !> Solve for one right-hand side
    pure subroutine substitute(factor, x)
       !> Usable factor
       type(block_factor_t), intent(in) :: factor
       real(wp), intent(inout) :: x(:, :)  !! Right-hand side in, solution out: (n_dof, n_block)
-      real(wp) :: y(3, factor%plan%n_triple*size(factor%plan%block) + factor%plan%highest)
-      integer :: b, k
+      real(wp) :: y(size(x, 1), size(x, 2))
 
-      associate (n => factor%plan%n_triple, block => factor%plan%block)
-         do b = 1, size(block)
-            do k = 1, n
-               y(:, n*(b - 1) + k) = x(3*k - 2:3*k, block(b))
-            end do
-         end do
-         call substitute_panels(factor%plan, factor%panels, y)
-         do b = 1, size(block)
-            do k = 1, n
-               x(3*k - 2:3*k, block(b)) = y(:, n*(b - 1) + k)
-            end do
-         end do
-      end associate
+      y = x(:, factor%plan%block)
+      call substitute_fronts(factor%plan, factor%number, factor%exchange, y)
+      x(:, factor%plan%block) = y
    end subroutine substitute
-
-   include "dda_panels.inc"
-   include "dda_panel_factor.inc"
-   include "dda_panel_substitution.inc"
 
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the
    !> unit of length nor the size of a block shows; huge if the factor is not usable
@@ -155,43 +128,23 @@ contains
       norm = maxval(column)
    end function scaled_norm
 
-   !> One-norm of the inverse of the scaled matrix from below, by Hager's ascent with Higham's
-   !> safeguard (ACM Transactions on Mathematical Software 14, 1988, 381)
+   !> One-norm of the inverse of the scaled matrix from below (LAPACK's dlacn2)
    pure function inverse_norm(factor, root) result(norm)
       type(block_factor_t), intent(in) :: factor
       real(wp), intent(in) :: root(:, :)  !! Roots of the matrix's diagonal: (n_dof, n_block)
       real(wp) :: norm                    !! The norm
-      real(wp) :: x(size(root, 1), size(root, 2)), y(size(root, 1), size(root, 2))
-      integer :: i, place(2), step
+      real(wp) :: v(size(root)), x(size(root, 1), size(root, 2))
+      integer :: kase, state(3), sign_of(size(root))
 
+      kase = 0
       norm = 0.0_wp
-      x = 1.0_wp/real(size(x), wp)
-      do step = 1, max_steps
-         y = scaled_solution(factor, root, x)
-         if (.not. sum(abs(y)) > norm) exit
-         norm = sum(abs(y))
-         y = scaled_solution(factor, root, sign(1.0_wp, y))
-         place = maxloc(abs(y))
-         if (abs(y(place(1), place(2))) <= sum(x*y)) exit
-         x = 0.0_wp
-         x(place(1), place(2)) = 1.0_wp
+      do
+         call dlacn2(size(root), v, x, sign_of, norm, kase, state)
+         if (kase == 0) return
+         ! the matrix is symmetric: its transpose solves the same
+         x = root*x
+         call substitute(factor, x)
+         x = root*x
       end do
-      x = reshape([((-1.0_wp)**i*(1.0_wp + real(i, wp)/real(max(1, size(x) - 1), wp)), &
-         & i=0, size(x) - 1)], shape(x))
-      y = scaled_solution(factor, root, x)
-      norm = max(norm, 2.0_wp*sum(abs(y))/(3.0_wp*real(size(x), wp)))
    end function inverse_norm
-
-   !> Solution with the scaled matrix
-   pure function scaled_solution(factor, root, load) result(x)
-      type(block_factor_t), intent(in) :: factor
-      real(wp), intent(in) :: root(:, :)
-      real(wp), intent(in) :: load(:, :)           !! The right-hand side: (n_dof, n_block)
-      real(wp) :: x(size(load, 1), size(load, 2))  !! The solution: (n_dof, n_block)
-
-      x = root*load
-      call substitute(factor, x)
-      x = root*x
-   end function scaled_solution
-
 end module dda_block_factor

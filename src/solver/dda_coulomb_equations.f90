@@ -96,7 +96,8 @@ contains
       integer :: j, n_joint
 
       n_joint = size(joints%shear_role)
-      call lay_out_joints(joints%graph, .false., equations%base%factor, equations%base%places)
+      call lay_out_joints(joints%graph, .false., equations%base%matrix, equations%base%factor, &
+         & equations%base%entry)
       equations%most_answers = max(least_answers, min(max_answer, &
          & most_numbers/(3*max(1, joints%graph%n_block))))
       allocate (equations%base_face(3, n_joint), source=0_small)

@@ -8,7 +8,7 @@ module dda_interior_direction
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : add_ray_forces, ray_rates
    use dda_kinds, only : wp
-   use dda_ray_matrix, only : add_digits, digits_of, ray_matrix_t, solve_springs
+   use dda_ray_matrix, only : add_digits, ray_matrix_t, solve_springs
    implicit none
    private
 
@@ -69,22 +69,19 @@ contains
       call direct_again(graph, path, point, springs, turn)
    end subroutine direct
 
-   !> The same by factors with more digits while it leaves too much
+   !> The same by a factor with more digits if it leaves too much
    pure subroutine direct_again(graph, path, point, springs, turn)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
-      integer :: digits
 
-      do digits = springs%digits + 1, digits_of%wide
-         if (.not. turn%left > turn%accepted) exit
-         call add_digits(graph, path%mass, digits, springs)
-         if (springs%digits /= digits) cycle
-         call respond_to_live_load(graph, path, springs, turn)
-         call find_direction(graph, path, point, turn%accepted, springs, turn)
-      end do
+      if (springs%is_wide .or. .not. turn%left > turn%accepted) return
+      call add_digits(graph, path%mass, springs)
+      if (.not. springs%is_wide) return
+      call respond_to_live_load(graph, path, springs, turn)
+      call find_direction(graph, path, point, turn%accepted, springs, turn)
    end subroutine direct_again
 
    !> Direction to balance, compatibility and the aim

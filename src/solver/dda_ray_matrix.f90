@@ -3,49 +3,37 @@
 !>    matrix = sum over rays of stiffness * arm * arm'
 !>
 !> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over more
-!> decades than working precision has: then there are factors with more digits.
+!> decades than working precision has: then there is a factor with more digits.
 !>
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
-   use dda_block_factor, only : block_factor_t, factorise_in_place, substitute
-   use dda_block_plan, only : coupling_places_t, side_of_rows
-   use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
+   use dda_block_factor, only : block_factor_t, factorise, substitute
+   use dda_block_matrix, only : block_matrix_t
    use dda_joint_graph, only : joint_graph_t, unit_of_length
    use dda_joint_places, only : lay_out_joints
-   use dda_joint_rays, only : joint_spring, n_side, ray_rates, scaled_rows
+   use dda_joint_rays, only : joint_rays, joint_spring, n_side, ray_rates, &
+      & scaled_rows
    use dda_kinds, only : wp
-   use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
+   use dda_wide_factor, only : factorise_wide, rk, substitute_wide
    implicit none
    private
 
-   public :: digits_of, digits_enum, ray_matrix_t
-   public :: add_digits, plan_matrix, set_springs, solve_springs
+   public :: ray_matrix_t, add_digits, plan_matrix, set_springs, solve_springs
 
-   !> The numbers of a factor
-   type :: digits_enum
-      integer :: working = 0   !! In working precision
-      integer :: extended = 1  !! With some more digits
-      integer :: wide = 2      !! With twice the digits
-   end type digits_enum
-
-   !> Names of these numbers
-   type(digits_enum), parameter :: digits_of = digits_enum()
-
-   !> The factor, in whose place the matrix is assembled, and what work on them needs
+   !> The matrix, its factor, and what work on them needs
    type :: ray_matrix_t
-      !> The factor
+      type(block_matrix_t) :: matrix
       type(block_factor_t) :: factor
-      !> Factors with more digits
-      type(extended_factor_t) :: extended
-      type(wide_factor_t) :: wide
-      !> The one that is used, one of digits_of
-      integer :: digits = digits_of%working
-      !> Whether one can be used
+      !> Numbers of the factor with more digits
+      real(rk), allocatable :: wide(:)
+      !> Whether that one is used
+      logical :: is_wide = .false.
+      !> Whether the one that is used can be
       logical :: usable = .false.
       !> Unit of length: [m]
       real(wp) :: length = 1.0_wp
-      !> Where the joints have their numbers in it
-      type(coupling_places_t) :: places
+      !> Number of each joint's coupling, negative where its second block has the rows: (n_joint)
+      integer, allocatable :: entry(:)
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
       !> Factorisations so far
@@ -62,7 +50,7 @@ contains
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
 
       springs%length = unit_of_length(graph)
-      call lay_out_joints(graph, .true., springs%factor, springs%places)
+      call lay_out_joints(graph, .true., springs%matrix, springs%factor, springs%entry)
       allocate (springs%stiffness(n_side, size(graph%block, 2)))
    end subroutine plan_matrix
 
@@ -80,48 +68,62 @@ contains
       integer :: b, k
 
       call assemble(graph, springs)
-      associate (number => springs%factor%panels%lower)
-         do b = 1, graph%n_block
-            associate (own => number(springs%places%diagonal(b):springs%places%diagonal(b) + 8:4))
-               largest = maxval(own + mass(:, b))
-               if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
-               do k = 1, 3
-                  own(k) = own(k) + mass(k, b)
-                  own(k) = merge(own(k)*(1.0_wp + lift), lift*largest, own(k) > 0.0_wp)
-               end do
-            end associate
-         end do
-      end associate
-      springs%digits = digits_of%working
-      call factorise_in_place(springs%factor)
+      do b = 1, graph%n_block
+         associate (own => springs%matrix%diagonal(:, :, b))
+            largest = maxval([(own(k, k) + mass(k, b), k=1, 3)])
+            if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
+            do k = 1, 3
+               own(k, k) = own(k, k) + mass(k, b)
+               own(k, k) = merge(own(k, k)*(1.0_wp + lift), lift*largest, own(k, k) > 0.0_wp)
+            end do
+         end associate
+      end do
+      springs%is_wide = .false.
+      call factorise(springs%matrix, springs%factor)
       springs%usable = springs%factor%usable
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine set_springs
 
    !> Assemble and factor the same springs and masses with more digits; the factor before stays in
    !> use where this one cannot be
-   pure subroutine add_digits(graph, mass, digits, springs)
+   pure subroutine add_digits(graph, mass, springs)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: mass(:, 0:)
-      integer, intent(in) :: digits  !! One of digits_of
       type(ray_matrix_t), intent(inout) :: springs
-      logical :: usable
+      real(rk) :: diagonal(3, 3, graph%n_block), coupling(3, 3, size(springs%matrix%pair, 2))
+      real(rk) :: arm(3, 3, 2), pushed(3, 3, 2), spring(3, 3)
+      real(wp) :: force(3, n_side)
+      integer :: b, c, i, j, side
 
-      associate (plan => springs%factor%plan)
-         if (digits == digits_of%extended) then
-            call factorise_extended(graph, springs%length, springs%stiffness, mass, &
-               & springs%places, plan, &
-               & springs%extended%panels)
-            usable = springs%extended%panels%usable
-         else
-            call factorise_wide(graph, springs%length, springs%stiffness, mass, &
-               & springs%places, plan, &
-               & springs%wide%panels)
-            usable = springs%wide%panels%usable
-         end if
-      end associate
-      if (usable) springs%digits = digits
-      springs%usable = springs%usable .or. usable
+      diagonal = 0.0_rk
+      do b = 1, graph%n_block
+         do c = 1, 3
+            diagonal(c, c, b) = mass(c, b)
+         end do
+      end do
+      do j = 1, size(graph%block, 2)
+         arm = scaled_rows(graph, j, springs%length)
+         force = joint_rays(graph%kind(j), graph%friction(j))
+         spring = 0.0_rk
+         do i = 1, n_side
+            do c = 1, 3
+               spring(:, c) = spring(:, c) &
+                  & + springs%stiffness(i, j)*(real(force(:, i), rk)*force(c, i))
+            end do
+         end do
+         do side = 1, 2
+            pushed(:, :, side) = matmul(arm(:, :, side), spring)
+            b = graph%block(side, j)
+            if (b > 0) diagonal(:, :, b) = diagonal(:, :, b) &
+               & + matmul(pushed(:, :, side), transpose(arm(:, :, side)))
+         end do
+         if (springs%entry(j) == 0) cycle
+         side = merge(1, 2, springs%entry(j) > 0)
+         coupling(:, :, abs(springs%entry(j))) = &
+            & matmul(pushed(:, :, side), transpose(arm(:, :, 3 - side)))
+      end do
+      call factorise_wide(springs%factor%plan, diagonal, coupling, springs%wide, springs%is_wide)
+      springs%usable = springs%usable .or. springs%is_wide
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine add_digits
 
@@ -132,23 +134,21 @@ contains
       real(wp) :: pushed(3, 3, 2), row(3, 3, 2), spring(3, 3)
       integer :: j, side
 
-      associate (number => springs%factor%panels%lower)
-         number = 0.0_wp
-         do j = 1, size(graph%block, 2)
-            row = scaled_rows(graph, j, springs%length)
-            spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
-            do side = 1, 2
-               if (graph%block(side, j) == 0) cycle
-               pushed(:, :, side) = matmul(row(:, :, side), spring)
-               call add_lower(pushed(:, :, side), row(:, :, side), &
-                  & number(springs%places%diagonal(graph%block(side, j))))
-            end do
-            if (springs%places%coupling(j) == 0) cycle
-            side = side_of_rows(springs%places, j)
-            call add_product(pushed(:, :, side), row(:, :, 3 - side), &
-               & number(abs(springs%places%coupling(j))))
+      springs%matrix%diagonal = 0.0_wp
+      do j = 1, size(graph%block, 2)
+         row = scaled_rows(graph, j, springs%length)
+         spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
+         do side = 1, 2
+            if (graph%block(side, j) == 0) cycle
+            pushed(:, :, side) = matmul(row(:, :, side), spring)
+            call add_lower(pushed(:, :, side), row(:, :, side), &
+               & springs%matrix%diagonal(:, :, graph%block(side, j)))
          end do
-      end associate
+         if (springs%entry(j) == 0) cycle
+         side = merge(1, 2, springs%entry(j) > 0)
+         springs%matrix%coupling(:, :, abs(springs%entry(j))) = &
+            & matmul(pushed(:, :, side), transpose(row(:, :, 3 - side)))
+      end do
    end subroutine assemble
 
    !> sum = sum + a b', the lower triangle alone: no more is looked at of a diagonal block
@@ -161,18 +161,6 @@ contains
       sum(2:, 2) = sum(2:, 2) + (a(2:, 1)*b(2, 1) + a(2:, 2)*b(2, 2) + a(2:, 3)*b(2, 3))
       sum(3, 3) = sum(3, 3) + (a(3, 1)*b(3, 1) + a(3, 2)*b(3, 2) + a(3, 3)*b(3, 3))
    end subroutine add_lower
-
-   !> sum = sum + a b'
-   pure subroutine add_product(a, b, sum)
-      real(wp), intent(in) :: a(3, 3)       !! First factor
-      real(wp), intent(in) :: b(3, 3)       !! Second factor, transposed
-      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
-      integer :: c
-
-      do c = 1, 3
-         sum(:, c) = sum(:, c) + (a(:, 1)*b(c, 1) + a(:, 2)*b(c, 2) + a(:, 3)*b(c, 3))
-      end do
-   end subroutine add_product
 
    !> Motion of the blocks by loads
    pure subroutine solve_springs(graph, springs, load, motion, rate)
@@ -188,16 +176,31 @@ contains
       motion = load
       motion(:, 0) = 0.0_wp
       springs%n_substitution = springs%n_substitution + 1
-      select case (springs%digits)
-      case (digits_of%working)
+      if (springs%is_wide) then
+         call solve_wide(graph, springs, motion, rate)
+      else
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(graph, springs%length, motion, rate)
-      case (digits_of%extended)
-         call substitute_extended(graph, springs%length, springs%factor%plan, &
-            & springs%extended%panels, motion(:, 1:), rate)
-      case default
-         call substitute_wide(graph, springs%length, springs%factor%plan, springs%wide%panels, &
-            & motion(:, 1:), rate)
-      end select
+      end if
    end subroutine solve_springs
+
+   !> The same with more digits: rates may be small differences of large motions
+   pure subroutine solve_wide(graph, springs, motion, rate)
+      type(joint_graph_t), intent(in) :: graph
+      type(ray_matrix_t), intent(in) :: springs
+      real(wp), intent(inout) :: motion(3, 0:graph%n_block)  !! Loads in, motion out
+      real(wp), intent(out), contiguous :: rate(:, :)
+      real(rk) :: x(3, 0:graph%n_block), arm(3, 3, 2)
+      integer :: j
+
+      x = motion
+      call substitute_wide(springs%factor%plan, springs%wide, x(:, 1:))
+      motion = real(x, wp)
+      do j = 1, size(rate, 2)
+         arm = scaled_rows(graph, j, springs%length)
+         rate(:, j) = real(matmul(matmul(x(:, graph%block(1, j)), arm(:, :, 1)) &
+            & + matmul(x(:, graph%block(2, j)), arm(:, :, 2)), &
+            & real(joint_rays(graph%kind(j), graph%friction(j)), rk)), wp)
+      end do
+   end subroutine solve_wide
 end module dda_ray_matrix

@@ -57,6 +57,7 @@ contains
       cross = index(wall, "x")
       read (wall(:cross - 1), *) units
       read (wall(cross + 1:), *) courses
+      ! a wall of one brick a course is a tower: the chain of an arch
       call new_wall(units, courses, 0.6_wp, graph, weight, push)
       allocate (load(n_dof, graph%n_block), source=1.0_wp)
       load(:3, :) = weight + push
@@ -70,7 +71,7 @@ contains
       end do
       call choose_order(matrix(1), elimination)
       write (output_unit, "(a8,i7,f9.1,f15.0,f9.0,f12.1,f9.1,f16.1,f9.1,2es10.1)") wall, &
-         & graph%n_block, real(size(factor(1)%panels%lower), wp)/(n_dof**2*graph%n_block), &
+         & graph%n_block, real(size(factor(1)%number), wp)/(n_dof**2*graph%n_block), &
          & products(elimination)/graph%n_block, 1.0e6_wp*plan, 1.0e6_wp*make, 1.0e6_wp*solve, &
          & residual
       flush (output_unit)

@@ -69,7 +69,7 @@ def test_decks_are_found_where_pip_puts_them(tmp_path: Path) -> None:
 def flags_of(pc_file: Path) -> list[str]:
     """What pkg-config --static tells a compiler, without pkg-config."""
     entry = dict(line.split(": ", 1) for line in pc_file.read_text().splitlines() if ": " in line)
-    words = shlex.split(f"{entry['Cflags']} {entry['Libs']}")
+    words = shlex.split(f"{entry['Cflags']} {entry['Libs']} {entry['Libs.private']}")
     xml = ["-lxml2"] if entry.get("Requires.private", "") == "libxml-2.0" else []
     return [word.replace("${pcfiledir}", str(pc_file.parent)) for word in words] + xml
 

@@ -1,0 +1,58 @@
+# LAPACK and BLAS: the target voussoir_lapack, and a check that two threads may call them at the same
+# time, for cases run side by side. Where the library that FindLAPACK finds is not safe, an OpenBLAS
+# with threads beside it is taken, and named in the program's RPATH.
+
+# Whether two threads may call the libraries at the same time
+function(voussoir_check_lapack libraries result)
+  if(CMAKE_CROSSCOMPILING OR NOT OpenMP_Fortran_FOUND)
+    set(${result} TRUE PARENT_SCOPE)
+    return()
+  endif()
+  string(SHA256 key "${libraries} ${CMAKE_Fortran_COMPILER}")
+  if(NOT VOUSSOIR_LAPACK_CHECKED STREQUAL key)
+    list(TRANSFORM libraries REPLACE "^(/.*)/[^/]*$" "-Wl,-rpath,\\1" OUTPUT_VARIABLE rpath)
+    list(FILTER rpath INCLUDE REGEX "^-Wl,-rpath")
+    try_run(status compiled "${CMAKE_BINARY_DIR}/blas_threads"
+      "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/blas_threads.f90"
+      LINK_OPTIONS ${rpath} LINK_LIBRARIES ${libraries} OpenMP::OpenMP_Fortran ${CMAKE_DL_LIBS}
+      COMPILE_OUTPUT_VARIABLE output)
+    if(NOT compiled)
+      message(FATAL_ERROR "The check of LAPACK and BLAS does not compile:\n${output}")
+    endif()
+    if(NOT status EQUAL 0)
+      set(${result} FALSE PARENT_SCOPE)
+      return()
+    endif()
+    set(VOUSSOIR_LAPACK_CHECKED "${key}" CACHE INTERNAL "LAPACK that has passed the check")
+  endif()
+  set(${result} TRUE PARENT_SCOPE)
+endfunction()
+
+find_package(BLAS)
+find_package(LAPACK)
+set(advice "On Debian and Ubuntu: sudo apt-get install libopenblas-openmp-dev")
+if(NOT LAPACK_FOUND)
+  message(FATAL_ERROR "LAPACK and BLAS were not found. ${advice}")
+endif()
+set(lapack ${LAPACK_LIBRARIES} ${BLAS_LIBRARIES})
+list(REMOVE_DUPLICATES lapack)
+voussoir_check_lapack("${lapack}" safe)
+foreach(threads IN ITEMS openmp pthread)
+  if(safe)
+    break()
+  endif()
+  set(folder "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openblas-${threads}")
+  if(EXISTS "${folder}/libopenblas.so")
+    set(lapack "${folder}/libopenblas.so")
+    voussoir_check_lapack("${lapack}" safe)
+    set(CMAKE_INSTALL_RPATH "${folder}")
+  endif()
+endforeach()
+if(NOT safe)
+  message(FATAL_ERROR "LAPACK is not safe to call from two threads (${lapack}): a serial OpenBLAS has "
+    "no locks. ${advice}. To choose another library, set BLA_VENDOR.")
+endif()
+list(JOIN lapack ", " names)
+message(STATUS "LAPACK: ${names}")
+add_library(voussoir_lapack INTERFACE)
+target_link_libraries(voussoir_lapack INTERFACE ${lapack} ${CMAKE_DL_LIBS})

@@ -1,0 +1,162 @@
+!> Factors of a dense panel: a few columns at a time are eliminated inline, and taken from the
+!> others by BLAS
+module dda_front_factor
+   use dda_kinds, only : wp
+   use dda_lapack, only : dgemm, dlaswp, dtrsm
+   implicit none
+   private
+
+   public :: factor_front, narrow, take_triple
+
+   !> Columns up to which a call of BLAS takes longer than the work on them
+   integer, parameter :: narrow = 12
+
+contains
+
+   !> Factor one panel
+   pure subroutine factor_front(symmetric, width, below, front, exchange, info)
+      logical, intent(in) :: symmetric                       !! Whether the matrix is
+      integer, intent(in) :: width                           !! Columns of the panel
+      integer, intent(in) :: below                           !! Rows below its diagonal
+      real(wp), intent(inout) :: front(width + below, *)     !! The panel
+      integer, intent(inout) :: exchange(width)              !! Exchanges of its rows
+      integer, intent(out) :: info                           !! 0 if it has a factor
+
+      if (symmetric) then
+         call factor_symmetric(width, width + below, front, info)
+      else
+         call factor_pair(width, width + below, below, front, front(1, width + 1), exchange, info)
+      end if
+   end subroutine factor_front
+
+   !> Factor a panel into L D L', a few columns at a time: D stands on the diagonal of L, whose own
+   !> is ones. Blocks that nothing holds move as their load over their mass to the last bit, which
+   !> roots on the diagonal would spoil
+   pure subroutine factor_symmetric(width, height, front, info)
+      integer, intent(in) :: width
+      integer, intent(in) :: height                !! Rows of the panel
+      real(wp), intent(inout) :: front(height, *)  !! Its columns
+      integer, intent(out) :: info
+      real(wp) :: scaled(narrow, width)
+      integer :: behind, c, k, n
+
+      do c = 1, width, narrow
+         n = min(narrow, width + 1 - c)
+         behind = c + n
+         call factor_narrow(n, height + 1 - c, height, front(c, c), info)
+         if (info /= 0) return
+         if (behind > width) return
+         do k = c, behind - 1
+            scaled(k + 1 - c, behind:width) = front(behind:width, k)*front(k, k)
+         end do
+         call dgemm("N", "N", height + 1 - behind, width + 1 - behind, n, -1.0_wp, &
+            & front(behind, c), height, scaled(1, behind), narrow, 1.0_wp, front(behind, behind), &
+            & height)
+      end do
+   end subroutine factor_symmetric
+
+   !> The same for a few columns, three at a time
+   pure subroutine factor_narrow(n, height, ld, a, info)
+      integer, intent(in) :: n               !! Columns
+      integer, intent(in) :: height          !! Rows
+      integer, intent(in) :: ld              !! Distance of two columns
+      real(wp), intent(inout) :: a(ld, *)    !! The columns
+      integer, intent(out) :: info
+      real(wp) :: factor(3)
+      integer :: c, j, k
+
+      do c = 1, n, 3
+         do k = c, c + 2
+            do j = c, k - 1
+               a(k:height, k) = a(k:height, k) - a(k:height, j)*(a(k, j)*a(j, j))
+            end do
+            info = k
+            if (.not. a(k, k) > 0.0_wp) return
+            a(k + 1:height, k) = a(k + 1:height, k)/a(k, k)
+         end do
+         do k = c + 3, n
+            factor = [(a(k, j)*a(j, j), j=c, c + 2)]
+            call take_triple(height + 1 - k, a(k, c), a(k, c + 1), a(k, c + 2), factor, a(k, k))
+         end do
+      end do
+      info = 0
+   end subroutine factor_narrow
+
+   !> Factor a panel that is not symmetric, a few columns at a time. Rows change places within three
+   !> unknowns of a block alone: pivots among blocks of which one is held far more stiffly than the
+   !> other would cost the soft one its digits
+   pure subroutine factor_pair(width, height, below, front, right, exchange, info)
+      integer, intent(in) :: width, height, below
+      real(wp), intent(inout) :: front(height, *)
+      real(wp), intent(inout) :: right(width, *)   !! Its rows to the right of the diagonal
+      integer, intent(inout) :: exchange(width)
+      integer, intent(out) :: info
+      integer :: behind, c, n
+
+      do c = 1, width, narrow
+         n = min(narrow, width + 1 - c)
+         behind = c + n
+         call factor_columns(n, height + 1 - c, height, front(c, c), exchange(c:behind - 1), info)
+         if (info /= 0) return
+         exchange(c:behind - 1) = exchange(c:behind - 1) + c - 1
+         call dlaswp(c - 1, front, height, c, behind - 1, exchange, 1)
+         call eliminate_rows(width + 1 - behind, height, height, front(1, behind))
+         call eliminate_rows(below, width, width, right)
+      end do
+
+   contains
+
+      !> Take the columns from others
+      pure subroutine eliminate_rows(m, rows, ld, other)
+         integer, intent(in) :: m                   !! How many others
+         integer, intent(in) :: rows                !! Rows of them
+         integer, intent(in) :: ld                  !! Distance of two columns
+         real(wp), intent(inout) :: other(ld, *)    !! The others
+
+         if (m < 1) return
+         call dlaswp(m, other, ld, c, behind - 1, exchange, 1)
+         call dtrsm("L", "L", "N", "U", n, m, 1.0_wp, front(c, c), height, other(c, 1), ld)
+         if (rows < behind) return
+         call dgemm("N", "N", rows + 1 - behind, m, n, -1.0_wp, front(behind, c), height, &
+            & other(c, 1), ld, 1.0_wp, other(behind, 1), ld)
+      end subroutine eliminate_rows
+   end subroutine factor_pair
+
+   !> Factor a few columns
+   pure subroutine factor_columns(n, height, ld, a, exchange, info)
+      integer, intent(in) :: n, height, ld
+      real(wp), intent(inout) :: a(ld, *)
+      integer, intent(out) :: exchange(n)  !! Exchanges of rows
+      integer, intent(out) :: info
+      real(wp) :: row(n)
+      integer :: j, k, p
+
+      do k = 1, n
+         p = k - 1 + maxloc(abs(a(k:3*((k + 2)/3), k)), dim=1)
+         exchange(k) = p
+         info = k
+         if (.not. abs(a(p, k)) > 0.0_wp) return
+         row = a(p, :n)
+         a(p, :n) = a(k, :n)
+         a(k, :n) = row
+         a(k + 1:height, k) = a(k + 1:height, k)/a(k, k)
+         do j = k + 1, n
+            a(k + 1:height, j) = a(k + 1:height, j) - a(k + 1:height, k)*a(k, j)
+         end do
+      end do
+      info = 0
+   end subroutine factor_columns
+
+   !> Take three columns from another one
+   pure subroutine take_triple(n, one, two, three, factor, rest)
+      integer, intent(in) :: n                            !! Rows
+      real(wp), intent(in) :: one(n), two(n), three(n)    !! The columns
+      real(wp), intent(in) :: factor(3)                   !! How much of each
+      real(wp), intent(inout) :: rest(n)                  !! What they are taken from
+      integer :: i
+
+      do i = 1, n
+         rest(i) = rest(i) - (one(i)*factor(1) + two(i)*factor(2) + three(i)*factor(3))
+      end do
+   end subroutine take_triple
+end module dda_front_factor

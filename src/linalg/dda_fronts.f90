@@ -1,0 +1,317 @@
+!> Elimination by panels of a plan, with LAPACK's factors of dense matrices
+!>
+!> A panel holds w columns in a matrix of w rows on the diagonal and m rows below it. Where the
+!> matrix is not symmetric, w rows with the m columns to the right of the diagonal follow. When its
+!> columns are eliminated, one product changes all panels that have these rows.
+module dda_fronts
+   use dda_block_matrix, only : block_matrix_t
+   use dda_block_plan, only : elimination_plan_t, find_rows
+   use dda_front_factor, only : factor_front, narrow, take_triple
+   use dda_kinds, only : wp
+   use dda_lapack, only : dgemm, dgemv, dlaswp, dtrsv
+   implicit none
+   private
+
+   public :: assemble_fronts, eliminate_fronts, substitute_fronts
+
+   !> Columns of a symmetric product that are found at once: those above the diagonal are in vain
+   integer, parameter :: many = 48
+
+contains
+
+   !> Lay the blocks of the matrix into panels
+   pure subroutine assemble_fronts(plan, matrix, anew, number)
+      type(elimination_plan_t), intent(in) :: plan
+      type(block_matrix_t), intent(in) :: matrix
+      logical, intent(in) :: anew(:)           !! Panels to be made anew: (n_panel)
+      real(wp), intent(inout) :: number(*)     !! Numbers of the panels
+      integer :: b, c, e, height, k, nd, p, r, width
+
+      nd = plan%n_dof
+      do p = 1, size(anew)
+         if (.not. anew(p)) cycle
+         number(plan%start(p):plan%start(p + 1) - 1) = 0.0_wp
+         height = nd*(plan%first(p + 1) - plan%first(p) + plan%first_row(p + 1) - plan%first_row(p))
+         k = plan%start(p)
+         do b = plan%first(p), plan%first(p + 1) - 1
+            call add_block(nd, matrix%diagonal(:, :, plan%block(b)), height, number(k))
+            k = k + nd*(height + 1)
+         end do
+      end do
+      do e = 1, size(plan%given, 2)
+         p = abs(plan%given(1, e))
+         if (.not. anew(p)) cycle
+         r = nd*plan%given(2, e)
+         c = nd*plan%given(3, e)
+         width = nd*(plan%first(p + 1) - plan%first(p))
+         height = width + nd*(plan%first_row(p + 1) - plan%first_row(p))
+         k = plan%start(p) + r + c*height
+         associate (first_is_row => plan%given(1, e) > 0)
+            if (first_is_row) then
+               call add_block(nd, matrix%coupling(:, :, e), height, number(k))
+            else if (plan%symmetric) then
+               call add_block(nd, transpose(matrix%coupling(:, :, e)), height, number(k))
+            else
+               call add_block(nd, matrix%upper(:, :, e), height, number(k))
+            end if
+            if (plan%symmetric) cycle
+            if (r < width) then
+               k = plan%start(p) + c + r*height
+            else
+               k = plan%start(p) + height*width + c + (r - width)*width
+               height = width
+            end if
+            if (first_is_row) then
+               call add_block(nd, matrix%upper(:, :, e), height, number(k))
+            else
+               call add_block(nd, matrix%coupling(:, :, e), height, number(k))
+            end if
+         end associate
+      end do
+   end subroutine assemble_fronts
+
+   !> Add a block to a panel
+   pure subroutine add_block(nd, block, height, sum)
+      integer, intent(in) :: nd                     !! Unknowns of one block
+      real(wp), intent(in) :: block(nd, nd)         !! The block
+      integer, intent(in) :: height                 !! Rows of the panel
+      real(wp), intent(inout) :: sum(height, *)     !! The panel from the block's first number on
+      integer :: c, r
+
+      do c = 1, nd
+         do r = 1, nd
+            sum(r, c) = sum(r, c) + block(r, c)
+         end do
+      end do
+   end subroutine add_block
+
+   !> Eliminate panel by panel
+   pure subroutine eliminate_fronts(plan, anew, number, exchange, usable)
+      type(elimination_plan_t), intent(in) :: plan
+      logical, intent(in) :: anew(:)
+      real(wp), intent(inout) :: number(*)
+      integer, intent(inout) :: exchange(*)  !! Exchanges of rows in the panels: (n_dof*n_block)
+      !> Whether all pivots of a symmetric matrix are positive, those of another one not zero
+      logical, intent(out) :: usable
+      real(wp), allocatable :: share(:)
+      integer :: below, info, p, width
+
+      usable = .false.
+      allocate (share((plan%n_dof*plan%most_rows)**2), source=0.0_wp)
+      do p = 1, size(anew)
+         width = plan%n_dof*(plan%first(p + 1) - plan%first(p))
+         below = plan%n_dof*(plan%first_row(p + 1) - plan%first_row(p))
+         if (anew(p)) then
+            call factor_front(plan%symmetric, width, below, number(plan%start(p)), &
+               & exchange(plan%n_dof*(plan%first(p) - 1) + 1), info)
+            if (info /= 0) return
+         end if
+         if (below == 0) cycle
+         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))
+            if (.not. any(anew(plan%panel(row)))) cycle
+         end associate
+         call multiply_front(plan%symmetric, width, below, number(plan%start(p)), share)
+         call spread_share(plan, p, anew, below, share, number)
+      end do
+      usable = .true.
+   end subroutine eliminate_fronts
+
+   !> What elimination of a panel takes from its rows; of a symmetric matrix the lower triangle
+   pure subroutine multiply_front(symmetric, width, below, front, share)
+      logical, intent(in) :: symmetric                    !! Whether the matrix is
+      integer, intent(in) :: width                        !! Columns of the panel
+      integer, intent(in) :: below                        !! Rows below its diagonal
+      real(wp), intent(in) :: front(width + below, *)     !! The panel
+      real(wp), intent(inout) :: share(below, *)  !! The products: (below, below)
+      real(wp) :: scaled(width, many)
+      integer :: c, height, j, k, n
+
+      height = width + below
+      if (.not. symmetric) then
+         call dgemm("N", "N", below, below, width, 1.0_wp, front(width + 1, 1), height, &
+            & front(1, width + 1), width, 0.0_wp, share, below)
+      else if (width <= narrow) then
+         do k = 1, below
+            share(k:below, k) = 0.0_wp
+            do c = 1, width, 3
+               call take_triple(below + 1 - k, front(width + k, c), front(width + k, c + 1), &
+                  & front(width + k, c + 2), [(-front(width + k, j)*front(j, j), j=c, c + 2)], &
+                  & share(k, k))
+            end do
+         end do
+      else
+         do c = 1, below, many
+            n = min(many, below + 1 - c)
+            do k = 1, width
+               scaled(k, :n) = front(width + c:width + c + n - 1, k)*front(k, k)
+            end do
+            call dgemm("N", "N", below + 1 - c, n, width, 1.0_wp, front(width + c, 1), height, &
+               & scaled, width, 0.0_wp, share(c, c), below)
+         end do
+      end if
+   end subroutine multiply_front
+
+   !> Take the products of one panel from those that have its rows
+   pure subroutine spread_share(plan, p, anew, below, share, number)
+      type(elimination_plan_t), intent(in) :: plan
+      integer, intent(in) :: p  !! The panel
+      logical, intent(in) :: anew(:)
+      integer, intent(in) :: below
+      real(wp), intent(in) :: share(below, *)  !! The products: (below, below)
+      real(wp), intent(inout) :: number(*)
+      integer :: at(plan%first_row(p + 1) - plan%first_row(p)), height, i, k, n, nd, t, width
+
+      nd = plan%n_dof
+      n = 0
+      do while (n < size(at))
+         t = plan%panel(plan%row(plan%first_row(p) + n))
+         width = plan%first(t + 1) - plan%first(t)
+         height = width + plan%first_row(t + 1) - plan%first_row(t)
+         k = n + 1
+         call find_rows(plan, t, plan%row(plan%first_row(p) + n:plan%first_row(p + 1) - 1), &
+            & at(k:), n)
+         n = k - 1 + n
+         if (.not. anew(t)) cycle
+         i = nd*(k - 1) + 1
+         call subtract(nd, at(k:), at(k:n), plan%symmetric, below, share(i, i), nd*height, &
+            & number(plan%start(t)))
+         if (.not. plan%symmetric) call subtract(nd, at(k:n), at(n + 1:) - width, .false., below, &
+            & share(i, nd*n + 1), nd*width, number(plan%start(t) + nd**2*height*width))
+      end do
+   end subroutine spread_share
+
+   !> Take blocks from a panel: panel(row, column) = panel(row, column) - share. Rows that follow
+   !> one another are taken together
+   pure subroutine subtract(nd, row, column, lower, below, share, height, panel)
+      integer, intent(in) :: nd
+      integer, intent(in) :: row(:), column(:)  !! Places of the blocks in the panel, from zero on
+      logical, intent(in) :: lower              !! Whether those above the diagonal are left out
+      integer, intent(in) :: below
+      real(wp), intent(in) :: share(below, *)
+      integer, intent(in) :: height                  !! Rows of the panel
+      real(wp), intent(inout) :: panel(height, *)    !! The panel
+      integer :: c, first, i, j, last, length, r
+
+      do j = 1, size(column)
+         first = merge(j, 1, lower)
+         do while (first <= size(row))
+            last = first
+            do while (last < size(row))
+               if (row(last + 1) /= row(last) + 1) exit
+               last = last + 1
+            end do
+            length = nd*(last + 1 - first)
+            r = nd*row(first)
+            i = nd*(first - 1)
+            do c = 1, nd
+               associate (into => panel(r + 1:r + length, nd*column(j) + c))
+                  into = into - share(i + 1:i + length, nd*(j - 1) + c)
+               end associate
+            end do
+            first = last + 1
+         end do
+      end do
+   end subroutine subtract
+
+   !> Solve with the panels
+   pure subroutine substitute_fronts(plan, number, exchange, x)
+      type(elimination_plan_t), intent(in) :: plan
+      real(wp), intent(in) :: number(*)
+      integer, intent(in) :: exchange(*)
+      !> Right-hand side in, solution out: (n_dof, n_block)
+      real(wp), intent(inout) :: x(plan%n_dof, *)
+      real(wp) :: z(plan%n_dof, plan%highest)
+      integer :: height, p, width
+
+      do p = 1, size(plan%first) - 1
+         width = plan%first(p + 1) - plan%first(p)
+         height = width + plan%first_row(p + 1) - plan%first_row(p)
+         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1), &
+            & own => x(:, plan%first(p):plan%first(p + 1) - 1))
+            z(:, :width) = own
+            z(:, width + 1:height) = 0.0_wp
+            call substitute_down(plan%symmetric, plan%n_dof*width, plan%n_dof*height, &
+               & number(plan%start(p)), exchange(plan%n_dof*(plan%first(p) - 1) + 1), z)
+            own = z(:, :width)
+            x(:, row) = x(:, row) + z(:, width + 1:height)
+         end associate
+      end do
+      do p = size(plan%first) - 1, 1, -1
+         width = plan%first(p + 1) - plan%first(p)
+         height = width + plan%first_row(p + 1) - plan%first_row(p)
+         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1), &
+            & own => x(:, plan%first(p):plan%first(p + 1) - 1))
+            z(:, :width) = own
+            z(:, width + 1:height) = x(:, row)
+            call substitute_up(plan%symmetric, plan%n_dof*width, plan%n_dof*height, &
+               & number(plan%start(p)), z)
+            own = z(:, :width)
+         end associate
+      end do
+   end subroutine substitute_fronts
+
+   !> Solve with L of a panel, and take the solution from the rows below
+   pure subroutine substitute_down(symmetric, width, height, front, exchange, z)
+      logical, intent(in) :: symmetric
+      integer, intent(in) :: width, height
+      real(wp), intent(in) :: front(height, *)  !! The panel
+      integer, intent(in) :: exchange(width)    !! Exchanges of its rows
+      !> Right-hand side and zeros in, solution and what the rows below get out: (height)
+      real(wp), intent(inout) :: z(height)
+      integer :: c
+
+      if (.not. symmetric) call dlaswp(1, z, height, 1, width, exchange, 1)
+      if (width > narrow) then
+         call dtrsv("L", "N", "U", width, front, height, z, 1)
+         if (width < height) call dgemv("N", height - width, width, -1.0_wp, &
+            & front(width + 1, 1), height, z, 1, 0.0_wp, z(width + 1), 1)
+         return
+      end if
+      do c = 1, width, 3
+         z(c + 1) = z(c + 1) - front(c + 1, c)*z(c)
+         z(c + 2) = z(c + 2) - front(c + 2, c)*z(c) - front(c + 2, c + 1)*z(c + 1)
+         call take_triple(height - c - 2, front(c + 3, c), front(c + 3, c + 1), &
+            & front(c + 3, c + 2), z(c:c + 2), z(c + 3))
+      end do
+   end subroutine substitute_down
+
+   !> Solve with the transpose of L of a panel, or with U
+   pure subroutine substitute_up(symmetric, width, height, front, z)
+      logical, intent(in) :: symmetric
+      integer, intent(in) :: width, height
+      real(wp), intent(in) :: front(height, *)
+      !> Right-hand side and solution of the rows below in, solution out: (height)
+      real(wp), intent(inout) :: z(height)
+      real(wp) :: one, two, three
+      integer :: c, i
+
+      if (.not. symmetric) then
+         if (width < height) call dgemv("N", width, height - width, -1.0_wp, front(1, width + 1), &
+            & width, z(width + 1), 1, 1.0_wp, z, 1)
+         call dtrsv("U", "N", "N", width, front, height, z, 1)
+         return
+      end if
+      do c = 1, width
+         z(c) = z(c)/front(c, c)
+      end do
+      if (width > narrow) then
+         if (width < height) call dgemv("T", height - width, width, -1.0_wp, front(width + 1, 1), &
+            & height, z(width + 1), 1, 1.0_wp, z, 1)
+         call dtrsv("L", "T", "U", width, front, height, z, 1)
+      else
+         do c = width - 2, 1, -3
+            one = z(c)
+            two = z(c + 1)
+            three = z(c + 2)
+            do i = c + 3, height
+               one = one - front(i, c)*z(i)
+               two = two - front(i, c + 1)*z(i)
+               three = three - front(i, c + 2)*z(i)
+            end do
+            z(c + 2) = three
+            z(c + 1) = two - front(c + 2, c + 1)*z(c + 2)
+            z(c) = one - front(c + 1, c)*z(c + 1) - front(c + 2, c)*z(c + 2)
+         end do
+      end if
+   end subroutine substitute_up
+end module dda_fronts
