@@ -153,7 +153,7 @@ def test_unknown_theory_is_refused(name):
 def test_range_of_a_theory_ends_at_its_limit(name):
     limit = theory.limits(name)["alpha_limit"]
     theory.critical(limit, name)
-    theory.critical(5e-324, name)
+    theory.critical(1e-60, name)
     for angle in (np.nextafter(limit, 4.0), 0.0, -0.0, math.pi, 1e308):
         with pytest.raises(ValueError):
             theory.critical(angle, name)
@@ -286,3 +286,42 @@ def test_every_routine_lets_python_go_on_while_it_computes():
     text = wrapper.read_text()
     routines = len(re.findall(r"^static PyObject \*f2py_rout_", text, re.MULTILINE))
     assert routines > 10 and text.count("Py_BEGIN_ALLOW_THREADS") == routines
+
+
+#: Tiny and huge arguments, and those at the ends of ranges
+EXTREMES = (0.0, 5e-324, 1e-310, 1e-160, 1e-100, 1e-60, 1e-17, 1e-8, 0.1, QUARTER, 2.0 - 2e-16, math.pi, 1e8, 1.7e308,
+            -1e-160, math.inf, math.nan)
+
+
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+def test_extreme_arguments_give_a_number_or_a_refusal(call) -> None:
+    for value in EXTREMES:
+        for argument in (value, np.array([value])):
+            try:
+                found = call(argument)
+            except ValueError:
+                continue
+            parts = found.values() if isinstance(found, dict) else np.ravel(found)
+            assert all(isinstance(part, str) or np.isfinite(part) for part in parts), (value, found)
+
+
+@pytest.mark.parametrize("name", THEORIES)
+def test_two_tiny_arguments_give_a_number_or_a_refusal(name: str) -> None:
+    for first in EXTREMES:
+        for second in EXTREMES:
+            for function in (theory.equilibrium_thickness, theory.curve_slope, theory.lower_thrust,
+                             theory.springing_thrust, theory.tangent_thrust):
+                try:
+                    found = function(first, second, name)
+                except ValueError:
+                    continue
+                assert math.isfinite(found), (function, first, second)
+
+
+def test_what_underflows_is_named() -> None:
+    with pytest.raises(ValueError, match="expected arguments whose results doubles can hold, got alpha = 1e-160"):
+        theory.critical(1e-160, "ccr")
+    with pytest.raises(ValueError, match="got alpha = 1e-200"):
+        theory.critical([0.5, 1e-200], "ccr")
+    beta, eta, h = theory.critical(1e-60, "ccr")
+    assert eta > 0.0 and (beta, h) == pytest.approx((beta, 1.0))

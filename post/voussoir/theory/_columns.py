@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Union
 
@@ -67,13 +68,17 @@ def evaluate(
     given = arguments.values()
     if _FLOATS.issuperset(map(type, given)):
         *found, fault = routine(*given, *numbers)
-        if fault[0] == 0:
+        if fault[0] == 0 and all(math.isfinite(column[0]) for column in found):
             return tuple([column[0] for column in found])
     shape, flat = columns(**arguments)
     if flat[0].size == 0:
         return tuple(np.empty(shape) for _ in range(results))
     *found, fault = routine(*flat, *numbers)
     refuse(fault, list(arguments), flat, ranges)
+    lost = np.flatnonzero(~np.isfinite(found).all(axis=0))
+    if lost.size > 0:
+        given_there = ", ".join(f"{name} = {column[lost[0]].item()!r}" for name, column in zip(arguments, flat))
+        raise ValueError(f"expected arguments whose results doubles can hold, got {given_there}")
     return tuple(shaped(shape, column) for column in found)
 
 
