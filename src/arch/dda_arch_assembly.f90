@@ -3,7 +3,9 @@ module dda_arch_assembly
    use dda_arch, only : springing
    use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
+   use dda_vector, only : cross
    implicit none
    private
 
@@ -35,6 +37,8 @@ module dda_arch_assembly
       real(wp), allocatable :: crown_x(:)  !! Where the crown of each span is along x: (n_span) [m]
       integer :: n_voussoir = 0            !! Number of voussoirs
       real(wp) :: springing_y = 0.0_wp     !! Height of the left springing of the intrados [m]
+      !> Numbers of blocks, corners and chords as they are added
+      integer :: n_block = 0, n_vertex = 0, n_top = 0
    end type arch_assembly_t
 
    !> Material of supports, whose joints may be another law's
@@ -43,6 +47,8 @@ module dda_arch_assembly
    real(wp), parameter :: no_slip_deg = 90.0_wp
    !> Corners nearer than this share of a pier's width are one
    real(wp), parameter :: same = 1.0e-9_wp
+   !> Corners on a line span no more than this share of their coordinates beside its length
+   real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
    interface
 
@@ -78,9 +84,15 @@ contains
          assembly%crown_x(s) = sections%crown_x + shift(1)
          call add_voussoirs(form, sections, shift, s, assembly)
       end do
-      assembly%n_voussoir = size(assembly%plan%fixed)
+      assembly%n_voussoir = assembly%n_block
       call add_supports(form, sections, assembly, problem)
       if (len_trim(problem%text) > 0) return
+      call trim_room(assembly)
+      if (has_flat_block(assembly%plan)) then
+         problem = form_problem_t("expected voussoirs with an area, got one whose corners lie "// &
+            & "on a line; raise voussoirs or thickness", "voussoirs")
+         return
+      end if
       assembly%plan%materials = [material_plan_t(number=of_supports)]
       if (form%no_slip) assembly%plan%laws = [law_plan_t(material=[1, of_supports], &
          & value=[no_slip_deg, spread(0.0_wp, 1, 4)], &
@@ -114,7 +126,7 @@ contains
          outer = between(real(ring, wp)/real(form%rings, wp))
          do i = 1, size(joint) - 1
             associate (a => joint(i), b => joint(i + 1))
-               call add_block(assembly%plan, reshape([inner(:, a:b), outer(:, b:a:-1)], &
+               call add_block(assembly, reshape([inner(:, a:b), outer(:, b:a:-1)], &
                   & [2, 2*(b - a + 1)]), .false., 1)
                if (ring < form%rings) cycle
                do k = a, b - 1
@@ -169,13 +181,13 @@ contains
       end do
       do s = 0, form%spans
          if (stands_free(s)) then
-            call add_block(assembly%plan, ground(left(1, 1, s), right(1, 1, s), &
+            call add_block(assembly, ground(left(1, 1, s), right(1, 1, s), &
                & min(left(2, 1, s), right(2, 1, s)) - height(s)), .true., of_supports)
          else if (s == 0) then
-            call add_block(assembly%plan, springing(right(:, 2, s), right(:, 1, s)), .true., &
+            call add_block(assembly, springing(right(:, 2, s), right(:, 1, s)), .true., &
                & of_supports)
          else
-            call add_block(assembly%plan, springing(left(:, 1, s), left(:, 2, s)), .true., &
+            call add_block(assembly, springing(left(:, 1, s), left(:, 2, s)), .true., &
                & of_supports)
          end if
       end do
@@ -231,7 +243,7 @@ contains
             & low + course, left(1, 1), low + course], [2, 4]))
          if (i == form%courses) corner = reshape([left(1, 1), low, right(1, 1), low, right, &
             & left(:, 2), left(:, 1)], [2, 6])
-         call add_block(assembly%plan, distinct(corner, same*width), .false., of_supports)
+         call add_block(assembly, distinct(corner, same*width), .false., of_supports)
          deallocate (corner)
       end do
       if (gap > same*width) call add_top(assembly, left(:, 2), right(:, 2), 0)
@@ -262,20 +274,24 @@ contains
    end function ground
 
    !> Add a block
-   pure subroutine add_block(plan, corner, fixed, material)
-      type(block_plan_t), intent(inout) :: plan
+   pure subroutine add_block(assembly, corner, fixed, material)
+      type(arch_assembly_t), intent(inout) :: assembly
       real(wp), intent(in) :: corner(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
       logical, intent(in) :: fixed          !! Whether it cannot move
       integer, intent(in) :: material       !! Number of its material
-      integer :: n, v
 
-      n = size(plan%fixed)
-      v = size(plan%vertex, 2)
-      plan%first_vertex = [plan%first_vertex, plan%first_vertex(n + 1) + size(corner, 2)]
-      plan%vertex = reshape([plan%vertex, corner], [2, v + size(corner, 2)])
-      plan%fixed = [plan%fixed, fixed]
-      plan%material = [plan%material, material]
-      plan%line = [plan%line, 1]
+      associate (plan => assembly%plan, n => assembly%n_block, v => assembly%n_vertex)
+         call make_room(plan%first_vertex, n + 2)
+         call make_room(plan%vertex, v + size(corner, 2))
+         call make_room(plan%fixed, n + 1)
+         call make_room(plan%material, n + 1)
+         plan%vertex(:, v + 1:v + size(corner, 2)) = corner
+         v = v + size(corner, 2)
+         n = n + 1
+         plan%first_vertex(n + 1) = v + 1
+         plan%fixed(n) = fixed
+         plan%material(n) = material
+      end associate
    end subroutine add_block
 
    !> Add a chord of the upper face of the last block; what leans over carries nothing
@@ -284,8 +300,54 @@ contains
       real(wp), intent(in) :: left(2)   !! Its left end: (2) [m]
       real(wp), intent(in) :: right(2)  !! Its right end: (2) [m]
       integer, intent(in) :: span       !! Number of its span; 0 on a pier
+      type(top_chord_t), allocatable :: room(:)
 
-      if (right(1) > left(1)) assembly%top = [assembly%top, &
-         & top_chord_t(size(assembly%plan%fixed), left, right, span)]
+      if (.not. right(1) > left(1)) return
+      associate (n => assembly%n_top)
+         if (n == size(assembly%top)) then
+            allocate (room(2*n + 1))
+            room(:n) = assembly%top
+            call move_alloc(room, assembly%top)
+         end if
+         n = n + 1
+         assembly%top(n) = top_chord_t(assembly%n_block, left, right, span)
+      end associate
    end subroutine add_top
+
+   !> Give back the room that blocks and chords do not take
+   pure subroutine trim_room(assembly)
+      type(arch_assembly_t), intent(inout) :: assembly
+
+      associate (plan => assembly%plan, n => assembly%n_block)
+         plan%first_vertex = plan%first_vertex(:n + 1)
+         plan%vertex = plan%vertex(:, :assembly%n_vertex)
+         plan%fixed = plan%fixed(:n)
+         plan%material = plan%material(:n)
+         plan%line = spread(1, 1, n)
+         assembly%top = assembly%top(:assembly%n_top)
+      end associate
+   end subroutine trim_room
+
+   !> Whether a block has no area, but for rounding of its corners
+   pure logical function has_flat_block(plan)
+      type(block_plan_t), intent(in) :: plan
+      real(wp) :: area, size_of_all
+      integer :: b, first, k
+
+      has_flat_block = .true.
+      size_of_all = maxval(abs(plan%vertex))
+      do b = 1, size(plan%fixed)
+         first = plan%first_vertex(b)
+         area = 0.0_wp
+         do k = first + 1, plan%first_vertex(b + 1) - 2
+            area = area + 0.5_wp*cross(plan%vertex(:, k) - plan%vertex(:, first), &
+               & plan%vertex(:, k + 1) - plan%vertex(:, first))
+         end do
+         associate (corner => plan%vertex(:, first:plan%first_vertex(b + 1) - 1))
+            if (.not. area > rounding*size_of_all &
+               & *norm2(maxval(corner, dim=2) - minval(corner, dim=2))) return
+         end associate
+      end do
+      has_flat_block = .false.
+   end function has_flat_block
 end module dda_arch_assembly

@@ -90,24 +90,42 @@ contains
       call see_highest(road)
    end function road_of
 
-   !> See which edge is the highest where
+   !> See which edge is the highest where: edges are taken in where they begin, from left to right
    pure subroutine see_highest(road)
       type(road_t), intent(inout) :: road
+      integer, allocatable :: above(:), order(:)
       real(wp) :: top, y
-      integer :: i, k
+      integer :: i, j, k, n, next
 
       road%corner = [road%left(1, :), road%right(1, :)]
       road%corner = road%corner(sorted_order(spread(0, 1, size(road%corner)), road%corner))
       allocate (road%highest(0:size(road%corner)), source=0)
+      allocate (order, source=sorted_order(spread(0, 1, size(road%block)), road%left(1, :)))
+      allocate (above(size(order)))
+      n = 0
+      next = 1
       do i = 1, size(road%corner) - 1
          associate (middle => 0.5_wp*(road%corner(i) + road%corner(i + 1)))
+            do while (next <= size(order))
+               if (road%left(1, order(next)) > middle) exit
+               n = n + 1
+               above(n) = order(next)
+               next = next + 1
+            end do
+            k = 0
+            do j = 1, n
+               if (middle > road%right(1, above(j))) cycle
+               k = k + 1
+               above(k) = above(j)
+            end do
+            n = k
             top = -huge(top)
-            do k = 1, size(road%block)
-               if (middle < road%left(1, k) .or. middle > road%right(1, k)) cycle
-               y = height(road, k, middle)
-               if (.not. y > top) cycle
+            do j = 1, n
+               y = height(road, above(j), middle)
+               ! of two at one height the first
+               if (y < top .or. .not. y > top .and. above(j) > road%highest(i)) cycle
                top = y
-               road%highest(i) = k
+               road%highest(i) = above(j)
             end do
          end associate
       end do

@@ -182,3 +182,23 @@ def test_the_table_of_shapes_holds_every_curve() -> None:
     with (DATA / "arch_shapes.csv").open(encoding="utf-8") as lines:
         assert {row["shape"] for row in csv.DictReader(lines)} >= {
             "segmental", "circular", "pointed", "elliptic", "parabolic", "catenary", "basket"}
+
+
+@pytest.mark.parametrize(("shape", "has_area"), [
+    ("shape = 'elliptic', rise = 0.5", False), ("shape = 'circular', rise = 1.0", False),
+    ("shape = 'basket', rise = 0.6", False), ("shape = 'segmental', rise = 0.4", True),
+    ("shape = 'parabolic', rise = 0.5", True)])
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_a_single_voussoir_between_level_springings_is_refused_where_it_has_no_area(
+    tmp_path: Path, shape: str, has_area: bool, command: str
+) -> None:
+    """Corners of level joints lie on a line; two voussoirs, or joints that lean, make blocks."""
+    arch = f"&arch {shape}, span = 2, thickness = 0.2, voussoirs = {{}} /\n"
+    (tmp_path / "x.nml").write_text(arch.format(1))
+    done = run_dda(command, "x.nml", cwd=tmp_path)
+    assert done.returncode == (0 if has_area else 2), done.stderr
+    if not has_area:
+        assert done.stderr == ("x.nml:1: error: arch%voussoirs: expected voussoirs with an area, got one whose corners "
+                               "lie on a line; raise voussoirs or thickness\n")
+    (tmp_path / "x.nml").write_text(arch.format(2))
+    assert run_dda(command, "x.nml", cwd=tmp_path).returncode == 0
