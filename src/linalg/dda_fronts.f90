@@ -286,9 +286,11 @@ contains
       integer :: c, i
 
       if (.not. symmetric) then
-         if (width < height) call dgemv("N", width, height - width, -1.0_wp, front(1, width + 1), &
-            & width, z(width + 1), 1, 1.0_wp, z, 1)
-         call dtrsv("U", "N", "N", width, front, height, z, 1)
+         call take_right(width, height - width, front(1, width + 1), z(width + 1:), z)
+         do c = width, 1, -1
+            z(c) = z(c)/front(c, c)
+            z(:c - 1) = z(:c - 1) - front(:c - 1, c)*z(c)
+         end do
          return
       end if
       do c = 1, width
@@ -314,4 +316,23 @@ contains
          end do
       end if
    end subroutine substitute_up
+
+   !> Take what stands to the right of the diagonal of a panel
+   pure subroutine take_right(width, below, right, known, x)
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: right(width, *)  !! The rows to the right: (width, below)
+      real(wp), intent(in) :: known(below)     !! Solution of the rows below
+      real(wp), intent(inout) :: x(width)      !! What they are taken from
+      integer :: c
+
+      if (below == 0) return
+      if (width > narrow) then
+         call dgemv("N", width, below, -1.0_wp, right, width, known, 1, 1.0_wp, x, 1)
+      else
+         do c = 1, below, 3
+            call take_triple(width, right(1, c), right(1, c + 1), right(1, c + 2), &
+               & known(c:c + 2), x)
+         end do
+      end if
+   end subroutine take_right
 end module dda_fronts
