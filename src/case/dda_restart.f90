@@ -21,12 +21,12 @@ module dda_restart
    public :: check_restart, load_restart, save_restart, write_numbers, read_numbers
 
    !> First bytes of the file; another layout wants another number
-   character(len=*), parameter :: title = "voussoir restart 4"
+   character(len=*), parameter :: title = "voussoir restart 5"
 
    !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
    !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
-   !> passes
-   integer, parameter :: n_count = 9
+   !> passes, steps to spare for events
+   integer, parameter :: n_count = 10
    !> Numbers of the march: time, length of the next step, energies with their time
    integer, parameter :: n_march = 12
 
@@ -124,10 +124,11 @@ contains
       associate (e => march%energy, all => .true.)
          call write_numbers(file, title, [owner_of(settings, system, contacts), &
             & size(contacts%joint), size(held_force), march%steps, march%passes, &
-            & pack(joint_whole, all)], [pack(system%vertex, all), pack(system%motion, all), &
-            & pack(system%velocity, all), pack(system%stress, all), reach, held_force, &
-            & march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, e%gravity, e%work, &
-            & e%friction, e%damping, e%impact, e%numerical, pack(joint_number, all)], error)
+            & march%spare_cuts, pack(joint_whole, all)], [pack(system%vertex, all), &
+            & pack(system%motion, all), pack(system%velocity, all), pack(system%stress, all), &
+            & reach, held_force, march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, &
+            & e%gravity, e%work, e%friction, e%damping, e%impact, e%numerical, &
+            & pack(joint_number, all)], error)
       end associate
    end subroutine save_restart
 

@@ -7,7 +7,7 @@ submodule (dda_restart) dda_restart_blocks
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint
    use dda_contacts, only : begin_memory, set_joints
    use dda_outline, only : outline_of, outline_t
-   use dda_step_context, only : energy_t
+   use dda_step_context, only : energy_t, most_spare_cuts
    implicit none
 
    !> Larger than any displacement over the size of the model, any rotation and any strain
@@ -93,6 +93,7 @@ contains
    module procedure take_march
       march%steps = state%count(8)
       march%passes = state%count(9)
+      march%spare_cuts = min(most_spare_cuts, state%count(10))
       march%time = state%march(1)
       march%dt = state%march(2)
       associate (e => state%march(3:))

@@ -8,7 +8,6 @@ submodule (dda_step_motion) dda_curved_motion
    use dda_block_update, only : displace_blocks
    use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
    use dda_multipliers, only : settle_in_time
-   use dda_spring_products, only : relative_displacement
    use dda_step_state, only : step_state_t
    implicit none
 

@@ -81,7 +81,8 @@ contains
                & matmul(equations%dashpot(:, :, e), motion(:, e)))/step%dt
          end do
          energy%friction = energy%friction - sum(step%state%force(3, :) &
-            & *step%state%increment(3, :), mask=step%state%face%slip /= 0)
+            & *step%state%increment(3, :), &
+            & mask=step%state%face%slip /= 0 .or. run%settings%current)
          energy%impact = energy%impact + step%impact
       end associate
    end subroutine spend_energy

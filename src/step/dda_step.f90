@@ -5,9 +5,10 @@ module dda_step
    use dda_block_update, only : carry_over
    use dda_energy, only : audit_step
    use dda_error, only : error_t, fatal_error
+   use dda_impact, only : foresee_event
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : in_time, run_t, step_outcome_t
+   use dda_step_context, only : in_time, most_spare_cuts, run_t, step_outcome_t
    use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
@@ -17,7 +18,7 @@ module dda_step
    implicit none
    private
 
-   public :: advance, check_axes, check_impact, retry
+   public :: advance, check_axes, retry
 
    interface
 
@@ -52,14 +53,6 @@ module dda_step
       pure type(step_outcome_t) module function check_axes(run) result(outcome)
          type(run_t), intent(in) :: run
       end function check_axes
-
-      !> Check that no open contact closes fast within the step, for the speed at that very moment
-      !> counts, and the time that is left after it; a step in which one would ends when the
-      !> two blocks, if nothing else touched them, are near enough to count as touching. A solved
-      !> step in which forces have closed one before its time is halved
-      pure type(step_outcome_t) module function check_impact(run) result(outcome)
-         type(run_t), intent(in) :: run
-      end function check_impact
 
    end interface
 
@@ -101,7 +94,7 @@ contains
          if (.not. outcome%accepted) then
             call assemble_step(run)
             outcome%accepted = .true.
-            if (in_time(run)) outcome = check_impact(run)
+            if (in_time(run)) outcome = foresee_event(run)
             if (outcome%accepted) call solve_contacts(run)
          end if
          if (outcome%accepted) outcome = check_motion(run)
@@ -169,6 +162,8 @@ contains
       call carry_over(run)
       run%march%steps = run%march%steps + 1
       run%march%clock%tries = .false.
+      run%march%spare_cuts = min(most_spare_cuts, run%march%spare_cuts + 1)
+      if (run%step%ends_at_event) run%march%spare_cuts = max(0, run%march%spare_cuts - 3)
       if (.not. has_path(run%march%clock)) run%march%time = run%march%time + run%step%dt
       if (run%settings%dynamic) call audit_step(run)
    end subroutine commit

@@ -12,7 +12,12 @@ module dda_step_context
    private
 
    public :: energy_t, march_t, run_state_t, run_t, step_context_t, step_outcome_t
-   public :: in_time, near_gap
+   public :: in_time, most_spare_cuts, near_gap
+
+   !> Most steps to spare for events. Each step adds one, and each that is cut to end at an event
+   !> takes three: hundreds of impacts of few blocks are found to the instant, and those of a pile
+   !> that bounces everywhere add half to its steps at the most
+   integer, parameter :: most_spare_cuts = 1000
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
    type :: energy_t
@@ -37,10 +42,14 @@ module dda_step_context
       real(wp) :: dt = 0.0_wp
       !> Whether the step after goes on carefully, because a longer one did not settle
       logical :: was_cut = .false.
+      !> Whether the next try ends at an impact, or where slip turns
+      logical :: ends_at_event = .false.
       !> Whether a corner moves beyond the margin of its block: margins must be wider
       logical :: beyond_margin = .false.
       !> Whether the separating axes must be chosen by the motion of this try
       logical :: wrong_axes = .false.
+      !> How far contacts that meet in the step would have moved into one another at its end [m]
+      real(wp) :: overshoot = huge(1.0_wp)
    end type step_outcome_t
 
    !> One step
@@ -52,6 +61,10 @@ module dda_step_context
       !> (3, n_joint) [m]
       real(wp), allocatable :: curve(:, :)
       real(wp), allocatable :: end_gap(:, :)  !! Gaps at its end: (3, n_joint) [m]
+      !> Speeds at which the contacts part and slip at its beginning: (3, n_joint) [m/s]
+      real(wp), allocatable :: speed(:, :)
+      !> How far the last try went beyond an impact [m]
+      real(wp) :: overshoot = huge(1.0_wp)
       !> The blocks at its end, but for their velocities, likewise
       type(block_system_t) :: after
       type(joint_place_t), allocatable :: place(:)  !! Where the joints are there: (n_joint)
@@ -77,6 +90,7 @@ module dda_step_context
       integer :: choices = 0
       logical :: accepted = .false.  !! Whether the step counts
       logical :: was_cut = .false.   !! Whether a longer step did not settle
+      logical :: ends_at_event = .false.  !! Whether it has been cut to end at such an event
       !> Whether no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point, in it and in the try before: [m]
@@ -126,6 +140,8 @@ module dda_step_context
       real(wp) :: first_motion = 0.0_wp
       !> Length of the next step [s]
       real(wp) :: dt = 0.0_wp
+      !> How many steps may yet be cut to end at an impact, or where slip turns
+      integer :: spare_cuts = most_spare_cuts
       !> Most that a corner may move in a step, where blocks move [m]
       real(wp) :: allowed_motion = 0.0_wp
       !> Most that the corners of each block may move before contacts are searched again, where they
@@ -199,8 +215,9 @@ module dda_step_context
       real(wp), allocatable :: onset_motion(:, :)  !! Motion of that step: (n_dof, n_equation)
    end type run_t
 
-   !> A contact is closed if its gap is below this share of the smaller block
-   real(wp), parameter :: near = 1.0e-10_wp
+   !> A contact is closed if its gap is below this share of the smaller block: no less than what the
+   !> solution of a step leaves of a gap (`left_over`), or the corners of one face meet in turn
+   real(wp), parameter :: near = 1.0e-8_wp
 
 contains
 

@@ -7,6 +7,7 @@ module dda_step_motion
    use dda_contacts, only : contacts_t, follow_contacts
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
+   use dda_spring_products, only : relative_displacement
    use dda_step_context, only : in_time, run_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
@@ -50,6 +51,8 @@ contains
          step%was_cut = .false.
          step%choices = 0
          step%is_solved = .false.
+         step%ends_at_event = .false.
+         step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current
          step%longest = run%march%longest
          step%slowest_impact = 2.0_wp*run%march%free_acceleration*run%march%longest
@@ -109,7 +112,10 @@ contains
          & packed_velocity(run%system, size(run%step%state%motion, 1))))
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
          & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
-      if (in_time(run)) call foresee_curves(run)
+      if (.not. in_time(run)) return
+      run%step%speed = relative_displacement(run%contacts%springs, packed_velocity(run%system, &
+         & size(run%step%state%motion, 1)))
+      call foresee_curves(run)
    end subroutine assemble_step
 
    !> Contact forces and motion of one try

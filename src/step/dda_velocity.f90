@@ -17,11 +17,12 @@ module dda_velocity
       & strain_follows
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_springs_t, place_rows
+   use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
-   use dda_step_context, only : near_gap, run_t
+   use dda_step_context, only : run_t
    use dda_step_state, only : equations_t, step_state_t
    use dda_vector, only : cross
    implicit none
@@ -95,7 +96,9 @@ contains
          end if
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
-         step%impact = before - kinetic_energy(equations, step%velocity)
+         ! what has closed by a force has been stopped on its way, not at its end
+         step%impact = before - kinetic_energy(equations, step%velocity) &
+            & - sum(step%state%force(1:2, :)*step%state%increment(1:2, :))
       end associate
    end subroutine solve_impacts
 
@@ -110,60 +113,35 @@ contains
          & + sum(abs(run%equations%outer*run%step%state%motion)))
    end function energy_left_over
 
-   !> Which contacts are closed at the end of a step, and which of them have met there, faster than
-   !> weight makes resting contacts meet: they must part with restitution times that speed, and up
-   !> to then the forces of contacts that were closed before the step have acted
+   !> Which contacts are closed at the end of a step, and which of them have met in it, faster than
+   !> weight makes resting contacts meet: they must part with restitution times that speed. If they
+   !> have met at the end of the step, the forces of all others have acted up to then
    pure subroutine see_impacts(run, impact)
       type(run_t), intent(in) :: run
       type(impact_t), intent(out) :: impact
-      real(wp) :: opening(3, size(run%contacts%joint))
-      logical :: has_impact
-      integer :: j, k
+      real(wp) :: before(3, size(run%contacts%joint))
+      logical :: at_end, meets(2, size(run%contacts%joint))
 
       impact%springs = run%contacts%springs
       call place_rows(run%system, run%step%after%motion, run%contacts%joint, run%step%place, &
          & impact%springs%row)
       impact%closed = closed_contacts(run)
-      impact%steady = 2.0_wp/run%step%dt*run%step%state%motion &
-         & - packed_velocity(run%system, size(run%step%state%motion, 1))
       impact%follows = strain_follows(run%system, run%step%longest)
-      opening = relative_displacement(impact%springs, impact%steady)
-      allocate (impact%part(2, size(opening, 2)), source=0.0_wp)
-      allocate (impact%force_before(3, size(opening, 2)), source=0.0_wp)
-      has_impact = .false.
-      do j = 1, size(opening, 2)
-         do k = 1, 2
-            if (.not. impact%closed(k, j)) cycle
-            if (run%step%state%face(j)%open(k)) then
-               if (-opening(k, j) <= run%step%slowest_impact) cycle
-               has_impact = .true.
-               impact%part(k, j) = -run%settings%restitution*opening(k, j)
-            else if (run%contacts%gap(k, j) &
-               & <= near_gap(run%system, run%contacts%joint(j)%block)) then
-               impact%force_before([k, 3], j) = run%step%state%force([k, 3], j)
-            end if
-         end do
-      end do
-      if (.not. has_impact) impact%force_before = 0.0_wp
+      meets = meeting_contacts(run)
+      at_end = meets_at_end(run, meets)
+      associate (start => packed_velocity(run%system, size(run%step%state%motion, 1)))
+         impact%steady = 2.0_wp/run%step%dt*run%step%state%motion - start
+         if (at_end) then
+            before = relative_displacement(impact%springs, impact%steady)
+         else
+            before = relative_displacement(impact%springs, start)
+         end if
+      end associate
+      meets = meets .and. -before(1:2, :) > run%step%slowest_impact
+      impact%part = merge(-run%settings%restitution*before(1:2, :), 0.0_wp, meets)
+      impact%force_before = run%step%state%force - masked_force(run, meets)
+      if (.not. (at_end .and. any(meets))) impact%force_before = 0.0_wp
    end subroutine see_impacts
-
-   !> Contacts that are closed at the end of a step: those that carry a force, and those without a
-   !> gap
-   pure function closed_contacts(run) result(closed)
-      type(run_t), intent(in) :: run
-      !> For each contact of each joint: (2, n_joint)
-      logical :: closed(2, size(run%contacts%joint))
-      integer :: j, k
-
-      closed = .false.
-      do j = 1, size(closed, 2)
-         do k = 1, run%contacts%joint(j)%n_contact
-            closed(k, j) = .not. run%step%state%face(j)%open(k) .or. run%contacts%gap(k, j) &
-               & + run%step%state%increment(k, j) + run%step%curve(k, j) &
-               & <= near_gap(run%system, run%contacts%joint(j)%block)
-         end do
-      end do
-   end function closed_contacts
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine solve_rates(run, impact)
