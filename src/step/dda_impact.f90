@@ -24,8 +24,8 @@ module dda_impact
    !> steps stay as long as they are
    real(wp), parameter :: notable = 1.0e-2_wp
 
-   !> Slip that turns ends a step if it was faster than this share of the slowest impact
-   real(wp), parameter :: slow_slip = 1.0e-3_wp
+   !> Slip of this share of the slowest impact, or of what it changes by in the step, has turned
+   real(wp), parameter :: at_once = 1.0e-3_wp
 
 contains
 
@@ -201,7 +201,8 @@ contains
       earliest = huge(earliest)
       do j = 1, size(run%contacts%joint)
          associate (slip => run%step%speed(3, j), now => acceleration(3, j))
-            if (abs(slip) <= slow_slip*run%step%slowest_impact) cycle
+            if (.not. abs(run%contacts%force(3, j)) > 0.0_wp) cycle
+            if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(now)*run%step%dt)) cycle
             back = now - 2.0_wp*ease_of(run, 3, j)*run%contacts%force(3, j)
             if (slip*now < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/now)
          end associate

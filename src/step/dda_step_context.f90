@@ -76,6 +76,7 @@ module dda_step_context
       !> Likewise those of the springs at held points: (n_spring) [N/m]
       real(wp), allocatable :: held_mean_force(:)
       real(wp) :: impact = 0.0_wp          !! Energy that impacts took from the velocities [J/m]
+      real(wp) :: restitution = 1.0_wp     !! Share of the restitution that its impacts have
       real(wp) :: slowest_impact = 0.0_wp  !! Contacts that meet more slowly do not rebound [m/s]
       logical :: has_velocity = .false.    !! Whether there are velocities for its end
       !> How the corners are about to move, where contacts are searched: (2, n_vertex) [m]

@@ -36,8 +36,9 @@ module dda_velocity
    integer, parameter :: max_tries = 10
    !> What speeds leave of gaps in the longest step, over what motions leave
    real(wp), parameter :: finer = 1.0e-2_wp
-   !> Share by which restitution is taken less at first
-   real(wp), parameter :: least_less = 1.0e-6_wp
+   !> Share of the velocities before that may be mixed in to keep the energy instead of a smaller
+   !> restitution, and most that one try reduces the restitution by
+   real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
    !> Energy that counts as rounding, over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
    !> Energy that what contacts leave may bring in, over that of motion, of strain, of the fall in
@@ -64,36 +65,34 @@ module dda_velocity
 contains
 
    !> Velocities of the blocks at the end of a settled step, if they settle. Newton's restitution
-   !> may bring in energy where there is friction, or where blocks are hit in several places;
-   !> then there is less of it. What contacts have done to the energy of the motion is no part of
-   !> what is allowed; without contacts only held points change it, which turn with their blocks
+   !> may bring in energy where there is friction, or where blocks are hit in several places; then it
+   !> is reduced. What contacts have done to the energy of the motion is no part of what is allowed;
+   !> without contacts only held points change it, which turn with their blocks
    pure subroutine solve_impacts(run)
       type(run_t), intent(inout) :: run
       type(impact_t) :: impact
-      real(wp) :: allowed, before, less, share
+      real(wp) :: allowed, before, share
       integer :: try
 
       call see_impacts(run, impact)
       associate (step => run%step, equations => run%equations)
          before = kinetic_energy(equations, impact%steady)
          allowed = before - sum(step%state%force*step%state%increment) + energy_noise*before
-         less = least_less
+         step%restitution = 1.0_wp
          do try = 0, max_tries
-            if (try == max_tries) impact%part = 0.0_wp
-            call solve_rates(run, impact)
+            if (try == max_tries) step%restitution = 0.0_wp
+            call solve_rates(run, impact, step%restitution)
             if (.not. step%has_velocity) return
-            if (kinetic_energy(equations, step%velocity) <= allowed) exit
-            if (.not. any(impact%part > 0.0_wp)) exit
-            impact%part = (1.0_wp - less)*impact%part
-            less = min(20.0_wp*less, 0.2_wp)
+            share = 0.0_wp
+            if (any(impact%closed)) &
+               & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
+            if (share <= least_less .or. .not. any(step%restitution*impact%part > 0.0_wp)) exit
+            step%restitution = (1.0_wp - min(largest_less, 2.0_wp*share))*step%restitution
          end do
-         share = 0.0_wp
-         if (any(impact%closed)) then
-            call hold_energy(equations, impact%steady, allowed, step%velocity, share)
-            ! points that are led bring in energy of their own
-            step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) .or. &
-               & kinetic_energy(equations, step%velocity) <= allowed + energy_left_over(run, before)
-         end if
+         ! points that are led bring in energy of their own
+         if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
+            & .or. kinetic_energy(equations, step%velocity) &
+            & <= allowed + energy_left_over(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          ! what has closed by a force has been stopped on its way, not at its end
@@ -144,16 +143,17 @@ contains
    end subroutine see_impacts
 
    !> Velocities for given speeds at which the contacts must part
-   pure subroutine solve_rates(run, impact)
+   pure subroutine solve_rates(run, impact, restitution)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
+      real(wp), intent(in) :: restitution  !! Share of the restitution that is applied
       type(step_state_t) :: state
       type(joint_springs_t) :: springs
       real(wp) :: held_force(size(run%equations%fixed%force))
 
       held_force = run%equations%fixed%force
       call assemble_rates(run, impact)
-      call begin_rates(run, impact, springs, state)
+      call begin_rates(run, impact, restitution, springs, state)
       associate (step => run%step, fixed => run%equations%fixed)
          call settle_in_time(run%settings, step%dt*fixed%rate, run%equations, springs, state)
          step%mean_force = state%force + impact%force_before
@@ -213,9 +213,10 @@ contains
    end subroutine drop_strain_rates
 
    !> Springs and forces that the search for velocities begins with
-   pure subroutine begin_rates(run, impact, springs, state)
+   pure subroutine begin_rates(run, impact, restitution, springs, state)
       type(run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
+      real(wp), intent(in) :: restitution
       type(joint_springs_t), intent(out) :: springs
       type(step_state_t), intent(out) :: state
       integer :: j
@@ -234,7 +235,7 @@ contains
             call keep_closed(impact%closed(:, j), impact%follows(pair), j, springs, state)
          end associate
          state%trial(1:2, j) = state%trial(1:2, j) &
-            & + springs%stiffness(j)*run%step%dt*impact%part(:, j)
+            & + springs%stiffness(j)*run%step%dt*restitution*impact%part(:, j)
       end do
    end subroutine begin_rates
 
