@@ -100,7 +100,7 @@ contains
       type(album_t), intent(in) :: album
       type(table_file_t), intent(inout) :: table  !! energy.csv
       type(error_t), allocatable, intent(inout) :: error
-      real(wp) :: value(10, album%audit%n)
+      real(wp) :: value(11, album%audit%n)
       integer :: i
 
       if (album%audit%n == 0) return
@@ -108,7 +108,7 @@ contains
          associate (energy => album%audit%energy(i))
             value(:, i) = [energy%time, energy%kinetic, energy%elastic, energy%contact, &
                & energy%gravity, energy%work, energy%friction, energy%damping, energy%impact, &
-               & energy%numerical]
+               & energy%numerical, energy%residual]
          end associate
       end do
       call append_line(table, energy_lines(number, value), error)

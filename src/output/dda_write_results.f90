@@ -27,7 +27,8 @@ module dda_write_results
 
    !> Names of the columns
    character(len=*), parameter :: energy_header = &
-      & "case,step,time,kinetic,elastic,contact,gravity,work,friction,damping,impact,numerical"
+      & "case,step,time,kinetic,elastic,contact,gravity,work,friction,damping,impact,numerical," &
+      & //"contact_residual"
 
    !> Names of the columns
    character(len=*), parameter :: reactions_header = "case,time,block,point,fx,fy,moment"
@@ -86,6 +87,8 @@ module dda_write_results
       type(number_t) :: path_time
       type(number_t) :: worst_position      !! Where the leftmost axle of a vehicle is worst [m]
       character(len=8) :: worst_direction = ""  !! forward, backward; blank without such a place
+      !> Largest opening or slip against the law of contact where blocks move in time [m/s]
+      type(number_t) :: contact_residual
       logical :: tells_condition = .false.  !! Whether the table has a column of condition numbers
       type(number_t) :: condition           !! Estimated condition number of the last equations
    end type result_row_t
@@ -155,7 +158,8 @@ contains
    !> Rows of one case
    pure function energy_lines(number, value) result(lines)
       integer, intent(in) :: number
-      !> Time and energies after each step, as the columns have them: (10, n_step) [s, J per metre]
+      !> Time and energies after each step, as the columns have them: (11, n_step) [s, J per metre,
+      !> m/s]
       real(wp), intent(in) :: value(:, :)
       character(len=:), allocatable :: lines
       type(growing_text_t) :: text
@@ -215,6 +219,7 @@ contains
          & //"exact_low,exact_high,imbalance,law_violation,mechanism_power,safety_thickness," &
          & //"thrust_min,thrust_max,path_time,worst_position,worst_direction"
       if (tells_condition) line = line//",condition"
+      line = line//",contact_residual"
    end function results_header
 
    !> One row of results.csv
@@ -236,6 +241,7 @@ contains
          & row%mechanism_power, row%safety_thickness, row%thrust_min, row%thrust_max, &
          & row%path_time, row%worst_position])//","//trim(row%worst_direction)
       if (row%tells_condition) line = line//","//number_fields([row%condition])
+      line = line//","//number_fields([row%contact_residual])
    end function results_line
 
    !> One row of joints.csv

@@ -104,7 +104,8 @@ contains
       step%face = state%face(:n)
       step%passes = state%passes
       step%settled = state%settled
-      step%effort = state%effort
+      step%residual = state%residual
+      step%worst = state%worst
    end procedure drop_bars
 
 end submodule dda_bars_in_time

@@ -1,361 +1,352 @@
-!> Contact forces of blocks that move in time by interior springs: where many blocks meet, sweeps
-!> hand a force on by one block in each, but a factor reaches all at once
+!> Contact forces of one group by an interior point: where many blocks meet, sweeps hand a force on
+!> by one block in each, but a factor reaches all at once
 !>
-!>    base d = load + R f,   gap + R'd + C (f - f0) = F_flow' z,   s = F f >= 0, z >= 0, s z = 0
+!>    A d = load + R f,   gap + R' d + C (f - f0) = F_flow' z,   b = F f >= 0, z >= 0, b z = 0
 !>
-!> The rows of F are the bounds N1, N2, bound + T and bound - T, those of F_flow N1, N2, T and -T:
-!> joints that slide do not open (Coulomb). C is far below what the blocks themselves give, and f0
-!> the force of the step before: of all forces that stop the blocks those nearest to them count, so
-!> that shear is remembered. With d = z/s the spring of a joint is the inverse of the triangle
-!> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
-!> 1992), of few joints with more correctors where products that stray shorten the step (Gondzio
-!> 1996). It begins with the forces of the step before.
-submodule (dda_multipliers:dda_contact_sweeps) dda_contact_interior
-   use dda_interior_problem, only : distances, factor_springs, interior_t, openings, pose, &
-      & problem_t, respond, see_lack
+!> The rows of F are the distances from the bounds: n1, n2, bound + T and bound - T; those of F_flow
+!> are n1, n2, T and -T: what slides does not open (Coulomb). The problem is not convex: with steep
+!> friction the search need not come to an end, and the forces that come nearest to the law count.
+!>
+!> C is far below what the blocks give, and f0 the force before: of all forces that stop the blocks
+!> those nearest to it count, so that shear is remembered. Predictor and corrector by Mehrotra
+!> (1992).
+module dda_contact_interior
+   use dda_contact_problem, only : admissible, contact_problem_t, find_residual, move_blocks, &
+      & openings
+   use dda_contact_springs, only : contact_springs_t, factor_springs, lay_out, respond
+   use dda_contact_types, only : unbounded
+   use dda_friction_cone, only : cone_kind
+   use dda_kinds, only : wp
+   use dda_spring_products, only : add_forces
    implicit none
+   private
 
-   interface
+   public :: solve_interior
 
-      !> Find forces and motion whose faces agree, from those of an iterate
-      pure module subroutine settle_faces(p, x, passes, agreed)
-         type(problem_t), intent(inout) :: p  !! The problem; the size of a force is given
-         type(interior_t), intent(inout) :: x
-         integer, intent(inout) :: passes     !! Factorisations so far
-         logical, intent(out) :: agreed       !! Whether the faces agree
-      end subroutine settle_faces
-
-      !> The same of many joints, which rather end than keep to the way that the loads have led
-      !> them: with ever firmer springs, as far as these agree
-      pure module subroutine settle_many_faces(p, hasty, x, passes, agreed, near)
-         !> The problem; the size of a force is given, its springs are as they were in the end
-         type(problem_t), intent(inout) :: p
-         !> Whether joints are so many that sweeps rather go on where faces do not agree at once
-         logical, intent(in) :: hasty
-         type(interior_t), intent(inout) :: x
-         integer, intent(inout) :: passes
-         !> Whether the faces agree with springs as soft as those of few joints at the least
-         logical, intent(out) :: agreed
-         !> Whether they nearly agree at the least
-         logical, intent(out) :: near
-      end subroutine settle_many_faces
-
-   end interface
-
-   !> What slack and flow begin with at the least, over the size of a force
-   real(wp), parameter :: lift = 1.0e-2_wp, highest = 1.0e-1_wp, afar = 2.0e-1_wp
-   !> Forces across gaps, and by openings, that are left, over the size of a force
-   real(wp), parameter :: tolerance = 3.0e-7_wp
-   !> Compliance of the springs of many joints over that of few: gaps that it leaves are no matter
-   real(wp), parameter :: softness_of_many = 1.0e-1_wp
-   !> How much smaller than usual faces can leave forces before these are rounding
-   real(wp), parameter :: finest = 1.0e-4_wp
-   !> A step shorter than this share of the whole is stuck at a bound
-   real(wp), parameter :: stuck = 0.2_wp
-   !> Forces that are wrong by less are looked for from afar after the first step alone
-   real(wp), parameter :: near_enough = 5.0e-2_wp
-   !> Correctors of products that stray, at the most, of few joints; of many they bring little
-   integer, parameter :: more_correctors = 3
-   !> A product strays by more than this, times or over what all are to be
-   real(wp), parameter :: astray = 1.0e1_wp
-   !> A step of this length is long enough
-   real(wp), parameter :: long = 0.95_wp
-   !> How much farther another corrector aims, and the share of that which the step must gain
-   real(wp), parameter :: farther = 0.3_wp, gain = 0.1_wp
-   !> Most iterations
-   integer, parameter :: max_iterations = 40
-   !> Iterations without progress that end the search
+   !> Compliance of the springs over what the blocks give
+   real(wp), parameter :: compliance = 1.0e-6_wp
+   !> Most turns
+   integer, parameter :: most_turns = 30
+   !> Turns without progress that end the search
    integer, parameter :: patience = 5
+   !> Forces begin so far off their bounds at the least, over the size of a force: near where it is
+   !> known, afar where that leads nowhere
+   real(wp), parameter :: near = 1.0e-2_wp, afar = 2.0e-1_wp
+   !> The most by which near forces are lifted, over the same
+   real(wp), parameter :: highest = 1.0e-1_wp
+   !> A step shorter than this is stuck at a bound
+   real(wp), parameter :: stuck = 0.2_wp
+   !> Way to the first bound that a step goes
+   real(wp), parameter :: share = 0.995_wp
+
+   !> One iterate, or a step from it
+   type :: iterate_t
+      !> Motion of the blocks: (n_dof, n_block) [m]
+      real(wp), allocatable :: motion(:, :)
+      !> Forces: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Distance of the forces from each bound: (4, n_joint) [N/m]
+      real(wp), allocatable :: slack(:, :)
+      !> Opening or slip at each bound: (4, n_joint) [m]
+      real(wp), allocatable :: flow(:, :)
+   end type iterate_t
+
+   !> What the search works on
+   type :: search_t
+      !> Springs of the joints with their matrix
+      type(contact_springs_t) :: springs
+      !> Which forces there are: (3, n_joint)
+      logical, allocatable :: given(:, :)
+      !> Which bounds they have: (4, n_joint)
+      logical, allocatable :: bounded(:, :)
+      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: unit(:, :)
+      !> Compliance beside that of bars: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Forces before: (3, n_joint) [N/m]
+      real(wp), allocatable :: before(:, :)
+      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
+      real(wp), allocatable :: balance(:, :)
+      !> Of the openings: (3, n_joint) [m]
+      real(wp), allocatable :: opening(:, :)
+      !> Of the distances: (4, n_joint) [N/m]
+      real(wp), allocatable :: distance(:, :)
+      !> Change of distance times flow that a step is to bring: (4, n_joint) [J/m]
+      real(wp), allocatable :: product(:, :)
+   end type search_t
 
 contains
 
-   !> Forces of some joints if these keep nearly to the faces that they had
-   module procedure keep_to_faces
-      type(problem_t) :: p
-      type(interior_t) :: x
-      logical :: near
+   !> Find forces from those at hand; better ones are kept
+   pure subroutine solve_interior(p, tolerance, force, residual, passes)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
+      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: residual     !! What they leave [m]
+      integer, intent(inout) :: passes        !! Factorisations so far
+      type(search_t) :: search
+      type(iterate_t) :: z
+      real(wp) :: gone, least, left, now, trial(3, size(p%joint))
+      integer :: turn, waited, worst
+      logical :: anew
 
-      call pose(equations, springs, view, joint, before, p)
-      call begin(before, moved, lift, p, x)
-      p%fineness = max(finest, fineness)
-      if (size(joint) > many) then
-         call settle_many_faces(p, hasty, x, passes, agreed, near)
-      else
-         call settle_faces(p, x, passes, agreed)
-         near = agreed
-      end if
-      if (near) call take_forces(x, p, force)
-   end procedure keep_to_faces
-
-   !> Forces of some joints, wherever the search for them begins
-   module procedure solve_interior
-      type(problem_t) :: p
-      type(interior_t) :: on_faces, x
-
-      call pose(equations, springs, view, joint, before, p)
-      if (size(joint) > many) then
-         p%left = left
-         where (.not. p%follows) p%soft = softness_of_many*p%soft
-      end if
-      call begin(force, motion, lift, p, x)
-      call iterate(force, motion, p, x, passes)
-      on_faces = x
-      call settle_faces(p, on_faces, passes, agreed)
-      if (agreed) x = on_faces
-      call take_forces(x, p, force)
-   end procedure solve_interior
-
-   !> Iterate from slack and flow to the iterate that comes nearest to the law of contact
-   pure subroutine iterate(force, motion, p, x, passes)
-      real(wp), intent(in) :: force(:, :), motion(:, :)
-      type(problem_t), intent(inout) :: p
-      type(interior_t), intent(inout) :: x
-      integer, intent(inout) :: passes
-      type(interior_t) :: best
-      real(wp) :: least, length, mean, merit
-      integer :: i, waited
-      logical :: near
-
-      best = x
+      call pose(p, force, search)
+      call begin(p, search, force, near, z)
       least = huge(least)
-      length = 1.0_wp
       waited = 0
-      near = .true.
-      do i = 1, max_iterations
-         call find_rest(p, x, mean, merit)
-         waited = merge(0, waited + 1, merit < 0.9_wp*least)
-         if (merit < least) best = x
-         least = min(least, merit)
-         if (min(merit, sqrt(mean)/p%size) < tolerance .or. waited == patience &
-            & .or. .not. merit <= huge(merit)) exit
-         if (near .and. length < stuck .and. (i == 2 .or. merit > near_enough)) then
-            near = .false.
-            waited = 0
-            least = huge(least)
-            call begin(force, motion, afar, p, x)
-            call find_rest(p, x, mean, merit)
+      gone = 0.0_wp
+      anew = .false.
+      do turn = 1, most_turns
+         call see_lack(p, z, search, left)
+         trial = admissible(p, z%force)
+         call find_residual(p, trial, move_blocks(p, trial), now, worst)
+         waited = merge(0, waited + 1, left < 0.9_wp*least)
+         least = min(least, left)
+         if (now < residual) then
+            force = trial
+            residual = now
          end if
-         p%yield = x%flow/x%slack
-         call factor_springs(p)
+         if (residual <= tolerance .or. waited == patience .or. .not. left <= huge(left)) return
+         if (turn > 1 .and. turn <= patience .and. gone < stuck .and. .not. anew) then
+            anew = .true.
+            call begin(p, search, force, afar, z)
+            call see_lack(p, z, search, left)
+            least = huge(least)
+         end if
+         call improve(p, search, z, gone)
          passes = passes + 1
-         if (.not. p%factor%usable) exit
-         call improve(mean, merit, p, x, length)
+         if (.not. search%springs%factor%usable) return
       end do
-      x = best
-   end subroutine iterate
+   end subroutine solve_interior
 
-   !> One step from an iterate: a predictor, a corrector towards equal products, and of few joints
-   !> more for those that stray
-   pure subroutine improve(mean, merit, p, x, length)
-      real(wp), intent(in) :: mean     !! Mean product of slack and flow, in squares of a force
-      real(wp), intent(in) :: merit    !! Forces that are wrong, over the size of a force
-      type(problem_t), intent(inout) :: p
-      type(interior_t), intent(inout) :: x
-      real(wp), intent(out) :: length  !! How much of the step was gone
-      type(interior_t) :: step
-      real(wp) :: goal(4, size(p%joint)), share
+   !> What there is to search for
+   pure subroutine pose(p, force, search)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)
+      type(search_t), intent(out) :: search
+      integer :: i, k, n
 
-      step = x
-      p%product = -x%slack*x%flow
-      call find_step(p, x, step)
-      length = longest(p, x, step, 1.0_wp)
-      goal = weighted(p, mean*min(1.0_wp, &
-         & mean_product(p, x%slack + length*step%slack, x%flow + length*step%flow)/mean)**3)
-      p%product = p%product - length*step%slack*step%flow + goal
-      call find_step(p, x, step)
-      share = max(0.995_wp, 1.0_wp - merit**2)
-      length = longest(p, x, step, share)
-      if (size(p%joint) <= many) call lengthen(goal, share, p, x, step, length)
-      x%motion = x%motion + length*step%motion
-      x%force = x%force + length*step%force
-      x%slack = x%slack + length*step%slack
-      x%flow = x%flow + length*step%flow
-   end subroutine improve
-
-   !> Lengthen a step by correctors that bring products back which a longer one would let stray
-   pure subroutine lengthen(goal, share, p, x, step, length)
-      real(wp), intent(in) :: goal(:, :)  !! What the products are to be: (4, n_joint)
-      real(wp), intent(in) :: share       !! How much of the way to a bound may be gone
-      type(problem_t), intent(inout) :: p
-      type(interior_t), intent(in) :: x
-      type(interior_t), intent(inout) :: step
-      real(wp), intent(inout) :: length
-      type(interior_t) :: other
-      real(wp) :: aim, longer, product_of(4, size(p%joint))
-      integer :: k
-
-      other = step
-      do k = 1, more_correctors
-         if (length > long) return
-         aim = min(1.0_wp, length + farther)
-         product_of = (x%slack + aim*step%slack)*(x%flow + aim*step%flow)
-         p%product = p%product + merge(max(-astray*goal, &
-            & min(max(product_of, goal/astray), goal*astray) - product_of), 0.0_wp, p%bounded)
-         call find_step(p, x, other)
-         longer = longest(p, x, other, share)
-         if (longer < length + gain*(aim - length)) return
-         step = other
-         length = longer
+      n = size(p%joint)
+      call lay_out(p, search%springs)
+      allocate (search%given(3, n), search%bounded(4, n))
+      allocate (search%unit(3, n), search%soft(3, n), source=0.0_wp)
+      allocate (search%balance, mold=p%load)
+      allocate (search%opening(3, n), search%distance(4, n), search%product(4, n), source=0.0_wp)
+      do i = 1, n
+         do k = 1, 3
+            search%unit(k, i) = p%give(k, k, i)
+            search%given(k, i) = p%give(k, k, i) > 0.0_wp
+         end do
+         search%bounded(1:2, i) = search%given(1:2, i) .and. p%springs%shift(1:2, i) < unbounded
+         search%bounded(3:4, i) = search%given(3, i) &
+            & .and. p%springs%cone(i)%kind /= cone_kind%no_slip
       end do
-   end subroutine lengthen
+      where (.not. search%given) search%unit = 1.0_wp
+      where (.not. p%soft > 0.0_wp) search%soft = compliance*search%unit
+      search%before = force
+   end subroutine pose
 
-   !> The forces of the step before, and the motion that they make, lifted off the bounds
-   pure subroutine begin(force, motion, shallow, p, x)
-      real(wp), intent(in) :: force(:, :), motion(:, :)
-      !> How far off the bounds at the least, over the size of a force
-      real(wp), intent(in) :: shallow
-      type(problem_t), intent(inout) :: p  !! The problem; the size of a force is set
-      type(interior_t), intent(out) :: x
-      real(wp) :: opening(3, size(p%joint)), flow, least, unit
+   !> Where the search begins: forces and their motion, with distances and flows lifted off zero by
+   !> the same product everywhere, but where one is larger
+   pure subroutine begin(p, search, force, lift, z)
+      type(contact_problem_t), intent(in) :: p
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: lift  !! By how much at the least, over the size of a force
+      type(iterate_t), intent(out) :: z
+      real(wp) :: flow, least, opening(3, size(p%joint)), typical, unit
       integer :: i, k
 
-      x%motion = motion(:size(p%balance, 1), p%equation)
-      x%force = force(:, p%joint)
-      allocate (x%flow(4, size(p%joint)))
-      opening = openings(p, x%motion)
-      where (p%follows) opening = opening + p%soft*(x%force - p%force_before)
-      p%size = sum(max(abs(x%force(1:2, :)), -opening(1:2, :)/p%unit(1:2, :)), &
-         & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
-      p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
-      x%slack = distances(p, x%force)
-      least = p%size*max(shallow, min(highest, 10.0_wp*sum(abs(min(x%slack(:2, :), &
-         & opening(:2, :)/p%unit(:2, :))), p%given(:2, :)) &
-         & /(p%size*real(max(1, count(p%given(:2, :))), wp))))
+      z%force = force
+      z%motion = move_blocks(p, force)
+      z%slack = distances(p, force)
+      opening = merge(openings(p, z%force, z%motion), 0.0_wp, search%given)
+      ! size of a force, and the part of it by which forces are wrong
+      associate (normal => search%given(1:2, :))
+         typical = max(tiny(1.0_wp)/epsilon(1.0_wp), sum(max(z%slack(1:2, :), &
+            & -opening(1:2, :)/search%unit(1:2, :)), normal .and. search%bounded(1:2, :)) &
+            & /real(max(1, count(normal)), wp))
+         least = sum(abs(min(z%slack(1:2, :), opening(1:2, :)/search%unit(1:2, :))), &
+            & normal .and. search%bounded(1:2, :))/real(max(1, count(normal)), wp)
+      end associate
+      least = max(lift*typical, min(highest*typical, 10.0_wp*least))
+      allocate (z%flow(4, size(p%joint)), source=0.0_wp)
       do i = 1, size(p%joint)
          do k = 1, 4
-            unit = p%unit(min(k, 3), i)
+            if (.not. search%bounded(k, i)) cycle
+            unit = search%unit(min(k, 3), i)
             flow = merge(opening(min(k, 3), i), -opening(3, i), k < 4)/unit
-            if (k < 3) x%slack(k, i) = max(x%slack(k, i), -flow)
-            ! the same product everywhere, but where one is larger already
-            x%slack(k, i) = max(x%slack(k, i), least**2/max(flow, least))
-            x%flow(k, i) = unit*max(flow, least**2/max(x%slack(k, i), least))
+            if (k < 3) z%slack(k, i) = max(z%slack(k, i), -flow)
+            z%slack(k, i) = max(z%slack(k, i), least**2/max(flow, least))
+            z%flow(k, i) = unit*max(flow, least**2/max(z%slack(k, i), least))
          end do
       end do
-      where (.not. p%bounded)
-         x%slack = 1.0_wp
-         x%flow = 0.0_wp
-      end where
+      where (.not. search%bounded) z%slack = 1.0_wp
    end subroutine begin
 
-   !> What an iterate leaves of balance and openings
-   pure subroutine find_rest(p, x, mean, merit)
-      type(problem_t), intent(inout) :: p  !! The problem; the rests are set
-      type(interior_t), intent(in) :: x
-      real(wp), intent(out) :: mean, merit
+   !> Distances of forces from their bounds
+   pure function distances(p, force) result(slack)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)
+      real(wp) :: slack(4, size(p%joint))  !! The distances: (4, n_joint) [N/m]
 
-      call see_lack(x, p)
-      p%opening(1:2, :) = p%opening(1:2, :) + x%flow(1:2, :)
-      p%opening(3, :) = p%opening(3, :) + x%flow(3, :) - x%flow(4, :)
-      where (.not. p%given) p%opening = 0.0_wp
-      mean = mean_product(p, x%slack, x%flow)
-      merit = max(sqrt(mean), maxval(abs(p%opening)/p%unit))/p%size
-   end subroutine find_rest
+      slack(:2, :) = force(:2, :) + p%springs%shift(:2, :)
+      associate (cone => p%springs%cone)
+         slack(4, :) = cone%limit + cone%friction*(slack(1, :) + slack(2, :))
+      end associate
+      slack(3, :) = slack(4, :) + force(3, :)
+      slack(4, :) = slack(4, :) - force(3, :)
+   end function distances
+
+   !> What an iterate lacks
+   pure subroutine see_lack(p, z, search, left)
+      type(contact_problem_t), intent(in) :: p
+      type(iterate_t), intent(in) :: z
+      type(search_t), intent(inout) :: search
+      real(wp), intent(out) :: left  !! The most of it, and of products, as an opening [m]
+      real(wp) :: mean
+      integer :: b, i
+
+      search%balance = p%load
+      call add_forces(p%springs, z%force, search%balance)
+      do b = 1, size(p%equation)
+         search%balance(:, b) = search%balance(:, b) - matmul(p%base(:, :, b), z%motion(:, b))
+      end do
+      search%opening = -openings(p, z%force, z%motion) - search%soft*(z%force - search%before)
+      do i = 1, size(p%joint)
+         associate (opening => search%opening(:, i), flow => z%flow(:, i))
+            opening(1:2) = opening(1:2) + flow(1:2)
+            opening(3) = opening(3) + flow(3) - flow(4)
+         end associate
+      end do
+      where (.not. search%given) search%opening = 0.0_wp
+      search%distance = merge(distances(p, z%force) - z%slack, 0.0_wp, search%bounded)
+      left = maxval(abs(search%opening))
+      do i = 1, size(p%joint)
+         mean = maxval(min(z%slack(:, i)*search%unit([1, 2, 3, 3], i), z%flow(:, i)), &
+            & search%bounded(:, i))
+         left = max(left, mean)
+      end do
+   end subroutine see_lack
+
+   !> One step: a predictor, and a corrector towards equal products
+   pure subroutine improve(p, search, z, gone)
+      type(contact_problem_t), intent(in) :: p
+      type(search_t), intent(inout) :: search
+      type(iterate_t), intent(inout) :: z
+      real(wp), intent(out) :: gone  !! How much of the step was gone
+      type(iterate_t) :: step
+      real(wp) :: aim, mean
+      integer :: k
+
+      gone = 0.0_wp
+      call set_springs(p, z, search)
+      call factor_springs(p, search%springs)
+      if (.not. search%springs%factor%usable) return
+      step = z
+      search%product = -z%slack*z%flow
+      call find_step(p, z, search, step)
+      gone = longest(search, z, step, 1.0_wp)
+      mean = mean_product(search, z%slack, z%flow)
+      aim = mean*min(1.0_wp, mean_product(search, z%slack + gone*step%slack, &
+         & z%flow + gone*step%flow)/max(mean, tiny(mean)))**3
+      search%product = search%product - gone*step%slack*step%flow
+      do k = 1, 4
+         search%product(k, :) = search%product(k, :) + aim*search%unit(min(k, 3), :)
+      end do
+      call find_step(p, z, search, step)
+      gone = longest(search, z, step, share)
+      z%motion = z%motion + gone*step%motion
+      z%force = z%force + gone*step%force
+      z%slack = z%slack + gone*step%slack
+      z%flow = z%flow + gone*step%flow
+   end subroutine improve
+
+   !> Springs of the joints as their bounds yield: the inverse of the triangle C + F_flow' (z/b) F
+   pure subroutine set_springs(p, z, search)
+      type(contact_problem_t), intent(in) :: p
+      type(iterate_t), intent(in) :: z
+      type(search_t), intent(inout) :: search
+      real(wp) :: yield(4)
+      integer :: i, k
+
+      do i = 1, size(p%joint)
+         yield = merge(z%flow(:, i)/z%slack(:, i), 0.0_wp, search%bounded(:, i))
+         associate (stiff => search%springs%stiff(:, :, i))
+            stiff = 0.0_wp
+            do k = 1, 3
+               if (search%given(k, i)) stiff(k, k) = 1.0_wp/(search%soft(k, i) + p%soft(k, i) &
+                  & + merge(yield(min(k, 3)), yield(3) + yield(4), k < 3))
+            end do
+            do k = 1, 2
+               stiff(3, k) = -p%springs%cone(i)%friction*(yield(3) - yield(4))*stiff(3, 3) &
+                  & *stiff(k, k)
+            end do
+         end associate
+      end do
+   end subroutine set_springs
 
    !> The step that brings what is left to nothing
-   pure subroutine find_step(p, x, step)
-      type(problem_t), intent(in) :: p
-      type(interior_t), intent(in) :: x
-      type(interior_t), intent(inout) :: step
-      real(wp) :: drive(3, size(p%joint)), rest(4, size(p%joint)), slack(4), source(4), bound
-      integer :: i
+   pure subroutine find_step(p, z, search, step)
+      type(contact_problem_t), intent(in) :: p
+      type(iterate_t), intent(in) :: z
+      type(search_t), intent(in) :: search
+      type(iterate_t), intent(inout) :: step
+      real(wp) :: drive(3, size(p%joint)), moved(3, size(p%joint)), source(4), slack(4)
+      integer :: i, k
 
-      rest = lacking_slack(p, x)
       do i = 1, size(p%joint)
-         source = (p%product(:, i) - x%flow(:, i)*rest(:, i))/x%slack(:, i)
-         drive(1:2, i) = p%opening(1:2, i) + source(1:2)
-         drive(3, i) = p%opening(3, i) + source(3) - source(4)
+         source = merge((search%product(:, i) - z%flow(:, i)*search%distance(:, i)) &
+            & /z%slack(:, i), 0.0_wp, search%bounded(:, i))
+         drive(:, i) = search%opening(:, i) + [source(1:2), source(3) - source(4)]
+         moved(:, i) = matmul(search%springs%stiff(:, :, i), drive(:, i))
       end do
-      call respond(p, drive, step%force, step%motion)
+      step%force = moved
+      call respond(p, search%springs, search%balance, step%force, step%motion, moved)
       do i = 1, size(p%joint)
-         associate (f => step%force(:, i))
-            bound = p%springs%cone(i)%friction*(f(1) + f(2))
-            slack = [f(1), f(2), bound + f(3), bound - f(3)] + rest(:, i)
+         associate (f => step%force(:, i), cone => p%springs%cone(i))
+            f = matmul(search%springs%stiff(:, :, i), drive(:, i) - moved(:, i))
+            slack(1:2) = f(1:2)
+            slack(3:4) = cone%friction*(f(1) + f(2)) + [f(3), -f(3)]
          end associate
-         step%slack(:, i) = merge(slack, 0.0_wp, p%bounded(:, i))
-         step%flow(:, i) = merge((p%product(:, i) - x%flow(:, i)*slack)/x%slack(:, i), 0.0_wp, &
-            & p%bounded(:, i))
+         do k = 1, 4
+            step%slack(k, i) = 0.0_wp
+            step%flow(k, i) = 0.0_wp
+            if (.not. search%bounded(k, i)) cycle
+            step%slack(k, i) = slack(k) + search%distance(k, i)
+            step%flow(k, i) = (search%product(k, i) - z%flow(k, i)*step%slack(k, i))/z%slack(k, i)
+         end do
       end do
    end subroutine find_step
 
-   !> What the slacks of an iterate lack
-   pure function lacking_slack(p, x) result(rest)
-      type(problem_t), intent(in) :: p
-      type(interior_t), intent(in) :: x
-      real(wp) :: rest(4, size(p%joint))  !! What they lack: (4, n_joint) [N/m]
-      integer :: i
-
-      do i = 1, size(p%joint)
-         associate (cone => p%springs%cone(i), f => x%force(:, i), &
-            & shift => p%springs%shift(:, i))
-            rest(1:2, i) = f(1:2) + shift(1:2)
-            rest(3, i) = cone%limit + cone%friction*(rest(1, i) + rest(2, i)) + f(3)
-            rest(4, i) = rest(3, i) - 2.0_wp*f(3)
-         end associate
-      end do
-      rest = merge(rest - x%slack, 0.0_wp, p%bounded)
-   end function lacking_slack
-
-   !> Mean of slack times flow, over what the blocks give: in squares of a force
-   pure real(wp) function mean_product(p, slack, flow)
-      type(problem_t), intent(in) :: p
-      real(wp), intent(in) :: slack(:, :)  !! Slacks: (4, n_joint) [N/m]
+   !> Mean of distance times flow, over what the blocks give: in squares of a force
+   pure real(wp) function mean_product(search, slack, flow)
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: slack(:, :)  !! Distances: (4, n_joint) [N/m]
       real(wp), intent(in) :: flow(:, :)   !! Flows: (4, n_joint) [m]
 
-      mean_product = (sum(slack(:3, :)*flow(:3, :)/p%unit, p%bounded(:3, :)) &
-         & + sum(slack(4, :)*flow(4, :)/p%unit(3, :), p%bounded(4, :))) &
-         & /real(max(1, count(p%bounded)), wp)
+      mean_product = (sum(slack(:3, :)*flow(:3, :)/search%unit, search%bounded(:3, :)) &
+         & + sum(slack(4, :)*flow(4, :)/search%unit(3, :), search%bounded(4, :))) &
+         & /real(max(1, count(search%bounded)), wp)
    end function mean_product
 
-   !> A product that is the same for all bounds, as each joint has it
-   pure function weighted(p, mean) result(product_of)
-      type(problem_t), intent(in) :: p
-      real(wp), intent(in) :: mean
-      real(wp) :: product_of(4, size(p%joint))  !! The products: (4, n_joint) [J/m]
-
-      product_of(:3, :) = mean*p%unit
-      product_of(4, :) = product_of(3, :)
-      where (.not. p%bounded) product_of = 0.0_wp
-   end function weighted
-
-   !> The longest step, 1 at most, that keeps a share of every slack and flow
-   pure real(wp) function longest(p, x, step, share)
-      type(problem_t), intent(in) :: p
-      type(interior_t), intent(in) :: x, step
-      real(wp), intent(in) :: share  !! How much of the way to the first zero is gone
+   !> The longest step, 1 at most, that keeps a share of every distance and flow
+   pure real(wp) function longest(search, z, step, way)
+      type(search_t), intent(in) :: search
+      type(iterate_t), intent(in) :: z, step
+      real(wp), intent(in) :: way  !! How much of the way to the first zero is gone
       integer :: i, k
 
       longest = 1.0_wp
-      do i = 1, size(p%joint)
+      do i = 1, size(z%slack, 2)
          do k = 1, 4
-            if (.not. p%bounded(k, i)) cycle
-            if (step%slack(k, i)*longest < -share*x%slack(k, i)) &
-               & longest = -share*x%slack(k, i)/step%slack(k, i)
-            if (step%flow(k, i)*longest < -share*x%flow(k, i)) &
-               & longest = -share*x%flow(k, i)/step%flow(k, i)
+            if (.not. search%bounded(k, i)) cycle
+            if (step%slack(k, i)*longest < -way*z%slack(k, i)) &
+               & longest = -way*z%slack(k, i)/step%slack(k, i)
+            if (step%flow(k, i)*longest < -way*z%flow(k, i)) &
+               & longest = -way*z%flow(k, i)/step%flow(k, i)
          end do
       end do
    end function longest
 
-   !> Forces of an iterate, those of open contacts none, and no shear force beyond its bound
-   pure subroutine take_forces(x, p, force)
-      type(interior_t), intent(in) :: x
-      type(problem_t), intent(inout) :: p     !! The problem; what is lacking is set
-      real(wp), intent(inout) :: force(:, :)  !! Receives the forces: (3, n_joint of all) [N/m]
-      real(wp) :: bound
-      integer :: i
-
-      call see_lack(x, p)
-      do i = 1, size(p%joint)
-         associate (f => force(:, p%joint(i)), shift => p%springs%shift(:, i), &
-            & cone => p%springs%cone(i))
-            where (p%given(:, i)) f = x%force(:, i)
-            where (p%bounded(1:2, i) .and. (p%unit(1:2, i)*(f(1:2) + shift(1:2)) &
-               & < -p%opening(1:2, i) .or. f(1:2) < -shift(1:2))) f(1:2) = -shift(1:2)
-            if (.not. p%bounded(3, i)) cycle
-            bound = cone%limit + cone%friction*sum(f(1:2) + shift(1:2))
-            f(3) = max(-bound, min(bound, f(3)))
-         end associate
-      end do
-   end subroutine take_forces
-
-end submodule dda_contact_interior
+end module dda_contact_interior

@@ -6,9 +6,8 @@
 !> Tarnow 1992, ZAMP 43, 757-792).
 submodule (dda_step_motion) dda_curved_motion
    use dda_block_update, only : displace_blocks
-   use dda_contact_types, only : joint_place_t, joint_springs_t, place_joint, place_rows
+   use dda_contact_types, only : joint_place_t, place_joint, place_rows
    use dda_multipliers, only : settle_in_time
-   use dda_step_state, only : step_state_t
    implicit none
 
    !> Most passes of the correction
@@ -16,12 +15,6 @@ submodule (dda_step_motion) dda_curved_motion
    !> Gap at a closed contact, or depth at an open one, that is left, over the size of the smallest
    !> block
    real(wp), parameter :: left_over = 1.0e-8_wp
-   !> The same over what many blocks leave, and where the faces of many joints agree: once more
-   !> brings on what is swept
-   real(wp), parameter :: of_unseen = 1.0e-2_wp, of_many = 5.0e-1_wp
-   !> Depth that is left where nothing settles, over the same
-   real(wp), parameter :: jammed = 1.0e-5_wp
-
 contains
 
    !> Begin with the rows of blocks that go on as they are
@@ -39,33 +32,19 @@ contains
    !> Settle the contacts again with rows of the motion that was found, until closed contacts have
    !> no gap at the end of the step
    module procedure follow_curves
-      type(step_state_t) :: last
-      real(wp) :: curve(3, size(run%contacts%joint)), size_of, error
-      type(joint_springs_t) :: springs
+      real(wp) :: size_of, error
       integer :: pass
 
       size_of = sqrt(minval(run%system%area, mask=run%system%equation > 0))
-      associate (step => run%step, state => run%step%state)
+      associate (state => run%step%state)
          do pass = 0, max_passes
             call see_curves(run, state%motion, error)
-            if (error <= max(left_over*size_of, merge(of_many, of_unseen, state%effort%many &
-               & .and. .not. state%effort%swept)*state%unseen) .or. pass == max_passes) return
-            last = state
-            curve = step%curve
-            springs = run%contacts%springs
-            state%effort%again = .true.
-            state%effort%in_vain = error <= jammed*size_of
-            call take_turned_rows(run, last%motion)
+            if (error <= max(left_over*size_of, 2.0_wp*state%residual) &
+               & .or. pass == max_passes) return
+            call take_turned_rows(run, (state%motion))
             run%equations%new_numbers = .true.
-            call settle_in_time(run%settings, (run%equations%fixed%target), run%equations, &
+            call settle_in_time((run%equations%fixed%target), run%equations, &
                & run%contacts%springs, state)
-            if (state%settled) cycle
-            if (.not. state%effort%in_vain) return
-            ! blocks that jam where they turn: what they lie in one another is left
-            state = last
-            step%curve = curve
-            run%contacts%springs = springs
-            return
          end do
       end associate
    end procedure follow_curves

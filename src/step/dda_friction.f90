@@ -3,7 +3,7 @@
 !>
 !> Equation (M4) of docs/method.md
 submodule (dda_multipliers) dda_friction
-   use dda_friction_cone, only : cone_t
+   use dda_friction_cone, only : cone_kind, cone_t
    use dda_small_systems, only : least_squares
    use dda_step_state, only : force_noise
    implicit none

@@ -1,15 +1,13 @@
 !> Forces of the joints as multipliers (augmented Lagrangian): those of the springs are added until
 !> the springs carry nothing, so that the penalty leaves no trace
 !>
-!> In time sweeps, faces and interior springs find forces that obey Coulomb's law as it is. Where
-!> they end without, few joints go on by bounds of the shear forces: with these given the problem is
-!> convex, and around it they follow the normal forces. Whatever they are, friction takes energy and
-!> no momentum; so a step in which they change a little to the end counts.
+!> In time contact forces that obey Coulomb's law as it is are found group by group
+!> (`dda_contact_solver`), and around them the forces of held points and bars.
 module dda_multipliers
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_contact_solver, only : settle_contacts
    use dda_contact_types, only : joint_springs_t
    use dda_fixed_points, only : correct_fixed_forces
-   use dda_friction_cone, only : cone_kind
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_settings, only : flow_rule, settings_t
@@ -17,7 +15,7 @@ module dda_multipliers
    implicit none
    private
 
-   public :: group_joints, iterate_friction, settle_in_time, settle_joints
+   public :: iterate_friction, settle_in_time, settle_joints
 
    !> What is known of a fixed-point iteration
    type :: anderson_t
@@ -28,29 +26,6 @@ module dda_multipliers
    end type anderson_t
 
    interface
-
-      !> Settle contact forces and motion of one step, or begin to
-      pure module subroutine sweep_contacts(equations, springs, state)
-         type(equations_t), intent(in) :: equations
-         !> The springs of the joints; their stiffness only measures gaps here
-         type(joint_springs_t), intent(in) :: springs
-         !> Forces and trial forces to begin with in; motion, forces and faces out, as far as they
-         !> came
-         type(step_state_t), intent(inout) :: state
-      end subroutine sweep_contacts
-
-      !> Groups of joints whose blocks hang together: each is a problem of its own
-      pure module subroutine group_joints(springs, n_equation, n, first, joint)
-         type(joint_springs_t), intent(in) :: springs
-         !> Number of movable blocks
-         integer, intent(in) :: n_equation
-         !> Number of groups
-         integer, intent(out) :: n
-         !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
-         integer, intent(out) :: first(:)
-         !> The joints, group by group, rising in each: (n_joint)
-         integer, allocatable, intent(out) :: joint(:)
-      end subroutine group_joints
 
       !> Find the motion and the states of one step under Coulomb friction. In time the bounds begin
       !> with the normal forces of the step before, and faces as they were: what changes little
@@ -107,16 +82,10 @@ module dda_multipliers
 
    !> Most passes in which forces become multipliers, for given bounds
    integer, parameter :: max_passes = 100
-   !> Most corrections of the bounds
-   integer, parameter :: max_corrections = 40
-   !> Joints of more than so many that did not settle are rather tried in a shorter step
-   integer, parameter :: most_joints = 300
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: fine = 1.0e-10_wp
    !> Change of a force that a step may end with
    real(wp), parameter :: coarse = 1.0e-7_wp
-   !> Change of a bound that a step may end with
-   real(wp), parameter :: coarse_bound = 1.0e-4_wp
    !> Most changes of the conditions of bars in one step; after the few only the worst bar changes
    integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
 
@@ -137,7 +106,7 @@ contains
 
       do pass = 1, max_bar_passes
          if (settings%current .and. settings%dynamic) then
-            call settle_in_time(settings, (equations%fixed%target), equations, springs, state)
+            call settle_in_time((equations%fixed%target), equations, springs, state)
          else if (multiplies(settings, springs) .or. size(equations%fixed%point) > 0) then
             call settle_exactly(settings, (equations%fixed%target), state%trial - state%force, &
                & equations, springs, state)
@@ -155,8 +124,7 @@ contains
       state%settled = .false.
    end subroutine settle_joints
 
-   !> Settle the joints until neither their forces nor those at the held points change; in time for
-   !> given cones, and a step that ends with small changes counts
+   !> Settle the joints until neither their forces nor those at the held points change
    pure subroutine settle_exactly(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
@@ -166,14 +134,11 @@ contains
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, scale, noise(size(springs%stiffness)), force(3, size(springs%stiffness))
+      real(wp) :: change, scale, force(3, size(springs%stiffness))
       integer :: pass
-      logical :: has_multipliers, in_time
+      logical :: has_multipliers
 
-      in_time = settings%current .and. settings%dynamic
-      has_multipliers = in_time .or. multiplies(settings, springs)
-      ! gaps that contradict one another by rounding let the forces grow without end
-      noise = merge(springs%stiffness*equations%gap_noise, 0.0_wp, in_time)
+      has_multipliers = multiplies(settings, springs)
       do pass = 1, max_passes
          force = state%force
          if (has_multipliers) state%trial = force + opening
@@ -181,12 +146,12 @@ contains
          if (.not. state%settled) return
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
          if (has_multipliers) change = max(change, &
-            & maxval(maxval(abs(state%force - force), dim=1) - noise))
+            & maxval(abs(state%force - force)))
          ! without loads the forces of held points alone bear on the blocks
          scale = equations%force_scale + sum(abs(equations%fixed%force))
          if (change <= fine*scale) return
       end do
-      state%settled = in_time .and. change <= coarse*scale
+      state%settled = .false.
    end subroutine settle_exactly
 
    !> Whether the forces of the joints are multipliers; otherwise their springs are real
@@ -204,82 +169,16 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
 
-      if (settings%flow == flow_rule%associated .or. settings%current .and. settings%dynamic) then
+      if (settings%flow == flow_rule%associated) then
          call iterate_open_close(equations, springs, settings%max_changes, state)
       else
          call iterate_friction(equations, springs, settings%max_changes, settings%dynamic, state)
       end if
    end subroutine settle_once
 
-   !> Settle the forces of contacts, bars and held points
-   pure subroutine settle_in_time(settings, target, equations, springs, state)
-      type(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: target(:)
-      !> Blocks assembled; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      !> Forces and faces to begin with in, motion and joints out
-      type(step_state_t), intent(inout) :: state
-      real(wp) :: opening(3, size(springs%stiffness))
-
-      opening = state%trial - state%force
-      call sweep_to_targets(target, equations, springs, state)
-      if (state%settled .or. size(springs%stiffness) > most_joints) return
-      if (state%effort%in_vain) return
-      call settle_bounds(settings, target, opening, equations, springs, state)
-   end subroutine settle_in_time
-
-   !> Settle the forces for bounds of friction that follow the normal ones
-   pure subroutine settle_bounds(settings, target, opening, equations, springs, state)
-      type(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: target(:)
-      real(wp), intent(in) :: opening(:, :)
-      type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(inout) :: state
-      real(wp), dimension(size(springs%stiffness)) :: bound, change, next, now, wrong
-      logical, dimension(size(springs%stiffness)) :: are_now, glued
-      real(wp) :: least
-      type(anderson_t) :: known
-      integer :: correction
-
-      bound = coulomb_bound(springs, state)
-      glued = are_glued(springs, state)
-      least = huge(least)
-      do correction = 1, max_corrections
-         state%cone%friction = 0.0_wp
-         state%cone%limit = bound
-         state%cone%kind = merge(cone_kind%no_slip, cone_kind%frictional, glued)
-         call settle_exactly(settings, target, opening, equations, springs, state)
-         if (.not. state%settled) return
-         now = coulomb_bound(springs, state)
-         are_now = are_glued(springs, state)
-         change = now - bound
-         wrong = 0.0_wp
-         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > now) &
-            & wrong = merge(abs(change), equations%force_scale, are_now .eqv. glued)
-         if (maxval(wrong) <= fine*equations%force_scale) return
-         least = min(least, maxval(wrong))
-         call accelerate(known, bound, change, next)
-         bound = max(0.0_wp, next)
-         glued = are_now
-      end do
-      state%settled = least <= coarse_bound*equations%force_scale
-   end subroutine settle_bounds
-
-   !> Whether the joints cannot slide: what has parted can
-   pure function are_glued(springs, state)
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(in) :: state
-      logical :: are_glued(size(springs%stiffness))  !! The joints: (n_joint)
-
-      are_glued = springs%cone%kind == cone_kind%no_slip &
-         & .and. .not. (state%face%open(1) .and. state%face%open(2))
-   end function are_glued
-
    !> Sweep until held points are where they must be: their springs, stiff beside inertia, are parts
    !> of the blocks' equations, and what these lack becomes their force
-   pure subroutine sweep_to_targets(target, equations, springs, state)
+   pure subroutine settle_in_time(target, equations, springs, state)
       real(wp), intent(in) :: target(:)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
@@ -299,7 +198,7 @@ contains
          if (change <= coarse*scale .and. change > last/2.0_wp) return
       end do
       state%settled = change <= coarse*scale
-   end subroutine sweep_to_targets
+   end subroutine settle_in_time
 
    !> Sweep the contacts, and in a motion with them the bars
    pure subroutine sweep_with_bars(equations, springs, state)
@@ -313,13 +212,13 @@ contains
       logical :: agreed
 
       if (state%rates .or. size(equations%bars%entry) == 0) then
-         call sweep_contacts(equations, springs, state)
+         call settle_contacts(equations, springs, state)
          return
       end if
       call add_bars(equations%bars, -1.0_wp, equations%base, equations%load)
       load = equations%load
       call append_bars(equations%bars, springs, state, with_bars, whole, equations%load)
-      call sweep_contacts(equations, with_bars, whole)
+      call settle_contacts(equations, with_bars, whole)
       call drop_bars(whole, state)
       equations%load = load
       call judge_bars(equations%bars, state%motion, .false., agreed)

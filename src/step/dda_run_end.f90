@@ -5,6 +5,7 @@ submodule (dda_forward) dda_run_end
    use dda_contacts, only : raise_springs
    use dda_energy, only : audit_step
    use dda_load_clock, only : has_path
+   use dda_step_context, only : in_time
    use dda_step_interval, only : first_interval, measure_scales
    use dda_step_motion, only : begin_step
    use dda_verdict, only : still_moves_away
@@ -61,6 +62,9 @@ contains
          outcome%path_time = march%clock%now
          outcome%jumps = march%jumps
          outcome%largest_jump = march%largest_jump
+         outcome%has_residual = in_time(run)
+         outcome%residual = march%residual
+         outcome%rough = march%rough
          outcome%steps = march%steps
          outcome%passes = march%passes
          outcome%factorisations = run%equations%factorisations

@@ -8,7 +8,7 @@ module dda_step
    use dda_impact, only : foresee_event
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : in_time, most_spare_cuts, run_t, step_outcome_t
+   use dda_step_context, only : in_time, most_spare_cuts, rough_contact_t, run_t, step_outcome_t
    use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
@@ -58,9 +58,6 @@ module dda_step
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40
-   !> Tries in which very many joints are swept before their faces agree
-   integer, parameter :: hasty_tries = 3
-
    !> Time hardly goes on by a step that is shorter than this share of the one that speeds allow; so
    !> many of them in a row end a run, for as many again would not lead on by a step either
    real(wp), parameter :: hardly = 1.0e-6_wp
@@ -69,6 +66,8 @@ module dda_step
    !> Why contacts find no forces where points are led
    character(len=*), parameter :: jam = "contacts lock against a prescribed displacement"
 
+   !> Openings and slips against the law of contact matter beyond this share of the fastest speed
+   real(wp), parameter :: rough = 1.0e-4_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
 
@@ -89,7 +88,6 @@ contains
       do attempt = 0, max_retries
          if (is_too_short(run)) exit
          if (run%step%renews) call place_contacts(run)
-         run%step%state%effort%patient = attempt > hasty_tries
          outcome = step_outcome_t(accepted=run%step%is_solved)
          if (.not. outcome%accepted) then
             call assemble_step(run)
@@ -153,12 +151,37 @@ contains
       leads = in_time(run) .and. any(abs(run%equations%fixed%rate) > 0.0_wp)
    end function leads
 
+   !> Keep what contact forces of a step have left against the law of contact
+   pure subroutine note_residual(run)
+      type(run_t), intent(inout) :: run
+      real(wp) :: fastest, residual
+      integer :: joint
+
+      associate (march => run%march, step => run%step)
+         residual = step%residual
+         joint = step%worst
+         if (step%state%residual > residual*step%dt) then
+            residual = step%state%residual/step%dt
+            joint = step%state%worst
+         end if
+         march%energy%residual = residual
+         march%residual = max(march%residual, residual)
+         fastest = max(largest_motion(run%system, step%velocity), &
+            & largest_motion(run%system, step%state%motion)/step%dt)
+         if (residual <= max(rough*fastest, march%rough%residual)) return
+         march%rough = rough_contact_t(residual, march%time + step%dt)
+         if (joint <= size(run%contacts%joint)) &
+            & march%rough%block = run%contacts%joint(joint)%block
+      end associate
+   end subroutine note_residual
+
    !> Carry an accepted step over, and count it
    pure subroutine commit(run)
       type(run_t), intent(inout) :: run
 
       if (run%contacts%searched) call next_reach(run%system, run%step, run%march)
       call measure_step(run)
+      if (in_time(run)) call note_residual(run)
       call carry_over(run)
       run%march%steps = run%march%steps + 1
       run%march%clock%tries = .false.

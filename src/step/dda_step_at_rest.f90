@@ -61,6 +61,7 @@ contains
       end associate
       run%march%steps = run%march%steps + 1
       run%march%time = run%march%time + run%step%dt
+      run%march%energy%residual = 0.0_wp
       call audit_step(run)
    end procedure rest
 
@@ -116,7 +117,6 @@ contains
          call predict_step(run)
          call place_contacts(run)
          run%step%state%fineness = of_try
-         run%step%state%effort%patient = .true.
          call assemble_step(run)
          call solve_contacts(run)
          if (.not. run%step%state%settled) return

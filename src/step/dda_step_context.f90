@@ -11,7 +11,7 @@ module dda_step_context
    implicit none
    private
 
-   public :: energy_t, march_t, run_state_t, run_t, step_context_t, step_outcome_t
+   public :: energy_t, march_t, rough_contact_t, run_state_t, run_t, step_context_t, step_outcome_t
    public :: in_time, most_spare_cuts, near_gap
 
    !> Most steps to spare for events. Each step adds one, and each that is cut to end at an event
@@ -32,7 +32,17 @@ module dda_step_context
       real(wp) :: damping = 0.0_wp    !! Gone by damping
       real(wp) :: impact = 0.0_wp     !! Gone by impacts
       real(wp) :: numerical = 0.0_wp  !! Gone by the time step
+      !> Largest opening or slip against the law of contact that the step has left [m/s]
+      real(wp) :: residual = 0.0_wp
    end type energy_t
+
+   !> The largest opening or slip against the law of contact of a run, among those that matter
+   !> beside the fastest speed
+   type :: rough_contact_t
+      real(wp) :: residual = 0.0_wp  !! The opening or slip [m/s]
+      real(wp) :: time = 0.0_wp      !! When [s]
+      integer :: block(2) = 0        !! Where: the two blocks, or none at a bar
+   end type rough_contact_t
 
    !> What the checks of a try say: whether the step counts, and if not what the next try changes
    type :: step_outcome_t
@@ -75,6 +85,10 @@ module dda_step_context
       real(wp), allocatable :: mean_force(:, :)
       !> Likewise those of the springs at held points: (n_spring) [N/m]
       real(wp), allocatable :: held_mean_force(:)
+      !> Largest opening or slip against the law of contact that the velocities have [m/s], and its
+      !> joint
+      real(wp) :: residual = 0.0_wp
+      integer :: worst = 0
       real(wp) :: impact = 0.0_wp          !! Energy that impacts took from the velocities [J/m]
       real(wp) :: restitution = 1.0_wp     !! Share of the restitution that its impacts have
       real(wp) :: slowest_impact = 0.0_wp  !! Contacts that meet more slowly do not rebound [m/s]
@@ -185,6 +199,10 @@ module dda_step_context
       integer :: passes = 0
       !> Energies after the last step of a dynamic run
       type(energy_t) :: energy
+      !> Largest opening or slip against the law of contact in this run [m/s]
+      real(wp) :: residual = 0.0_wp
+      !> Likewise of those that matter
+      type(rough_contact_t) :: rough
    end type march_t
 
    !> What the next step of a run begins with

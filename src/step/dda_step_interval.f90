@@ -37,6 +37,10 @@ module dda_step_interval
    real(wp), parameter :: rattle_share = 1.0e-4_wp
    !> By what a step that did not settle is cut
    real(wp), parameter :: cut = 0.3_wp
+   !> Depth that contact forces may leave, over the size of the smallest block
+   real(wp), parameter :: deepest = 1.0e-4_wp
+   !> Steps shorter than this share of the longest one are not cut for what contact forces leave
+   real(wp), parameter :: shortest = 1.0e-3_wp
    !> A step that moves farther than this multiple of what is allowed is rejected
    real(wp), parameter :: too_far = 2.0_wp
    !> On a path of loads a step moves no farther than this multiple: the corners of a hinge must not
@@ -242,14 +246,14 @@ contains
       if (left > 0.0_wp .and. left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
    end subroutine fit_interval
 
-   !> Check that a try has settled and, where blocks move, has not moved too far for a linear step
-   !> (Shi: df24)
+   !> Check that a try has settled, that no block has entered another by what contact forces leave,
+   !> and, where blocks move, that none has moved too far for a linear step (Shi: df24)
    pure type(step_outcome_t) function check_length(run) result(outcome)
       type(run_t), intent(in) :: run
       real(wp) :: factor, limit
 
       outcome%dt = run%step%dt
-      outcome%accepted = run%step%state%settled
+      outcome%accepted = run%step%state%settled .and. .not. enters(run)
       if (.not. outcome%accepted) then
          outcome%dt = cut*run%step%dt
          outcome%was_cut = .true.
@@ -263,6 +267,14 @@ contains
       if (run%step%last_farthest > limit) factor = min(cut, factor)
       outcome%dt = factor*run%step%dt
    end function check_length
+
+   !> Whether contact forces in time leave blocks inside one another; in the shortest steps they may
+   pure logical function enters(run)
+      type(run_t), intent(in) :: run
+
+      enters = run%step%state%residual > deepest*sqrt(minval(run%system%area, &
+         & mask=run%system%equation > 0)) .and. run%step%dt > shortest*run%march%longest
+   end function enters
 
    !> Most that a step may move where blocks move
    pure real(wp) function longest_motion(march)

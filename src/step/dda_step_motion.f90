@@ -11,7 +11,6 @@ module dda_step_motion
    use dda_step_context, only : in_time, run_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
-   use dda_step_state, only : effort_t
    use dda_velocity, only : stiffen_contacts
    implicit none
    private
@@ -32,12 +31,6 @@ module dda_step_motion
       end subroutine follow_curves
 
    end interface
-
-   !> Opening against the law of contact that many blocks may leave, over what the speed of the
-   !> longest step's fall brings in a step: a speed matters in a short step as much as in a long one
-   real(wp), parameter :: unseen = 1.0e-3_wp
-   !> Where nothing falls, or blocks fly, this share of the fastest speed counts in its place
-   real(wp), parameter :: slow = 1.0e-3_wp
 
 contains
 
@@ -107,9 +100,7 @@ contains
       run%step%dt = run%march%dt
       if (in_time(run)) call stiffen_contacts(run)
       call begin_step(run)
-      run%step%state%unseen = run%step%state%fineness*unseen*run%step%dt*max( &
-         & run%march%free_acceleration*run%march%longest, slow*largest_motion(run%system, &
-         & packed_velocity(run%system, size(run%step%state%motion, 1))))
+      run%step%state%fall = run%step%dt*run%march%free_acceleration*run%march%longest
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
          & merge(run%march%time, run%march%clock%now, run%settings%dynamic))
       if (.not. in_time(run)) return
@@ -145,7 +136,6 @@ contains
          state%cone = run%contacts%springs%cone
          state%unsettled_work = 0.0_wp
          state%settled = .false.
-         state%effort = effort_t(patient=state%effort%patient)
          state%passes = 0
       end associate
    end subroutine begin_step

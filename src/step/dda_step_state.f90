@@ -11,25 +11,7 @@ module dda_step_state
    implicit none
    private
 
-   public :: effort_t, step_state_t, joint_forces, disagreement, force_noise, equations_t
-
-   !> What a step spends on the forces of its joints, and what has been tried of it
-   type :: effort_t
-      !> Whether longer steps have failed: then very many joints get all the time that they take
-      logical :: patient = .false.
-      !> Whether many joints hang together, so that less than what is unseen is no matter
-      logical :: many = .false.
-      !> Whether very many joints were swept in this step since their faces did not agree: once more
-      !> these would not either
-      logical :: swept = .false.
-      !> Whether the faces of many joints did not agree in this step: rather than once more they are
-      !> swept
-      logical :: strayed = .false.
-      !> Whether the forces to begin with are those of a try of this step
-      logical :: again = .false.
-      !> Whether it is no matter if this does not end; then little is tried
-      logical :: in_vain = .false.
-   end type effort_t
+   public :: step_state_t, joint_forces, disagreement, force_noise, equations_t
 
    !> The motion of the step and the joints at its end
    type :: step_state_t
@@ -45,15 +27,16 @@ module dda_step_state
       type(joint_face_t), allocatable :: face(:)
       !> Bounds of the forces: (n_joint)
       type(cone_t), allocatable :: cone(:)
-      !> How much smaller than usual gaps must be that sweeps leave
+      !> How much smaller than usual gaps must be that contact forces leave in time
       real(wp) :: fineness = 1.0_wp
-      !> Opening or slip against the law of contact that many blocks may leave [m]
-      real(wp) :: unseen = 0.0_wp
-      !> Whether velocities are sought: then it does not matter which of all forces that stop the
-      !> blocks are found, in a motion those nearest to the ones before count
+      !> What free fall from rest brings in the step after the longest one: these gaps are measured
+      !> by it [m]
+      real(wp) :: fall = 0.0_wp
+      !> The largest opening or slip against the law of contact that they leave [m], and its joint
+      real(wp) :: residual = 0.0_wp
+      integer :: worst = 0
+      !> Whether velocities are sought, which bars have no part in
       logical :: rates = .false.
-      !> What is spent on the forces
-      type(effort_t) :: effort
       !> Work of what the bounds of the shear forces would still change by [J/m]
       real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far

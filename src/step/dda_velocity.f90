@@ -34,13 +34,13 @@ module dda_velocity
    real(wp), parameter :: over_inertia = 1.0e3_wp
    !> Most tries with less restitution; the last one has none
    integer, parameter :: max_tries = 10
-   !> What speeds leave of gaps in the longest step, over what motions leave
-   real(wp), parameter :: finer = 1.0e-2_wp
    !> Share of the velocities before that may be mixed in to keep the energy instead of a smaller
    !> restitution, and most that one try reduces the restitution by
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
    !> Energy that counts as rounding, over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
+   !> Steps shorter than this share of the longest one are not cut for what contacts leave
+   real(wp), parameter :: shortest = 1.0e-3_wp
    !> Energy that what contacts leave may bring in, over that of motion, of strain, of the fall in
    !> the longest step, and what loads bring in: in the longest step, and at the most in a shorter
    !> one, for what is left does not shrink with the step
@@ -89,10 +89,10 @@ contains
             if (share <= least_less .or. .not. any(step%restitution*impact%part > 0.0_wp)) exit
             step%restitution = (1.0_wp - min(largest_less, 2.0_wp*share))*step%restitution
          end do
-         ! points that are led bring in energy of their own
+         ! points that are led bring in energy of their own, and what contacts leave ends no run
          if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
-            & .or. kinetic_energy(equations, step%velocity) &
-            & <= allowed + energy_left_over(run, before)
+            & .or. step%dt <= shortest*step%longest .or. &
+            & kinetic_energy(equations, step%velocity) <= allowed + energy_left_over(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          ! what has closed by a force has been stopped on its way, not at its end
@@ -155,11 +155,13 @@ contains
       call assemble_rates(run, impact)
       call begin_rates(run, impact, restitution, springs, state)
       associate (step => run%step, fixed => run%equations%fixed)
-         call settle_in_time(run%settings, step%dt*fixed%rate, run%equations, springs, state)
+         call settle_in_time(step%dt*fixed%rate, run%equations, springs, state)
          step%mean_force = state%force + impact%force_before
          ! half of the forces of the motion have acted as they did
          step%held_mean_force = fixed%force + held_force/2.0_wp
          fixed%force = held_force
+         step%residual = state%residual/step%dt
+         step%worst = state%worst
          step%has_velocity = state%settled
          if (.not. step%has_velocity) return
          step%velocity = state%motion/step%dt
@@ -223,11 +225,7 @@ contains
 
       springs = impact%springs
       state = run%step%state
-      ! what a speed leaves of a gap counts as in the longest step
-      state%fineness = state%fineness*finer*run%step%dt/run%step%longest
-      state%unseen = 10.0_wp*state%unseen
       state%rates = .true.
-      state%effort%in_vain = .false.
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
          associate (pair => run%contacts%joint(j)%block)

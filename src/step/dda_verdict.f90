@@ -16,7 +16,7 @@ module dda_verdict
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_kinds, only : pi, wp
    use dda_settings, only : settings_t, verdict
-   use dda_step_context, only : march_t, run_t, step_context_t
+   use dda_step_context, only : march_t, rough_contact_t, run_t, step_context_t
    use dda_step_interval, only : longest_motion
    implicit none
    private
@@ -88,6 +88,12 @@ module dda_verdict
       logical :: has_built = .false.
       !> Whether no joint has slid in stages, and yet the last shape built at once slides or falls
       logical :: slides_at_once = .false.
+      !> Whether blocks moved in time, and the largest opening or slip against the law of contact
+      !> then [m/s]
+      logical :: has_residual = .false.
+      real(wp) :: residual = 0.0_wp
+      !> The largest that matters
+      type(rough_contact_t) :: rough
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop

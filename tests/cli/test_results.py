@@ -14,7 +14,8 @@ LAST = """blocks half_angle_deg thickness_ratio friction_deg mode geometry verdi
     critical_low critical_high collapses_at exact relative_error collapse_mode sliding_share
     intrados_hinge_deg extrados_hinge_deg springing_hinge steps open_close_iterations
     factorisations seconds unknowns exact_low exact_high imbalance law_violation mechanism_power
-    safety_thickness thrust_min thrust_max path_time worst_position worst_direction""".split()
+    safety_thickness thrust_min thrust_max path_time worst_position worst_direction
+    contact_residual""".split()
 JOINTS = """case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force
     shear_force eccentricity_ratio opening_intrados opening_extrados slip state block_1
     block_2 x y force_x force_y mechanism slides_x slides_y""".split()

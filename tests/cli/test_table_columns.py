@@ -43,7 +43,7 @@ def test_a_brick_that_is_pushed_stands(tmp_path: Path) -> None:
         "sliding_share": "", "intrados_hinge_deg": "", "extrados_hinge_deg": "", "springing_hinge": "",
         "unknowns": 3, "exact_low": 40, "exact_high": 40, "imbalance": 0, "law_violation": 0, "mechanism_power": "",
         "safety_thickness": "", "thrust_min": "", "thrust_max": "", "path_time": "", "worst_position": "",
-        "worst_direction": ""}, 1e-9)
+        "worst_direction": "", "contact_residual": ""}, 1e-9)
     joints, reactions, forces = tables(tmp_path, "joints", "reactions", "proof_forces")
     check(joints[0], {
         "case": 1, "joint": 1, "angle_deg": "", "x_intrados": 12, "y_intrados": 0, "x_extrados": 10, "y_extrados": 0,

@@ -1,0 +1,261 @@
+!> The contact forces of one group of blocks that move in time: what is asked
+!>
+!>    A d = load + R f,   u = gap + R' d + C (f - f0),   n = f + tension
+!>
+!>    n1, n2 >= 0, u1, u2 >= 0, n1 u1 = n2 u2 = 0,   |T| <= limit + friction (n1 + n2), T against u3
+!>
+!> A is block diagonal: without forces blocks know nothing of one another. d is a motion, or speeds
+!> times the length of the step. C is the compliance of bars, and 0 of contacts.
+!>
+!> Equation (M5) of docs/method.md
+module dda_contact_problem
+   use dda_contact_types, only : joint_springs_t, unbounded
+   use dda_friction_cone, only : cone_kind, cone_t, shear_bound
+   use dda_kinds, only : wp
+   use dda_small_systems, only : cholesky, solved
+   use dda_spring_products, only : add_forces, relative_displacement
+   use dda_step_state, only : equations_t, step_state_t
+   implicit none
+   private
+
+   public :: contact_problem_t, pose_contacts, openings, move_blocks, find_residual, speed_of
+   public :: admissible
+
+   !> Joints and blocks of a group
+   type :: contact_problem_t
+      !> Numbers of the joints: (n_joint)
+      integer, allocatable :: joint(:)
+      !> Equations of the blocks: (n_block)
+      integer, allocatable :: equation(:)
+      !> Rows and bounds; the blocks are numbered as they come here, 0 for what cannot move
+      type(joint_springs_t) :: springs
+      !> Matrix of each block, and its Cholesky factor: (n_dof, n_dof, n_block)
+      real(wp), allocatable :: base(:, :, :), lower(:, :, :)
+      !> Loads: (n_dof, n_block) [N/m]
+      real(wp), allocatable :: load(:, :)
+      !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
+      real(wp), allocatable :: answer(:, :, :, :)
+      !> Openings and slip by a unit of each of the joint's own forces: (3, 3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: give(:, :, :)
+      !> Gaps before the motion: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> How much openings and slip follow their forces: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Forces that they follow none of: (3, n_joint) [N/m]
+      real(wp), allocatable :: rest(:, :)
+      !> Gap that rounding can make: it asks for no force, which could grow without end [m]
+      real(wp) :: noise = 0.0_wp
+   end type contact_problem_t
+
+   !> Share of what rounding makes of gaps that it can make of speeds, times the length of the step
+   real(wp), parameter :: of_speeds = 1.0e-2_wp
+
+contains
+
+   !> The problem of some joints
+   pure subroutine pose_contacts(equations, springs, state, joint, p)
+      type(equations_t), intent(in) :: equations
+      !> Springs of all joints; their stiffness only measures gaps here
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(in) :: state
+      integer, intent(in) :: joint(:)  !! Numbers of the joints: (n)
+      type(contact_problem_t), intent(out) :: p
+      integer :: i, n_dof
+
+      n_dof = size(springs%row, 1)
+      ! strain that follows its load has no part in impulses
+      if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
+      allocate (p%joint, source=joint)
+      allocate (p%springs%equation(2, size(joint)))
+      call number_blocks(springs, size(equations%load, 2), p)
+      p%base = equations%base(:n_dof, :n_dof, p%equation)
+      p%load = equations%load(:n_dof, p%equation)
+      p%springs%row = springs%row(:n_dof, :, :, joint)
+      p%springs%shift = springs%shift(:, joint)
+      p%springs%cone = springs%cone(joint)
+      p%noise = min(0.25_wp, state%fineness)*equations%gap_noise
+      if (state%rates) p%noise = of_speeds*p%noise
+      allocate (p%gap(3, size(joint)))
+      do i = 1, size(joint)
+         p%gap(:, i) = (state%force(:, joint(i)) - state%trial(:, joint(i))) &
+            & /springs%stiffness(joint(i))
+      end do
+      allocate (p%soft, p%rest, mold=p%gap)
+      p%soft = 0.0_wp
+      p%rest = 0.0_wp
+      if (allocated(springs%soft)) p%soft = springs%soft(:, joint)
+      if (allocated(springs%rest)) p%rest = springs%rest(:, joint)
+      call see_answers(p)
+   end subroutine pose_contacts
+
+   !> Number the blocks of the joints as these come
+   pure subroutine number_blocks(springs, n_equation, p)
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: n_equation            !! Movable blocks in all
+      type(contact_problem_t), intent(inout) :: p  !! The problem; equations and blocks are set
+      integer :: e, i, side, number(0:n_equation), equation(2*size(p%joint))
+
+      number = 0
+      e = 0
+      do i = 1, size(p%joint)
+         do side = 1, 2
+            associate (global => springs%equation(side, p%joint(i)))
+               if (global > 0 .and. number(global) == 0) then
+                  e = e + 1
+                  number(global) = e
+                  equation(e) = global
+               end if
+               p%springs%equation(side, i) = number(global)
+            end associate
+         end do
+      end do
+      p%equation = equation(:e)
+   end subroutine number_blocks
+
+   !> How the blocks answer the forces of the joints
+   pure subroutine see_answers(p)
+      type(contact_problem_t), intent(inout) :: p
+      real(wp) :: unit(size(p%base, 1)), inverse(size(unit), size(unit), size(p%equation))
+      integer :: b, i, k, side
+
+      allocate (p%lower, mold=p%base)
+      do b = 1, size(p%equation)
+         p%lower(:, :, b) = cholesky(p%base(:, :, b))
+         do k = 1, size(unit)
+            unit = 0.0_wp
+            unit(k) = 1.0_wp
+            inverse(:, k, b) = solved(p%lower(:, :, b), unit)
+         end do
+      end do
+      allocate (p%answer, mold=p%springs%row)
+      allocate (p%give(3, 3, size(p%joint)))
+      do i = 1, size(p%joint)
+         associate (give => p%give(:, :, i))
+            give = 0.0_wp
+            do k = 1, 3
+               give(k, k) = p%soft(k, i)
+            end do
+            do side = 1, 2
+               b = p%springs%equation(side, i)
+               if (b == 0) p%answer(:, :, side, i) = 0.0_wp
+               if (b == 0) cycle
+               call add_answer(size(unit), inverse(:, :, b), p%springs%row(:, :, side, i), &
+                  & p%answer(:, :, side, i), give)
+            end do
+         end associate
+      end do
+   end subroutine see_answers
+
+   !> How one block answers the forces of a joint
+   pure subroutine add_answer(n_dof, inverse, row, answer, give)
+      integer, intent(in) :: n_dof                   !! Unknowns of a block
+      real(wp), intent(in) :: inverse(n_dof, n_dof)  !! Inverse of its matrix
+      real(wp), intent(in) :: row(n_dof, 3)          !! What the joint sees of its unknowns
+      real(wp), intent(out) :: answer(n_dof, 3)      !! Its motion by a unit of each force
+      real(wp), intent(inout) :: give(3, 3)          !! Receives what the joint sees of that
+      integer :: c, i, k
+
+      do k = 1, 3
+         answer(:, k) = 0.0_wp
+         do c = 1, n_dof
+            answer(:, k) = answer(:, k) + inverse(:, c)*row(c, k)
+         end do
+         do i = 1, 3
+            do c = 1, n_dof
+               give(i, k) = give(i, k) + row(c, i)*answer(c, k)
+            end do
+         end do
+      end do
+   end subroutine add_answer
+
+   !> Openings and slips by forces and the motion that they make
+   pure function openings(p, force, motion)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)     !! Forces of the joints: (3, n_joint) [N/m]
+      real(wp), intent(in) :: motion(:, :)    !! Motion of the blocks: (n_dof, n_block) [m]
+      real(wp) :: openings(3, size(p%joint))  !! The openings: (3, n_joint) [m]
+
+      openings = relative_displacement(p%springs, motion) + p%gap + p%soft*(force - p%rest)
+   end function openings
+
+   !> Motion of the blocks by forces
+   pure function move_blocks(p, force) result(motion)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)
+      real(wp) :: motion(size(p%load, 1), size(p%load, 2))  !! The motion: (n_dof, n_block) [m]
+      integer :: b
+
+      motion = p%load
+      call add_forces(p%springs, force, motion)
+      do b = 1, size(motion, 2)
+         motion(:, b) = solved(p%lower(:, :, b), motion(:, b))
+      end do
+   end function move_blocks
+
+   !> By how much openings are against the law of contact: each force, pushed by its opening over
+   !> what the blocks give to it and taken back into its bounds, would stay the same
+   pure subroutine find_residual(p, force, motion, residual, worst)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)   !! Forces within their bounds: (3, n_joint) [N/m]
+      real(wp), intent(in) :: motion(:, :)  !! Their motion: (n_dof, n_block) [m]
+      real(wp), intent(out) :: residual     !! The largest change, as an opening [m]
+      integer, intent(out) :: worst         !! Its joint, as numbered here; 0 if there is none
+      real(wp) :: bound, change, opening(3, size(p%joint)), normal(3)
+      integer :: i, k
+
+      opening = openings(p, force, motion)
+      residual = 0.0_wp
+      worst = 0
+      do i = 1, size(p%joint)
+         normal = force(:, i) + p%springs%shift(:, i)
+         change = 0.0_wp
+         do k = 1, 2
+            if (p%give(k, k, i) > 0.0_wp) change = max(change, abs(min(opening(k, i), &
+               & p%give(k, k, i)*normal(k))) - p%noise)
+         end do
+         if (p%give(3, 3, i) > 0.0_wp) then
+            bound = shear_bound(p%springs%cone(i), normal)
+            associate (pushed => force(3, i) - opening(3, i)/p%give(3, 3, i))
+               change = max(change, p%give(3, 3, i) &
+                  & *abs(force(3, i) - max(-bound, min(bound, pushed))))
+            end associate
+         end if
+         if (change > residual) worst = i
+         residual = max(residual, change)
+      end do
+   end subroutine find_residual
+
+   !> The nearest forces within the bounds, shear last: what it bears follows from the normal forces
+   pure function admissible(p, force) result(within)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)
+      real(wp) :: within(3, size(p%joint))  !! The forces: (3, n_joint) [N/m]
+      real(wp) :: bound
+      integer :: i, k
+
+      do i = 1, size(p%joint)
+         associate (f => within(:, i), shift => p%springs%shift(:, i))
+            f = force(:, i)
+            do k = 1, 2
+               f(k) = merge(max(-shift(k), f(k)), 0.0_wp, p%give(k, k, i) > 0.0_wp)
+            end do
+            bound = shear_bound(p%springs%cone(i), f + shift)
+            f(3) = merge(max(-bound, min(bound, f(3))), 0.0_wp, p%give(3, 3, i) > 0.0_wp)
+         end associate
+      end do
+   end function admissible
+
+   !> The fastest block of a motion, by its translation, and by rotation at its radius of gyration
+   pure real(wp) function speed_of(p, motion)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: motion(:, :)
+      integer :: b
+
+      speed_of = 0.0_wp
+      do b = 1, size(motion, 2)
+         speed_of = max(speed_of, norm2(motion(1:2, b)) &
+            & + abs(motion(3, b))*sqrt(p%base(3, 3, b)/p%base(1, 1, b)))
+      end do
+   end function speed_of
+
+end module dda_contact_problem

@@ -1,0 +1,216 @@
+!> Contact forces of blocks that move in time: forces within their bounds for every group of joints,
+!> and by how much what they leave is against the law of contact
+!>
+!> Blocks that no contact joins know nothing of one another: each group is a problem of its own. The
+!> forces of the step before are looked at; sweeps, faces, and an interior point whose offset moves
+!> along follow, each from the best forces so far, until openings are against the law by no more
+!> than the tolerance. Where none comes so far, the best forces count; where the interior point has
+!> not ended either, those of no offset, which exist always. Whatever counts lies within its bounds,
+!> and momentum is exact.
+!>
+!> Equation (M5) of docs/method.md
+module dda_contact_solver
+   use dda_contact_faces, only : settle_faces
+   use dda_contact_interior, only : solve_interior
+   use dda_contact_problem, only : admissible, contact_problem_t, find_residual, move_blocks, &
+      & pose_contacts, speed_of
+   use dda_contact_sweeps, only : sweep_joints
+   use dda_contact_types, only : joint_springs_t
+   use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
+   use dda_kinds, only : wp
+   use dda_small_systems, only : cholesky, solved
+   use dda_sort, only : list_by_owner
+   use dda_spring_products, only : relative_displacement
+   use dda_step_state, only : equations_t, step_state_t
+   implicit none
+   private
+
+   public :: group_joints, settle_contacts
+
+   !> Openings against the law that count as none, over what free fall makes in a step; over the
+   !> fastest motion of the group they call for no factor
+   real(wp), parameter :: unseen = 1.0e-6_wp
+   !> Openings that count as none over the fastest motion of the group, where nothing falls
+   real(wp), parameter :: of_fastest = 1.0e-9_wp
+   !> Joints swept, again and again, that cost next to nothing: then to rounding, for what rests
+   !> must not creep
+   integer, parameter :: few_joints = 3200
+   !> What counts as rounding, over what counts as none
+   real(wp), parameter :: finest = 1.0e-6_wp
+   !> Sweeps before a factor is tried, and the most
+   integer, parameter :: few_sweeps = 32, most_sweeps = 300
+   !> Joints swept at the most after it
+   integer, parameter :: many_joints = 40000
+   !> A shear force that lacks less of its bound has reached it
+   real(wp), parameter :: rounding = 1.0e-9_wp
+   !> What faces may begin with, over the fastest motion of the group
+   real(wp), parameter :: near = 1.0e-2_wp
+
+contains
+
+   !> Contact forces and motion of one step
+   pure subroutine settle_contacts(equations, springs, state)
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints; their stiffness only measures gaps here
+      type(joint_springs_t), intent(in) :: springs
+      !> Forces and trial forces to begin with in; motion, forces and faces out
+      type(step_state_t), intent(inout) :: state
+      type(contact_problem_t) :: p
+      integer, allocatable :: joint(:)
+      integer :: begun, e, first(size(springs%stiffness) + 1), g, i, most, n, passes, worst
+      real(wp) :: residual
+      real(wp), allocatable :: force(:, :)
+      logical :: acts(size(springs%stiffness))
+
+      acts = has_rows(springs)
+      call group_joints(springs, acts, size(state%motion, 2), n, first, joint)
+      do e = 1, size(state%motion, 2)
+         state%motion(:, e) = solved(cholesky(equations%base(:, :, e)), equations%load(:, e))
+      end do
+      begun = state%passes
+      most = 0
+      state%residual = 0.0_wp
+      state%worst = 0
+      do g = 1, n
+         call pose_contacts(equations, springs, state, &
+            & pack(joint(first(g):first(g + 1) - 1), acts(joint(first(g):first(g + 1) - 1))), p)
+         if (size(p%joint) == 0) cycle
+         force = admissible(p, state%force(:, p%joint))
+         passes = 0
+         call settle_group(p, state%fineness, state%fall, force, residual, worst, passes)
+         ! groups know nothing of one another: their passes go on side by side
+         most = max(most, passes)
+         state%force(:, p%joint) = force
+         state%motion(:size(p%load, 1), p%equation) = move_blocks(p, force)
+         if (residual > state%residual) state%worst = p%joint(worst)
+         state%residual = max(residual, state%residual)
+         do i = 1, size(p%joint)
+            state%trial(:, p%joint(i)) = force(:, i) - springs%stiffness(p%joint(i))*p%gap(:, i)
+         end do
+      end do
+      state%face = face_of(springs%cone, state%force, springs%shift)
+      state%passes = begun + most + 1
+      state%increment = relative_displacement(springs, state%motion)
+      state%settled = .true.
+   end subroutine settle_contacts
+
+   !> Forces of one group: cheap stages go as far as they come, dear ones to what is enough
+   pure subroutine settle_group(p, fineness, fall, force, residual, worst, passes)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: fineness        !! Over the usual tolerance
+      real(wp), intent(in) :: fall            !! What free fall brings in a step [m]
+      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
+      real(wp), intent(out) :: residual       !! What they leave against the law of contact [m]
+      integer, intent(out) :: worst           !! Where, as the joints are numbered here
+      integer, intent(inout) :: passes        !! Factorisations
+      real(wp) :: enough, speed, tolerance
+      integer :: n
+
+      n = size(p%joint)
+      call find_residual(p, force, move_blocks(p, force), residual, worst)
+      speed = speed_of(p, move_blocks(p, 0.0_wp*force))
+      tolerance = max(p%noise, fineness*max(unseen*fall, of_fastest*speed))
+      enough = max(tolerance, unseen*speed)
+      call sweep_joints(p, finest*tolerance, min(most_sweeps, few_joints/n), force, residual)
+      if (residual > tolerance) call sweep_joints(p, tolerance, few_sweeps, force, residual)
+      if (residual > tolerance .and. residual <= near*speed) &
+         & call settle_faces(p, tolerance, force, residual, passes)
+      if (residual > enough) call solve_interior(p, enough, force, residual, passes)
+      if (residual > tolerance) &
+         & call sweep_joints(p, tolerance, min(most_sweeps, many_joints/n), force, residual)
+      if (residual > tolerance .and. residual <= near*speed) &
+         & call settle_faces(p, tolerance, force, residual, passes)
+      call find_residual(p, force, move_blocks(p, force), residual, worst)
+   end subroutine settle_group
+
+   !> Which joints see anything of their blocks: in the search for velocities open ones do not
+   pure function has_rows(springs) result(acts)
+      type(joint_springs_t), intent(in) :: springs
+      logical :: acts(size(springs%stiffness))  !! The answers: (n_joint)
+      integer :: j
+
+      do j = 1, size(acts)
+         acts(j) = any(abs(springs%row(:, :, :, j)) > 0.0_wp)
+      end do
+   end function has_rows
+
+   !> The faces that forces lie on
+   pure function face_of(cone, force, shift) result(faces)
+      type(cone_t), intent(in) :: cone(:)  !! Bounds: (n_joint)
+      real(wp), intent(in) :: force(:, :)  !! The forces: (3, n_joint) [N/m]
+      !> Tension that the contacts carry, and a zero: (3, n_joint) [N/m]
+      real(wp), intent(in) :: shift(:, :)
+      type(joint_face_t) :: faces(size(cone))  !! The faces: (n_joint)
+      integer :: j
+
+      do j = 1, size(cone)
+         associate (face => faces(j), f => force(:, j))
+            face%open = .not. f(1:2) + shift(1:2, j) > 0.0_wp
+            if (abs(f(3)) >= (1.0_wp - rounding)*shear_bound(cone(j), f + shift(:, j))) &
+               & face%slip = merge(1, -1, f(3) > 0.0_wp)
+            if (all(face%open) .and. .not. abs(f(3)) > 0.0_wp) face%slip = 0
+         end associate
+      end do
+   end function face_of
+
+   !> Groups of joints whose blocks hang together: each is a problem of its own
+   pure subroutine group_joints(springs, acts, n_equation, n, first, joint)
+      type(joint_springs_t), intent(in) :: springs
+      logical, intent(in) :: acts(:)  !! Joints that hold their blocks together: (n_joint)
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Number of groups
+      integer, intent(out) :: n
+      !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
+      integer, intent(out) :: first(:)
+      !> The joints, group by group, rising in each: (n_joint)
+      integer, allocatable, intent(out) :: joint(:)
+      integer :: group(size(springs%equation, 2))
+
+      call number_groups(springs, acts, n_equation, n, group)
+      first = size(group) + 1
+      call list_by_owner(group, first(:n + 1), joint)
+   end subroutine group_joints
+
+   !> Which group each joint is of
+   pure subroutine number_groups(springs, acts, n_equation, n, group)
+      type(joint_springs_t), intent(in) :: springs
+      logical, intent(in) :: acts(:)
+      integer, intent(in) :: n_equation
+      integer, intent(out) :: n
+      integer, intent(out) :: group(:)  !! Number of each joint's group: (n_joint)
+      integer :: root(n_equation), number(n_equation), pair(2), i, j
+
+      root = [(i, i=1, n_equation)]
+      do j = 1, size(group)
+         pair = springs%equation(:, j)
+         if (any(pair == 0) .or. .not. acts(j)) cycle
+         pair = [root_of(pair(1)), root_of(pair(2))]
+         root(maxval(pair)) = minval(pair)
+         root(springs%equation(:, j)) = minval(pair)
+      end do
+      n = 0
+      number = 0
+      do j = 1, size(group)
+         i = root_of(maxval(springs%equation(:, j)))
+         if (number(i) == 0) then
+            n = n + 1
+            number(i) = n
+         end if
+         group(j) = number(i)
+      end do
+
+   contains
+
+      !> The block that stands for the group of a block
+      pure integer function root_of(block)
+         integer, intent(in) :: block  !! The block
+
+         root_of = block
+         do while (root(root_of) /= root_of)
+            root_of = root(root_of)
+         end do
+      end function root_of
+   end subroutine number_groups
+
+end module dda_contact_solver
