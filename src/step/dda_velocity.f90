@@ -17,7 +17,8 @@ module dda_velocity
       & strain_follows
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_springs_t, place_rows
-   use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end
+   use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
+      & parting_acceleration
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
@@ -131,7 +132,9 @@ contains
       associate (start => packed_velocity(run%system, size(run%step%state%motion, 1)))
          impact%steady = 2.0_wp/run%step%dt*run%step%state%motion - start
          if (at_end) then
-            before = relative_displacement(impact%springs, impact%steady)
+            before = relative_displacement(impact%springs, impact%steady) - run%step%dt &
+               & *parting_acceleration(run%equations, run%contacts%springs, 0.0_wp*start, &
+               & masked_force(run, meets))
          else
             before = relative_displacement(impact%springs, start)
          end if
