@@ -86,6 +86,9 @@ module dda_multipliers
    real(wp), parameter :: fine = 1.0e-10_wp
    !> Change of a force that a step may end with
    real(wp), parameter :: coarse = 1.0e-7_wp
+   !> Passes in which the forces of held points do not change noticeably less end the search
+   real(wp), parameter :: falling = 0.9_wp
+   integer, parameter :: patience = 5
    !> Most changes of the conditions of bars in one step; after the few only the worst bar changes
    integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
 
@@ -183,10 +186,12 @@ contains
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, last, scale
-      integer :: pass
+      real(wp) :: change, last, least, scale
+      integer :: pass, stale
 
       change = huge(change)
+      least = huge(least)
+      stale = 0
       do pass = 1, max_passes
          last = change
          call sweep_with_bars(equations, springs, state)
@@ -196,6 +201,10 @@ contains
          if (change <= fine*scale) return
          ! what sweeps leave is no more to be corrected
          if (change <= coarse*scale .and. change > last/2.0_wp) return
+         ! contacts may not let a point go where it is led
+         stale = merge(0, stale + 1, change < falling*least)
+         if (stale == patience) exit
+         least = min(least, change)
       end do
       state%settled = change <= coarse*scale
    end subroutine settle_in_time

@@ -61,6 +61,8 @@ module dda_step
    !> Time hardly goes on by a step that is shorter than this share of the one that speeds allow; so
    !> many of them in a row end a run, for as many again would not lead on by a step either
    real(wp), parameter :: hardly = 1.0e-6_wp
+   !> The same of runs with prescribed displacements: what contacts leave cuts no step as short
+   real(wp), parameter :: led = 1.0e-3_wp
    integer, parameter :: most_stuck = 100
 
    !> Why contacts find no forces where points are led
@@ -135,7 +137,8 @@ contains
          speed = largest_motion(run%system, run%step%velocity)
          usual = march%longest
          if (speed*usual > march%allowed_motion) usual = march%allowed_motion/speed
-         march%stuck = merge(march%stuck + 1, 0, run%step%dt < hardly*usual)
+         march%stuck = merge(march%stuck + 1, 0, run%step%dt &
+            & < merge(led, hardly, leads(run))*usual)
          if (march%stuck < most_stuck) return
          cause = "the contacts allow no longer steps"
          if (leads(run)) cause = jam
