@@ -66,9 +66,9 @@ module dda_velocity
 contains
 
    !> Velocities of the blocks at the end of a settled step, if they settle. Newton's restitution
-   !> may bring in energy where there is friction, or where blocks are hit in several places; then it
-   !> is reduced. What contacts have done to the energy of the motion is no part of what is allowed;
-   !> without contacts only held points change it, which turn with their blocks
+   !> may bring in energy where there is friction, or where blocks are hit in several places; then
+   !> it is reduced. What contacts have done to the energy of the motion is no part of what is
+   !> allowed; without contacts only held points change it, which turn with their blocks
    pure subroutine solve_impacts(run)
       type(run_t), intent(inout) :: run
       type(impact_t) :: impact
