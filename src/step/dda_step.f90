@@ -12,7 +12,6 @@ module dda_step
    use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
-   use dda_text, only : short_text
    use dda_velocity, only : solve_impacts
    use dda_verdict, only : measure_step
    implicit none
@@ -81,6 +80,7 @@ contains
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
       type(step_outcome_t) :: outcome
+      character(len=12) :: time
       logical :: still
       integer :: attempt
 
@@ -111,7 +111,8 @@ contains
          if (in_time(run)) call check_progress(run, error)
       else if (.not. run%march%clock%tries) then
          if (leads(run)) then
-            call fatal_error(error, jam//" at "//short_text(run%march%time)//" s")
+            write (time, "(es12.5)") run%march%time
+            call fatal_error(error, jam//" at "//trim(adjustl(time))//" s")
          else
             call fatal_error(error, "open-close iteration does not converge for any time step")
          end if
@@ -131,6 +132,7 @@ contains
       type(run_t), intent(inout) :: run
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: cause
+      character(len=24) :: numbers
       real(wp) :: usual, speed
 
       associate (march => run%march)
@@ -142,8 +144,9 @@ contains
          if (march%stuck < most_stuck) return
          cause = "the contacts allow no longer steps"
          if (leads(run)) cause = jam
-         call fatal_error(error, "steps of "//short_text(run%step%dt)//" s do not lead on at " &
-            & //short_text(march%time)//" s: "//cause)
+         write (numbers, "(2es12.5)") run%step%dt, march%time
+         call fatal_error(error, "steps of "//trim(adjustl(numbers(:12)))//" s do not lead on at " &
+            & //trim(adjustl(numbers(13:)))//" s: "//cause)
       end associate
    end subroutine check_progress
 
