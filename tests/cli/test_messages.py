@@ -147,7 +147,6 @@ GEOMETRIES = {
     "no length": "0.01 1 0 0 0 0 0 0 0\n1 1 1 1 1\n",
     "no block": SQUARE.replace("4 0\n", "3 0\n", 1)[:-10],
     "point outside": SQUARE.replace("0\n0\n0\n0 0 1", "1\n0\n0\n0 0 1", 1) + "5 5\n",
-    "block in a block": GROWN + ".4 .4 .6 .4 1 .6 .4 .6 .6 1 .6 .6 .4 .6 1 .4 .6 .4 .4 1",
 }
 GEOMETRIES_XML = {
     "broken": SQUARE_XML[:-2],
