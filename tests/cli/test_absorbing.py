@@ -79,7 +79,10 @@ def test_pulse_in_a_column_does_not_come_back(tmp_path: Path, geometry: str, bas
     else:
         assert left > 0.85
     end = rows[-1]
-    assert energy[-1] + end["damping"] + end["numerical"] == pytest.approx(end["work"], rel=1e-9)
+    # what contacts leave of gaps and slips is booked where it acts: 1e-7 of the work
+    contacts = end["friction"] + end["impact"]
+    assert abs(contacts) < 1e-6 * end["work"]
+    assert energy[-1] + end["damping"] + end["numerical"] + contacts == pytest.approx(end["work"], rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -134,7 +134,6 @@ def test_option_of_another_subcommand_is_refused(tmp_path: Path, arguments: list
 JOINTS = "<Joint type='1'>0 0 1 0</Joint><Joint type='1'>1 0 1 1</Joint>"
 JOINTS += "<Joint type='1'>1 1 0 1</Joint><Joint type='1'>0 1 0 0</Joint>"
 SQUARE_XML = f"<DDA><Geometry><Jointlist>{JOINTS}</Jointlist></Geometry></DDA>"
-GROWN = SQUARE.replace("4 0\n", "8 0\n", 1)
 GEOMETRIES = {
     "only blanks": " \n",
     "extended form": "#!0xDDA-v1.5\n",
