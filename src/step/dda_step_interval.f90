@@ -33,7 +33,7 @@ module dda_step_interval
    !> next one does not fail twice; and where blocks move, less than the cut after rattling, so that
    !> this bears fruit
    real(wp), parameter :: calm_growth = 3.0_wp
-   !> Rattling below this share of the displacement is no matter, nor within rounding
+   !> Rattling below this share of the displacement, or within rounding, is ignored
    real(wp), parameter :: rattle_share = 1.0e-4_wp
    !> By what a step that did not settle is cut
    real(wp), parameter :: cut = 0.3_wp

@@ -69,7 +69,7 @@ def _above_zero(word: str) -> float:
 
 @dataclass
 class _Imported:
-    """What is made of a file: texts by their file names, and what is printed."""
+    """Result of an import: texts by their file names, and the printed lines."""
 
     files: dict[Path, str]
     lines: list[str]
@@ -152,7 +152,7 @@ def _import_lines(arguments: argparse.Namespace, content: Content, notes: list[s
 
 
 def _short_ends(content: Content, scale: float) -> str:
-    """What is wrong with ends that stop short of a line."""
+    """Error message for ends that stop short of a line."""
     gaps = [gap * scale for _, _, gap in content.notes.short]
     layer, end, gap = max(content.notes.short, key=lambda short: short[2])
     count = "an end that stops" if len(gaps) == 1 else f"{len(gaps)} ends that stop"
@@ -163,7 +163,7 @@ def _short_ends(content: Content, scale: float) -> str:
 
 
 def _nothing(dropped: Optional[list[str]]) -> str:
-    """What is wrong with a file without outlines."""
+    """Error message for a file without outlines."""
     words = f": {dropped[0]}" if dropped else ""
     more = f" and {len(dropped) - 1} more" if dropped and len(dropped) > 1 else ""
     return f"expected closed outlines, got none{words}{more}"

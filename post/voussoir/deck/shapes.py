@@ -34,7 +34,7 @@ class ImportedShape:
 
 @dataclass
 class Content:
-    """What a file holds besides outlines: lines where it has no outlines, and remarks."""
+    """Content of a file besides outlines: its lines if it has no outlines, and remarks."""
 
     lines: list[Trace] = field(default_factory=list)
     notes: Notes = field(default_factory=Notes)
