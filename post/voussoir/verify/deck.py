@@ -111,7 +111,9 @@ class Deck:
         return values[0]
 
     def read(self, text: str) -> float:
-        """A number from its decimal, whose exponent may begin with d; a fraction where all is exact."""
+        """A number from its decimal, whose exponent may begin with d, or from a fraction of whole numbers."""
+        if re.fullmatch(r"-?\d+/\d+", text):
+            return Fraction(text) if self.exact else float(Fraction(text))
         decimal = text.lower().replace("d", "e")
         try:
             number = float(decimal)
