@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import multiprocessing
 import os
 import sys
 import time
@@ -93,7 +94,9 @@ def _draw(campaign: Campaign, folder: Path, clock: Clock, jobs: int) -> None:
         return
     start = time.monotonic()
     plain = Campaign(campaign.decks, campaign.out)
-    with ProcessPoolExecutor(min(jobs, len(names))) as workers:
+    # A forked process would wait forever for threads of BLAS that it has not got
+    fresh = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(jobs, len(names)), mp_context=fresh) as workers:
         running = {workers.submit(_draw_one, plain, folder, name): name for name in names}
         for done in as_completed(running):
             seconds = done.result()
