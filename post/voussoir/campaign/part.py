@@ -73,7 +73,7 @@ def _wait_for(folder: Path) -> None:
 
 def _run(part: Part, left_out: set[int]) -> tuple[int, str]:
     """Run the program once: exit status, and what it printed on standard error."""
-    command = [str(part.dda), "run", str(part.deck), "--out", str(part.folder), "--resume", "--quiet"]
+    command = [str(part.dda), "run", str(part.deck), "--out", str(part.folder), "--resume", "--force", "--quiet"]
     command += ["--cases", ranges_of(part.first, part.last, left_out)]
     for setting in part.settings:
         command += ["--set", setting]

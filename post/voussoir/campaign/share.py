@@ -64,7 +64,7 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     file = out / "campaign.record"
     digest = hashlib.sha256(asked.record.encode()).hexdigest()
     text = f"{digest}\n{asked.record}"
-    if not anew:
+    if not anew and not file.exists():
         check_origin(out / "results.csv")
     if anew:
         shutil.rmtree(campaign.parts, ignore_errors=True)

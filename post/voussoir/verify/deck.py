@@ -224,7 +224,7 @@ class Deck:
 def read_record(folder: Path) -> Deck:
     """The deck of a folder of results: its given keys and sweeps."""
     path = folder / "deck.record"
-    if not path.is_file():
+    if not path.exists():
         raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written")
     first, *lines = read_text(path).split("\n")
     if not first.startswith("dda "):
