@@ -149,6 +149,8 @@ contains
          end do
       end do
       scene = searched_scene(model, joint_law_t(friction=pile%friction))
+      ! a corner may pass another by so much inside
+      scene%contacts%search%tolerance = 1.0e-6_wp
    end function pile_scene
 
    !> Farthest that the force of a joint is outside its cone, in tension or in shear [N/m]
