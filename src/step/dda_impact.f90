@@ -20,8 +20,8 @@ module dda_impact
    public :: meets_at_end, parting_acceleration
 
    !> Without restitution only impacts end a step that carry this share of the energy of motion, and
-   !> of what the longest step of free fall adds to it: in a pile of many blocks none does, and its
-   !> steps stay as long as they are
+   !> of what the longest step of free fall adds to it, and only slips that turn and whose friction
+   !> takes as much: among many blocks none does, and their steps stay as long as they are
    real(wp), parameter :: notable = 1.0e-2_wp
 
    !> Slip of this share of the slowest impact, or of what it changes by in the step, has turned
@@ -195,13 +195,15 @@ contains
    pure real(wp) function earliest_reversal(run, acceleration) result(earliest)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: acceleration(:, :)  !! Of gaps and slips: (3, n_joint) [m/s2]
-      real(wp) :: back
+      real(wp) :: back, least
       integer :: j
 
       earliest = huge(earliest)
+      least = notable_energy(run)
       do j = 1, size(run%contacts%joint)
          associate (slip => run%step%speed(3, j), now => acceleration(3, j))
             if (.not. abs(run%contacts%force(3, j)) > 0.0_wp) cycle
+            if (abs(run%contacts%force(3, j)*slip)*run%step%dt < 2.0_wp*least) cycle
             if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(now)*run%step%dt)) cycle
             back = now - 2.0_wp*ease_of(run, 3, j)*run%contacts%force(3, j)
             if (slip*now < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/now)
@@ -219,9 +221,7 @@ contains
       integer :: j, k
 
       least = 0.0_wp
-      if (.not. run%settings%restitution > 0.0_wp) least = notable*(kinetic_energy( &
-         & run%equations, packed_velocity(run%system, size(run%step%state%motion, 1))) &
-         & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
+      if (.not. run%settings%restitution > 0.0_wp) least = notable_energy(run)
       earliest = huge(earliest)
       outcome%overshoot = 0.0_wp
       associate (dt => run%step%dt, start => run%contacts%gap, speed => run%step%speed)
@@ -245,6 +245,15 @@ contains
          outcome%dt = min(dt, earliest)
       end associate
    end function earliest_impact
+
+   !> Energy of an event that ends a step [J/m]
+   pure real(wp) function notable_energy(run)
+      type(run_t), intent(in) :: run
+
+      notable_energy = notable*(kinetic_energy(run%equations, packed_velocity(run%system, &
+         & size(run%step%state%motion, 1))) &
+         & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
+   end function notable_energy
 
    !> How easily an impact at a contact moves its two blocks
    pure real(wp) function ease_of(run, k, j) result(ease)
