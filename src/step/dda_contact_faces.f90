@@ -5,8 +5,8 @@
 !> few and leaves rounding; far from it, it ends without. Each force is tied to the one before by a
 !> spring far firmer than the blocks: of all forces that stop them the nearest are found.
 module dda_contact_faces
-   use dda_contact_problem, only : admissible, contact_problem_t, find_residual, move_blocks, &
-      & openings
+   use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
+      & residual_of, residual_t
    use dda_contact_springs, only : contact_springs_t, factor_springs, lay_out, respond
    use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
    use dda_kinds, only : wp
@@ -28,13 +28,14 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: residual     !! What they leave [m]
+      type(residual_t), intent(inout) :: residual  !! What they leave
       integer, intent(inout) :: passes        !! Factorisations so far
       type(contact_springs_t) :: springs
       type(joint_face_t) :: face(size(p%joint))
       real(wp), dimension(3, size(p%joint)) :: centre, now, trial
-      real(wp) :: left, motion(size(p%load, 1), size(p%load, 2))
-      integer :: changes, last, pass, turn, worst
+      type(residual_t) :: left
+      real(wp) :: motion(size(p%load, 1), size(p%load, 2))
+      integer :: changes, last, pass, turn
       logical :: stale
 
       call lay_out(p, springs)
@@ -65,11 +66,13 @@ contains
          trial = now
          call take_faces(p, face, trial)
          trial = admissible(p, trial)
-         call find_residual(p, trial, move_blocks(p, trial), left, worst)
-         if (left < residual) force = trial
-         stale = left > residual/2.0_wp
-         residual = min(residual, left)
-         if (residual <= tolerance .or. stale) return
+         left = residual_of(p, trial, move_blocks(p, trial))
+         stale = left%opening > residual%opening/2.0_wp
+         if (left%energy < residual%energy) then
+            force = trial
+            residual = left
+         end if
+         if (residual%opening <= tolerance .or. stale) return
          centre = now
       end do
    end subroutine settle_faces

@@ -5,75 +5,50 @@
 !>
 !> The rows of F are the distances from the bounds: n1, n2, bound + T and bound - T; those of F_flow
 !> are n1, n2, T and -T: what slides does not open (Coulomb). The problem is not convex: with steep
-!> friction the search need not come to an end, and the forces that come nearest to the law count.
+!> friction, or where blocks are confined, the search need not come to an end, and the forces that
+!> come nearest to the law count.
+!>
+!> With F in place of F_flow it is convex, and ends always: what slides opens by friction times its
+!> slip, less an offset that is given (De Saxce; Acary and Cadoux). The nearer the offset to that
+!> product, the nearer are the forces to Coulomb's law; whatever it is, they bring in no energy.
 !>
 !> C is far below what the blocks give, and f0 the force before: of all forces that stop the blocks
 !> those nearest to it count, so that shear is remembered. Predictor and corrector by Mehrotra
 !> (1992).
 module dda_contact_interior
-   use dda_contact_problem, only : admissible, contact_problem_t, find_residual, move_blocks, &
-      & openings
-   use dda_contact_springs, only : contact_springs_t, factor_springs, lay_out, respond
+   use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
+      & residual_of, residual_t
+   use dda_contact_springs, only : factor_springs, lay_out, respond
    use dda_contact_types, only : unbounded
+   use dda_contact_yield, only : force_of_flows, iterate_t, interior_search_t, set_yielding_springs, &
+      & yield_to
    use dda_friction_cone, only : cone_kind
    use dda_kinds, only : wp
    use dda_spring_products, only : add_forces
    implicit none
    private
 
-   public :: solve_interior
+   public :: solve_convex, solve_interior
 
    !> Compliance of the springs over what the blocks give
    real(wp), parameter :: compliance = 1.0e-6_wp
    !> Most turns
    integer, parameter :: most_turns = 30
+   !> Most turns of the convex problem
+   integer, parameter :: most_convex = 60
    !> Turns without progress that end the search
    integer, parameter :: patience = 5
    !> Forces begin so far off their bounds at the least, over the size of a force: near where it is
    !> known, afar where that leads nowhere
    real(wp), parameter :: near = 1.0e-2_wp, afar = 2.0e-1_wp
+   !> The same of the convex problem, whose way is straight from anywhere far inside
+   real(wp), parameter :: centre = 0.3_wp
    !> The most by which near forces are lifted, over the same
    real(wp), parameter :: highest = 1.0e-1_wp
    !> A step shorter than this is stuck at a bound
    real(wp), parameter :: stuck = 0.2_wp
    !> Way to the first bound that a step goes
    real(wp), parameter :: share = 0.995_wp
-
-   !> One iterate, or a step from it
-   type :: iterate_t
-      !> Motion of the blocks: (n_dof, n_block) [m]
-      real(wp), allocatable :: motion(:, :)
-      !> Forces: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Distance of the forces from each bound: (4, n_joint) [N/m]
-      real(wp), allocatable :: slack(:, :)
-      !> Opening or slip at each bound: (4, n_joint) [m]
-      real(wp), allocatable :: flow(:, :)
-   end type iterate_t
-
-   !> What the search works on
-   type :: search_t
-      !> Springs of the joints with their matrix
-      type(contact_springs_t) :: springs
-      !> Which forces there are: (3, n_joint)
-      logical, allocatable :: given(:, :)
-      !> Which bounds they have: (4, n_joint)
-      logical, allocatable :: bounded(:, :)
-      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: unit(:, :)
-      !> Compliance beside that of bars: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: soft(:, :)
-      !> Forces before: (3, n_joint) [N/m]
-      real(wp), allocatable :: before(:, :)
-      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
-      real(wp), allocatable :: balance(:, :)
-      !> Of the openings: (3, n_joint) [m]
-      real(wp), allocatable :: opening(:, :)
-      !> Of the distances: (4, n_joint) [N/m]
-      real(wp), allocatable :: distance(:, :)
-      !> Change of distance times flow that a step is to bring: (4, n_joint) [J/m]
-      real(wp), allocatable :: product(:, :)
-   end type search_t
 
 contains
 
@@ -82,12 +57,12 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: residual     !! What they leave [m]
+      type(residual_t), intent(inout) :: residual  !! What they leave
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(search_t) :: search
+      type(interior_search_t) :: search
       type(iterate_t) :: z
-      real(wp) :: gone, least, left, now, trial(3, size(p%joint))
-      integer :: turn, waited, worst
+      real(wp) :: gone, least, left
+      integer :: turn, waited
       logical :: anew
 
       call pose(p, force, search)
@@ -98,15 +73,11 @@ contains
       anew = .false.
       do turn = 1, most_turns
          call see_lack(p, z, search, left)
-         trial = admissible(p, z%force)
-         call find_residual(p, trial, move_blocks(p, trial), now, worst)
+         call keep_better(p, admissible(p, z%force), force, residual)
          waited = merge(0, waited + 1, left < 0.9_wp*least)
          least = min(least, left)
-         if (now < residual) then
-            force = trial
-            residual = now
-         end if
-         if (residual <= tolerance .or. waited == patience .or. .not. left <= huge(left)) return
+         if (residual%opening <= tolerance .or. waited == patience &
+            & .or. .not. left <= huge(left)) return
          if (turn > 1 .and. turn <= patience .and. gone < stuck .and. .not. anew) then
             anew = .true.
             call begin(p, search, force, afar, z)
@@ -119,11 +90,55 @@ contains
       end do
    end subroutine solve_interior
 
+   !> Find forces of the convex problem, its offset by the slip that the forces at hand leave. They
+   !> bring in no energy, however far they are from Coulomb's law, and replace those at hand
+   pure subroutine solve_convex(p, tolerance, force, residual, passes)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: tolerance       !! What may be left of the problem, as an opening [m]
+      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
+      type(residual_t), intent(inout) :: residual  !! What they leave
+      integer, intent(inout) :: passes        !! Factorisations so far
+      type(interior_search_t) :: search
+      type(iterate_t) :: z
+      real(wp) :: gone, left, opening(3, size(p%joint))
+      integer :: turn
+
+      call pose(p, force, search)
+      opening = openings(p, force, move_blocks(p, force))
+      search%convex = .true.
+      where (search%bounded(3, :)) search%offset = p%springs%cone%friction*abs(opening(3, :))
+      call begin(p, search, force, centre, z)
+      do turn = 1, most_convex
+         call see_lack(p, z, search, left)
+         if (left <= tolerance .or. .not. left <= huge(left)) exit
+         call improve(p, search, z, gone)
+         passes = passes + 1
+         if (.not. search%springs%factor%usable) return
+      end do
+      if (.not. left <= tolerance) return
+      force = admissible(p, z%force)
+      residual = residual_of(p, force, move_blocks(p, force))
+   end subroutine solve_convex
+
+   !> Keep the forces of less residual
+   pure subroutine keep_better(p, trial, force, residual)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: trial(:, :)          !! Other forces: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)       !! The best so far: (3, n_joint) [N/m]
+      type(residual_t), intent(inout) :: residual  !! What these leave
+      type(residual_t) :: left
+
+      left = residual_of(p, trial, move_blocks(p, trial))
+      if (.not. left%energy < residual%energy) return
+      force = trial
+      residual = left
+   end subroutine keep_better
+
    !> What there is to search for
    pure subroutine pose(p, force, search)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: force(:, :)
-      type(search_t), intent(out) :: search
+      type(interior_search_t), intent(out) :: search
       integer :: i, k, n
 
       n = size(p%joint)
@@ -131,6 +146,7 @@ contains
       allocate (search%given(3, n), search%bounded(4, n))
       allocate (search%unit(3, n), search%soft(3, n), source=0.0_wp)
       allocate (search%balance, mold=p%load)
+      allocate (search%offset(n), source=0.0_wp)
       allocate (search%opening(3, n), search%distance(4, n), search%product(4, n), source=0.0_wp)
       do i = 1, n
          do k = 1, 3
@@ -150,7 +166,7 @@ contains
    !> the same product everywhere, but where one is larger
    pure subroutine begin(p, search, force, lift, z)
       type(contact_problem_t), intent(in) :: p
-      type(search_t), intent(in) :: search
+      type(interior_search_t), intent(in) :: search
       real(wp), intent(in) :: force(:, :)
       real(wp), intent(in) :: lift  !! By how much at the least, over the size of a force
       type(iterate_t), intent(out) :: z
@@ -202,7 +218,7 @@ contains
    pure subroutine see_lack(p, z, search, left)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
-      type(search_t), intent(inout) :: search
+      type(interior_search_t), intent(inout) :: search
       real(wp), intent(out) :: left  !! The most of it, and of products, as an opening [m]
       real(wp) :: mean
       integer :: b, i
@@ -217,6 +233,8 @@ contains
          associate (opening => search%opening(:, i), flow => z%flow(:, i))
             opening(1:2) = opening(1:2) + flow(1:2)
             opening(3) = opening(3) + flow(3) - flow(4)
+            if (search%convex) opening(1:2) = opening(1:2) - search%offset(i) &
+               & + p%springs%cone(i)%friction*(flow(3) + flow(4))
          end associate
       end do
       where (.not. search%given) search%opening = 0.0_wp
@@ -232,7 +250,7 @@ contains
    !> One step: a predictor, and a corrector towards equal products
    pure subroutine improve(p, search, z, gone)
       type(contact_problem_t), intent(in) :: p
-      type(search_t), intent(inout) :: search
+      type(interior_search_t), intent(inout) :: search
       type(iterate_t), intent(inout) :: z
       real(wp), intent(out) :: gone  !! How much of the step was gone
       type(iterate_t) :: step
@@ -240,7 +258,7 @@ contains
       integer :: k
 
       gone = 0.0_wp
-      call set_springs(p, z, search)
+      call set_yielding_springs(p, z, search)
       call factor_springs(p, search%springs)
       if (.not. search%springs%factor%usable) return
       step = z
@@ -262,66 +280,35 @@ contains
       z%flow = z%flow + gone*step%flow
    end subroutine improve
 
-   !> Springs of the joints as their bounds yield: the inverse of the triangle C + F_flow' (z/b) F
-   pure subroutine set_springs(p, z, search)
-      type(contact_problem_t), intent(in) :: p
-      type(iterate_t), intent(in) :: z
-      type(search_t), intent(inout) :: search
-      real(wp) :: yield(4)
-      integer :: i, k
-
-      do i = 1, size(p%joint)
-         yield = merge(z%flow(:, i)/z%slack(:, i), 0.0_wp, search%bounded(:, i))
-         associate (stiff => search%springs%stiff(:, :, i))
-            stiff = 0.0_wp
-            do k = 1, 3
-               if (search%given(k, i)) stiff(k, k) = 1.0_wp/(search%soft(k, i) + p%soft(k, i) &
-                  & + merge(yield(min(k, 3)), yield(3) + yield(4), k < 3))
-            end do
-            do k = 1, 2
-               stiff(3, k) = -p%springs%cone(i)%friction*(yield(3) - yield(4))*stiff(3, 3) &
-                  & *stiff(k, k)
-            end do
-         end associate
-      end do
-   end subroutine set_springs
-
    !> The step that brings what is left to nothing
    pure subroutine find_step(p, z, search, step)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
-      type(search_t), intent(in) :: search
+      type(interior_search_t), intent(in) :: search
       type(iterate_t), intent(inout) :: step
-      real(wp) :: drive(3, size(p%joint)), moved(3, size(p%joint)), source(4), slack(4)
-      integer :: i, k
+      real(wp) :: given(3, size(p%joint)), moved(3, size(p%joint)), source(4, size(p%joint))
+      integer :: i
 
       do i = 1, size(p%joint)
-         source = merge((search%product(:, i) - z%flow(:, i)*search%distance(:, i)) &
+         source(:, i) = merge((search%product(:, i) - z%flow(:, i)*search%distance(:, i)) &
             & /z%slack(:, i), 0.0_wp, search%bounded(:, i))
-         drive(:, i) = search%opening(:, i) + [source(1:2), source(3) - source(4)]
-         moved(:, i) = matmul(search%springs%stiff(:, :, i), drive(:, i))
+         given(:, i) = force_of_flows(p, z, search, i, source(:, i))
+         step%force(:, i) = given(:, i) &
+            & + matmul(search%springs%stiff(:, :, i), search%opening(:, i))
       end do
-      step%force = moved
       call respond(p, search%springs, search%balance, step%force, step%motion, moved)
       do i = 1, size(p%joint)
-         associate (f => step%force(:, i), cone => p%springs%cone(i))
-            f = matmul(search%springs%stiff(:, :, i), drive(:, i) - moved(:, i))
-            slack(1:2) = f(1:2)
-            slack(3:4) = cone%friction*(f(1) + f(2)) + [f(3), -f(3)]
+         associate (open => search%opening(:, i) - moved(:, i))
+            step%force(:, i) = given(:, i) + matmul(search%springs%stiff(:, :, i), open)
+            call yield_to(p, z, search, i, source(:, i), open, step)
          end associate
-         do k = 1, 4
-            step%slack(k, i) = 0.0_wp
-            step%flow(k, i) = 0.0_wp
-            if (.not. search%bounded(k, i)) cycle
-            step%slack(k, i) = slack(k) + search%distance(k, i)
-            step%flow(k, i) = (search%product(k, i) - z%flow(k, i)*step%slack(k, i))/z%slack(k, i)
-         end do
+         step%slack(:, i) = step%slack(:, i) + search%distance(:, i)
       end do
    end subroutine find_step
 
    !> Mean of distance times flow, over what the blocks give: in squares of a force
    pure real(wp) function mean_product(search, slack, flow)
-      type(search_t), intent(in) :: search
+      type(interior_search_t), intent(in) :: search
       real(wp), intent(in) :: slack(:, :)  !! Distances: (4, n_joint) [N/m]
       real(wp), intent(in) :: flow(:, :)   !! Flows: (4, n_joint) [m]
 
@@ -332,7 +319,7 @@ contains
 
    !> The longest step, 1 at most, that keeps a share of every distance and flow
    pure real(wp) function longest(search, z, step, way)
-      type(search_t), intent(in) :: search
+      type(interior_search_t), intent(in) :: search
       type(iterate_t), intent(in) :: z, step
       real(wp), intent(in) :: way  !! How much of the way to the first zero is gone
       integer :: i, k

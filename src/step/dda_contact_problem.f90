@@ -18,8 +18,8 @@ module dda_contact_problem
    implicit none
    private
 
-   public :: contact_problem_t, pose_contacts, openings, move_blocks, find_residual, speed_of
-   public :: admissible
+   public :: contact_problem_t, pose_contacts, openings, move_blocks, residual_of, residual_t
+   public :: admissible, speed_of
 
    !> Joints and blocks of a group
    type :: contact_problem_t
@@ -46,6 +46,15 @@ module dda_contact_problem
       !> Gap that rounding can make: it asks for no force, which could grow without end [m]
       real(wp) :: noise = 0.0_wp
    end type contact_problem_t
+
+   !> What forces leave against the law of contact
+   type :: residual_t
+      real(wp) :: opening = 0.0_wp  !! The largest opening, or slip, that is against it [m]
+      integer :: joint = 0          !! Its joint, as numbered in the group; 0 if there is none
+      !> Energy of all, as springs as soft as the blocks: where many hand on a little, it tells
+      !> nearer forces from farther ones [J/m]
+      real(wp) :: energy = 0.0_wp
+   end type residual_t
 
    !> Share of what rounding makes of gaps that it can make of speeds, times the length of the step
    real(wp), parameter :: of_speeds = 1.0e-2_wp
@@ -194,36 +203,36 @@ contains
 
    !> By how much openings are against the law of contact: each force, pushed by its opening over
    !> what the blocks give to it and taken back into its bounds, would stay the same
-   pure subroutine find_residual(p, force, motion, residual, worst)
+   pure type(residual_t) function residual_of(p, force, motion) result(residual)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: force(:, :)   !! Forces within their bounds: (3, n_joint) [N/m]
       real(wp), intent(in) :: motion(:, :)  !! Their motion: (n_dof, n_block) [m]
-      real(wp), intent(out) :: residual     !! The largest change, as an opening [m]
-      integer, intent(out) :: worst         !! Its joint, as numbered here; 0 if there is none
-      real(wp) :: bound, change, opening(3, size(p%joint)), normal(3)
+      real(wp) :: bound, change(3), opening(3, size(p%joint)), normal(3)
       integer :: i, k
 
       opening = openings(p, force, motion)
-      residual = 0.0_wp
-      worst = 0
       do i = 1, size(p%joint)
          normal = force(:, i) + p%springs%shift(:, i)
          change = 0.0_wp
          do k = 1, 2
-            if (p%give(k, k, i) > 0.0_wp) change = max(change, abs(min(opening(k, i), &
+            if (p%give(k, k, i) > 0.0_wp) change(k) = max(0.0_wp, abs(min(opening(k, i), &
                & p%give(k, k, i)*normal(k))) - p%noise)
          end do
          if (p%give(3, 3, i) > 0.0_wp) then
             bound = shear_bound(p%springs%cone(i), normal)
             associate (pushed => force(3, i) - opening(3, i)/p%give(3, 3, i))
-               change = max(change, p%give(3, 3, i) &
-                  & *abs(force(3, i) - max(-bound, min(bound, pushed))))
+               change(3) = p%give(3, 3, i)*abs(force(3, i) - max(-bound, min(bound, pushed)))
             end associate
          end if
-         if (change > residual) worst = i
-         residual = max(residual, change)
+         do k = 1, 3
+            if (change(k) > 0.0_wp) &
+               & residual%energy = residual%energy + change(k)**2/(2.0_wp*p%give(k, k, i))
+         end do
+         if (maxval(change) <= residual%opening) cycle
+         residual%opening = maxval(change)
+         residual%joint = i
       end do
-   end subroutine find_residual
+   end function residual_of
 
    !> The nearest forces within the bounds, shear last: what it bears follows from the normal forces
    pure function admissible(p, force) result(within)

@@ -4,16 +4,16 @@
 !> Blocks that no contact joins know nothing of one another: each group is a problem of its own. The
 !> forces of the step before are looked at; sweeps, faces, and an interior point whose offset moves
 !> along follow, each from the best forces so far, until openings are against the law by no more
-!> than the tolerance. Where none comes so far, the best forces count; where the interior point has
-!> not ended either, those of no offset, which exist always. Whatever counts lies within its bounds,
-!> and momentum is exact.
+!> than the tolerance. Where none comes so far, the best forces count; where these bring in energy,
+!> those of the convex problem, which exist always. Whatever counts lies within its bounds, and
+!> momentum is exact.
 !>
 !> Equation (M5) of docs/method.md
 module dda_contact_solver
    use dda_contact_faces, only : settle_faces
-   use dda_contact_interior, only : solve_interior
-   use dda_contact_problem, only : admissible, contact_problem_t, find_residual, move_blocks, &
-      & pose_contacts, speed_of
+   use dda_contact_interior, only : solve_convex, solve_interior
+   use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
+      & pose_contacts, residual_of, residual_t, speed_of
    use dda_contact_sweeps, only : sweep_joints
    use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
@@ -29,22 +29,24 @@ module dda_contact_solver
 
    !> Openings against the law that count as none, over what free fall makes in a step; over the
    !> fastest motion of the group they call for no factor
-   real(wp), parameter :: unseen = 1.0e-6_wp
+   real(wp), parameter :: unseen = 1.0e-7_wp
    !> Openings that count as none over the fastest motion of the group, where nothing falls
    real(wp), parameter :: of_fastest = 1.0e-9_wp
-   !> Joints swept, again and again, that cost next to nothing: then to rounding, for what rests
-   !> must not creep
-   integer, parameter :: few_joints = 3200
+   !> What the interior point may leave, which is dear, over the fastest motion of the group
+   real(wp), parameter :: dear = 1.0e-5_wp
+   !> So few joints are settled to rounding, for what rests must not creep
+   integer, parameter :: few_joints = 100
    !> What counts as rounding, over what counts as none
    real(wp), parameter :: finest = 1.0e-6_wp
-   !> Sweeps before a factor is tried, and the most
-   integer, parameter :: few_sweeps = 32, most_sweeps = 300
-   !> Joints swept at the most after it
-   integer, parameter :: many_joints = 40000
+   !> Sweeps before a factor is tried, and after it
+   integer, parameter :: few_sweeps = 32, most_sweeps = 64
    !> A shear force that lacks less of its bound has reached it
    real(wp), parameter :: rounding = 1.0e-9_wp
-   !> What faces may begin with, over the fastest motion of the group
-   real(wp), parameter :: near = 1.0e-2_wp
+   !> Work that forces may bring in, over the energy of the motion without them
+   real(wp), parameter :: no_work = 1.0e-6_wp
+   !> What faces may begin with, and what is left of the convex problem, over the fastest motion of
+   !> the group
+   real(wp), parameter :: near = 1.0e-2_wp, afar = 1.0e-3_wp
 
 contains
 
@@ -57,8 +59,8 @@ contains
       type(step_state_t), intent(inout) :: state
       type(contact_problem_t) :: p
       integer, allocatable :: joint(:)
-      integer :: begun, e, first(size(springs%stiffness) + 1), g, i, most, n, passes, worst
-      real(wp) :: residual
+      integer :: begun, e, first(size(springs%stiffness) + 1), g, i, most, n, passes
+      type(residual_t) :: residual
       real(wp), allocatable :: force(:, :)
       logical :: acts(size(springs%stiffness))
 
@@ -77,13 +79,13 @@ contains
          if (size(p%joint) == 0) cycle
          force = admissible(p, state%force(:, p%joint))
          passes = 0
-         call settle_group(p, state%fineness, state%fall, force, residual, worst, passes)
+         call settle_group(p, state%fineness, state%fall, force, residual, passes)
          ! groups know nothing of one another: their passes go on side by side
          most = max(most, passes)
          state%force(:, p%joint) = force
          state%motion(:size(p%load, 1), p%equation) = move_blocks(p, force)
-         if (residual > state%residual) state%worst = p%joint(worst)
-         state%residual = max(residual, state%residual)
+         if (residual%opening > state%residual) state%worst = p%joint(residual%joint)
+         state%residual = max(residual%opening, state%residual)
          do i = 1, size(p%joint)
             state%trial(:, p%joint(i)) = force(:, i) - springs%stiffness(p%joint(i))*p%gap(:, i)
          end do
@@ -95,33 +97,41 @@ contains
    end subroutine settle_contacts
 
    !> Forces of one group: cheap stages go as far as they come, dear ones to what is enough
-   pure subroutine settle_group(p, fineness, fall, force, residual, worst, passes)
+   pure subroutine settle_group(p, fineness, fall, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
       real(wp), intent(in) :: fall            !! What free fall brings in a step [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      real(wp), intent(out) :: residual       !! What they leave against the law of contact [m]
-      integer, intent(out) :: worst           !! Where, as the joints are numbered here
+      type(residual_t), intent(out) :: residual  !! What they leave against the law of contact
       integer, intent(inout) :: passes        !! Factorisations
-      real(wp) :: enough, speed, tolerance
-      integer :: n
+      real(wp) :: enough, exact, speed, tolerance
 
-      n = size(p%joint)
-      call find_residual(p, force, move_blocks(p, force), residual, worst)
+      residual = residual_of(p, force, move_blocks(p, force))
       speed = speed_of(p, move_blocks(p, 0.0_wp*force))
       tolerance = max(p%noise, fineness*max(unseen*fall, of_fastest*speed))
-      enough = max(tolerance, unseen*speed)
-      call sweep_joints(p, finest*tolerance, min(most_sweeps, few_joints/n), force, residual)
-      if (residual > tolerance) call sweep_joints(p, tolerance, few_sweeps, force, residual)
-      if (residual > tolerance .and. residual <= near*speed) &
-         & call settle_faces(p, tolerance, force, residual, passes)
-      if (residual > enough) call solve_interior(p, enough, force, residual, passes)
-      if (residual > tolerance) &
-         & call sweep_joints(p, tolerance, min(most_sweeps, many_joints/n), force, residual)
-      if (residual > tolerance .and. residual <= near*speed) &
-         & call settle_faces(p, tolerance, force, residual, passes)
-      call find_residual(p, force, move_blocks(p, force), residual, worst)
+      enough = max(tolerance, dear*speed)
+      exact = merge(finest, 1.0_wp, size(p%joint) <= few_joints)*tolerance
+      call sweep_joints(p, exact, few_sweeps, force, residual)
+      if (residual%opening > exact .and. residual%opening <= near*speed) &
+         & call settle_faces(p, exact, force, residual, passes)
+      if (residual%opening > enough) call solve_interior(p, enough, force, residual, passes)
+      if (residual%opening > near*speed) &
+         & call solve_convex(p, afar*speed, force, residual, passes)
+      if (residual%opening > tolerance) &
+         & call sweep_joints(p, tolerance, most_sweeps, force, residual)
+      if (residual%opening > exact .and. residual%opening <= near*speed) &
+         & call settle_faces(p, exact, force, residual, passes)
+      if (work_of(p, force) > no_work*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
+         & call solve_convex(p, enough, force, residual, passes)
    end subroutine settle_group
+
+   !> Work of the forces by openings and slip: none by Coulomb's law but what friction takes [J/m]
+   pure real(wp) function work_of(p, force)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(in) :: force(:, :)  !! The forces: (3, n_joint) [N/m]
+
+      work_of = sum(force*openings(p, force, move_blocks(p, force)))
+   end function work_of
 
    !> Which joints see anything of their blocks: in the search for velocities open ones do not
    pure function has_rows(springs) result(acts)

@@ -5,7 +5,7 @@
 !> That ends at the forces of Coulomb's law without a factorisation: soon where the forces of the
 !> step before are a good beginning or blocks are few, slowly in tall stacks.
 module dda_contact_sweeps
-   use dda_contact_problem, only : contact_problem_t, find_residual, move_blocks
+   use dda_contact_problem, only : contact_problem_t, move_blocks, residual_of, residual_t
    use dda_friction_cone, only : cone_kind, shear_bound
    use dda_joint_answer, only : answer_joint, joint_view_t
    use dda_kinds, only : wp
@@ -36,12 +36,13 @@ contains
       real(wp), intent(in) :: tolerance       !! The tolerance [m]
       integer, intent(in) :: most             !! Most sweeps
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: residual     !! By how much openings are against the law [m]
+      type(residual_t), intent(inout) :: residual  !! By how much openings are against the law
       type(sweeps_t) :: sweeps, before, way
-      real(wp) :: last, now, square
-      integer :: k, worst
+      type(residual_t) :: now
+      real(wp) :: last, square
+      integer :: k
 
-      if (residual <= tolerance) return
+      if (residual%opening <= tolerance) return
       sweeps%force = force
       allocate (sweeps%motion(size(p%load, 1), 0:size(p%load, 2)))
       sweeps%motion(:, 0) = 0.0_wp
@@ -55,10 +56,12 @@ contains
          call sweep(p, modulo(k, 2) == 1, sweeps)
          square = square_of(p, sweeps%force - before%force)
          if (modulo(k, round) == 0 .or. k == most .or. .not. square > 0.0_wp) then
-            call find_residual(p, sweeps%force, sweeps%motion(:, 1:), now, worst)
-            if (now < residual) force = sweeps%force
-            residual = min(now, residual)
-            if (residual <= tolerance .or. .not. square > 0.0_wp) return
+            now = residual_of(p, sweeps%force, sweeps%motion(:, 1:))
+            if (now%energy < residual%energy) then
+               force = sweeps%force
+               residual = now
+            end if
+            if (residual%opening <= tolerance .or. .not. square > 0.0_wp) return
          end if
          call go_on(before, merge(square/last, 2.0_wp, last > 0.0_wp), way, sweeps)
          last = square
