@@ -20,8 +20,8 @@ module dda_contact_interior
       & residual_of, residual_t
    use dda_contact_springs, only : factor_springs, lay_out, respond
    use dda_contact_types, only : unbounded
-   use dda_contact_yield, only : force_of_flows, iterate_t, interior_search_t, set_yielding_springs, &
-      & yield_to
+   use dda_contact_yield, only : force_of_flows, interior_search_t, iterate_t, &
+      & set_yielding_springs, yield_to
    use dda_friction_cone, only : cone_kind
    use dda_kinds, only : wp
    use dda_spring_products, only : add_forces
