@@ -82,8 +82,10 @@ class World:
     time: float = 0.0
     #: Times of impacts and the greatest speed of approach of each
     impacts: list[tuple[float, float]] = field(default_factory=list)
-    #: Whether a body has turned on a contact that stays: the motion is no free flight or uniform slide
-    has_rolled: bool = False
+    #: Largest rate of turning of a body on a contact that stays [rad/s]
+    rolled: float = 0.0
+    #: Largest acceleration that ended as a corner slid off its edge
+    lost: float = 0.0
     #: States of the last contact forces, tried first
     last: dict[Contact, int] = field(default_factory=dict)
 
@@ -97,8 +99,7 @@ class World:
 
     def state(self, number: int) -> State:
         """State of a body."""
-        x, y, turn = self.place[number].tolist()
-        return State(x, y, turn, *self.speed[number].tolist())
+        return State(*self.place[number].tolist(), *self.speed[number].tolist())
 
     def energy(self) -> float:
         """Energy of motion and of height."""
@@ -178,7 +179,7 @@ class World:
             slip = tangent[k] @ speed.ravel()
             # the frame of the edge turns: centripetal parts, and Coriolis' part of a corner that slides
             centripetal = -w * w * r + z * z * s
-            bent[k] = out @ centripetal - 2.0 * z * slip, t @ centripetal
+            bent[k] = out @ centripetal + 2.0 * z * slip, t @ centripetal
         return normal, tangent, bent
 
     def solve(self, free: Array, contacts: list[Contact], rows: tuple[Array, Array], least: Array, side: Array,
@@ -300,10 +301,15 @@ class World:
         return q + h * v + h * h / 6.0 * (a1 + a2 + a3), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
 
     def events(self, contacts: list[Contact], slips: Array, moved: tuple[Array, Array]) -> Array:
-        """Depths of pairs and reversals of slips over their tolerances, less 1: positive after an event."""
-        deep = np.array(self.depths(moved[0])) / (DEPTH * self.size)
+        """Depths, ways off edges and reversals of slips over their tolerances, less 1: positive after an event."""
+        deep = [*(d / DEPTH for d in self.depths(moved[0])), *(self.off_edge(c, moved[0]) / TOUCH for c in contacts)]
         back = -self.rows(contacts, *moved)[1] @ moved[1].ravel() * slips if slips.any() else np.zeros(0)
-        return np.append(deep, back / (SLOW * self.fastest)) - 1.0
+        return np.append(np.array(deep) / self.size, back / (SLOW * self.fastest)) - 1.0
+
+    def off_edge(self, contact: Contact, place: Array) -> float:
+        """How far a corner is beyond an end of its edge; negative between the ends."""
+        way, edge = self.way_along(contact, place)
+        return float(max(-way @ edge, (way - edge) @ edge)) / float(np.hypot(*edge))
 
     def until_event(self, contacts: list[Contact], slips: Array, h: float) -> tuple[float, tuple[Array, Array]]:
         """The step, or its part until just past the first event, by regula falsi with Illinois' weights."""
@@ -343,12 +349,15 @@ class World:
         back = np.linalg.lstsq(normal[kept] * root, np.array(gaps), rcond=1e-11)[0]
         self.place = self.place - (root * back).reshape(-1, 3)
 
+    def way_along(self, contact: Contact, place: Array) -> tuple[Array, Array]:
+        """The way from the start of an edge to a corner, and the edge."""
+        one, other = (self.corners(place)[k] for k in (contact.one, contact.other))
+        return one[contact.corner] - other[contact.edge], other[(contact.edge + 1) % len(other)] - other[contact.edge]
+
     def gap(self, contact: Contact) -> float:
         """Distance of a corner from the line of an edge."""
-        corners = self.corners(self.place)
-        start, end = corners[contact.other][contact.edge], corners[contact.other][
-            (contact.edge + 1) % len(corners[contact.other])]
-        return -cross(end - start, corners[contact.one][contact.corner] - start) / float(np.hypot(*(end - start)))
+        way, edge = self.way_along(contact, self.place)
+        return -cross(edge, way) / float(np.hypot(*edge))
 
     def run(self, duration: float) -> None:
         """Move for a time."""
@@ -361,10 +370,11 @@ class World:
                 slips = np.where(np.abs(slip) > SLOW * self.fastest, np.sign(slip), 0.0)
             spin, speed = float(np.abs(self.speed[:, 2]).max()), float(np.abs(self.speed[:, :2]).max())
             h = min(STEP, end - self.time, TURN / (spin + 1e-9), 0.2 * self.size / (speed + 1e-9))
-            self.acceleration(contacts, self.place, self.speed, slips)
-            turning = {k for c in contacts for k in (c.one, c.other) if abs(self.speed[k, 2]) > 1e-6}
-            self.has_rolled = self.has_rolled or bool(turning)
+            most = float(np.abs(self.acceleration(contacts, self.place, self.speed, slips)).max())
+            turning = [float(s) for c in contacts for s in np.abs(self.speed[[c.one, c.other], 2]) if s > 1e-6]
+            self.rolled = max([self.rolled, *turning])
             part, (self.place, self.speed) = self.until_event(contacts, slips, h)
+            self.lost = max([self.lost, *(most for c in contacts if self.off_edge(c, self.place) > TOUCH * self.size)])
             self.time += part
             self.project()
             steps += 1
@@ -383,9 +393,7 @@ def smooth(free: Array, rows: Array, least: Array, root: Array) -> Array:
     if size == 0.0 or (least <= 0.0).all():
         return free
     matrix = np.vstack([rows.T, least / size])
-    wanted = np.zeros(len(matrix))
-    wanted[-1] = 1.0
-    factors = nnls(matrix, wanted)[0]
+    factors = nnls(matrix, np.eye(len(matrix))[-1])[0]
     held = factors > 0.0
     # the held rows once more as equations, to round-off
     change = np.linalg.lstsq(rows[held], least[held], rcond=1e-12)[0]

@@ -76,10 +76,13 @@ class Layout:
         """The scene with the oracle's answer."""
         text, points, checks, moved = "", "", [], 0
         keys, tolerance, reason = in_time(pick, duration, self.restitution), EXACT, REASON
-        if world.has_rolled:
-            rate = max(abs(world.speed[:, 2]).max(), math.sqrt(self.gravity / world.size), 2.0)
+        if world.rolled > 0.0:
+            rate = max(world.rolled, math.sqrt(self.gravity / world.size), 2.0)
             tolerance = 0.3 * (rate * float(str(keys["time_step"]))) ** 2
             reason = "second order in the step while a corner stays on an edge: square of turning rate times step"
+        if world.lost > 0.0:
+            tolerance = max(tolerance, world.lost * float(str(keys["time_step"])))
+            reason = "first order in the step in which a corner slides off its edge: acceleration times step"
         fastest = max(math.hypot(vx, vy) for _, (vx, vy, _), _ in self.shapes)
         speed = max(fastest, math.sqrt(self.gravity), max(speed for _, speed in world.impacts))
         for number, (corners, velocity, density) in enumerate(self.shapes, start=1):
@@ -93,7 +96,8 @@ class Layout:
             moved += 1
         return Scene(text + points, keys, checks,
                      f"&joint friction_deg = {self.friction_deg!r} /\n&load gravity = {self.gravity!r} /\n",
-                     {"young": 1e12}, is_step_free=not world.has_rolled, is_second_order=world.has_rolled)
+                     {"young": 1e12}, is_step_free=not world.rolled,
+                     is_second_order=world.rolled > 0.0 and not world.lost)
 
 
 def drawn(pick: random.Random, make: Callable[[random.Random], tuple[Layout, float]], least: int = 1,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from oracle import Ambiguous, World
 from states import rectangle, turned
@@ -118,6 +119,23 @@ def test_block_that_rolls_over_a_corner_keeps_its_energy() -> None:
     before = world.energy()
     world.run(0.3)
     assert world.energy() == pytest.approx(before, rel=1e-8)
+
+
+def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
+    """Two free blocks turn towards one another: a corner slides along an edge that turns, and off its end."""
+    world = World((0.0, 0.0))
+    world.add(rectangle(-1.0, -0.2, 2.0, 0.4), (0.0, 0.0, 1.0))
+    world.add(turned(rectangle(-0.3, -0.3, 0.6, 0.6), 0.7), (0.0, 0.0, 0.0))
+    world.place[1, :2] = 0.5, 0.2 - min(y for _, y in world.corners(np.array([[0.0] * 3, [0.0, 0.0, 0.0]]))[1])
+    world.run(1e-3)
+    (contact,), kept = world.touching(), world.energy()
+    for _ in range(20):
+        world.run(0.02)
+        if world.lost:
+            break
+        assert world.touching() == [contact]
+        assert world.energy() == pytest.approx(kept, rel=1e-7)
+    assert world.energy() == pytest.approx(kept, rel=1e-7) and world.rolled > 0.5
 
 
 def test_impact_of_two_answers_is_refused() -> None:
