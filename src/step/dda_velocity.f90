@@ -16,7 +16,7 @@ module dda_velocity
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_springs_t, place_rows
+   use dda_contact_types, only : joint_place_t, joint_springs_t, joint_t, place_joint, place_rows
    use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
       & parting_acceleration
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
@@ -121,11 +121,22 @@ contains
       type(impact_t), intent(out) :: impact
       real(wp) :: before(3, size(run%contacts%joint))
       logical :: at_end, meets(2, size(run%contacts%joint))
+      type(joint_t) :: joint(size(run%contacts%joint))
+      type(joint_place_t) :: place(size(run%contacts%joint))
+      real(wp) :: gap(3)
+      integer :: j
 
-      impact%springs = run%contacts%springs
-      call place_rows(run%system, run%step%after%motion, run%contacts%joint, run%step%place, &
-         & impact%springs%row)
       impact%closed = closed_contacts(run)
+      impact%springs = run%contacts%springs
+      joint = run%contacts%joint
+      place = run%step%place
+      do j = 1, size(joint)
+         if (joint(j)%n_contact < 2 .or. count(impact%closed(:, j)) /= 1) cycle
+         ! friction acts where the blocks touch
+         joint(j)%contact%share = merge(1.0_wp, 0.0_wp, impact%closed(:, j))
+         call place_joint(run%step%after%moved, joint(j), place(j), gap)
+      end do
+      call place_rows(run%system, run%step%after%motion, joint, place, impact%springs%row)
       impact%follows = strain_follows(run%system, run%step%longest)
       meets = meeting_contacts(run)
       at_end = meets_at_end(run, meets)
@@ -139,8 +150,8 @@ contains
             before = relative_displacement(impact%springs, start)
          end if
       end associate
-      meets = meets .and. -before(1:2, :) > run%step%slowest_impact
-      impact%part = merge(-run%settings%restitution*before(1:2, :), 0.0_wp, meets)
+      impact%part = merge(-run%settings%restitution*before(1:2, :), 0.0_wp, &
+         & meets .and. -before(1:2, :) > run%step%slowest_impact)
       impact%force_before = run%step%state%force - masked_force(run, meets)
       if (.not. (at_end .and. any(meets))) impact%force_before = 0.0_wp
    end subroutine see_impacts
