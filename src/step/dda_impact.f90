@@ -20,9 +20,10 @@ module dda_impact
    public :: meets_at_end, parting_acceleration
 
    !> Without restitution only impacts end a step that carry this share of the energy of motion, and
-   !> of what the longest step of free fall adds to it, and only slips that turn and whose friction
-   !> takes as much: among many blocks none does, and their steps stay as long as they are
-   real(wp), parameter :: notable = 1.0e-2_wp
+   !> of what the longest step of free fall adds to it, times the square of the number of blocks, or
+   !> the most, and only slips that turn and whose friction takes as much. What two blocks leave of
+   !> their speeds, 2e-3, is late by a step; in a pile no impact ends a step, and steps stay long
+   real(wp), parameter :: notable = 1.0e-6_wp, most_notable = 1.0e-2_wp
 
    !> Slip of this share of the slowest impact, or of what it changes by in the step, has turned
    real(wp), parameter :: at_once = 1.0e-3_wp
@@ -234,7 +235,8 @@ contains
                acceleration = 2.0_wp*(gap(k, j) - start(k, j) - speed(k, j)*dt)/dt**2
                time = falling_time(start(k, j), -speed(k, j), -acceleration)
                meeting = -speed(k, j) - acceleration*min(time, dt)
-               if (meeting <= run%step%slowest_impact) cycle
+               if (meeting <= 0.0_wp .or. run%settings%restitution > 0.0_wp &
+                  & .and. meeting <= run%step%slowest_impact) cycle
                if (meeting**2 < 2.0_wp*least*ease_of(run, k, j)) cycle
                earliest = min(earliest, time)
                outcome%overshoot = max(outcome%overshoot, -gap(k, j))
@@ -250,15 +252,17 @@ contains
    pure real(wp) function notable_energy(run)
       type(run_t), intent(in) :: run
 
-      notable_energy = notable*(kinetic_energy(run%equations, packed_velocity(run%system, &
+      notable_energy = min(most_notable, notable*real(size(run%equations%mass, 3), wp)**2) &
+         & *(kinetic_energy(run%equations, packed_velocity(run%system, &
          & size(run%step%state%motion, 1))) &
          & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
    end function notable_energy
 
-   !> How easily an impact at a contact moves its two blocks
+   !> How easily an impact at a contact moves its two blocks; shear does not turn blocks that lie on
+   !> one another
    pure real(wp) function ease_of(run, k, j) result(ease)
       type(run_t), intent(in) :: run
-      integer, intent(in) :: k  !! Which contact of the joint
+      integer, intent(in) :: k  !! Which contact of the joint, or 3 for shear
       integer, intent(in) :: j  !! Number of the joint
       integer :: e, i, side
 
@@ -266,7 +270,7 @@ contains
       do side = 1, 2
          e = run%contacts%springs%equation(side, j)
          if (e == 0) cycle
-         do i = 1, 3
+         do i = 1, merge(3, 2, k < 3)
             ease = ease + run%contacts%springs%row(i, k, side, j)**2/run%equations%mass(i, i, e)
          end do
       end do
