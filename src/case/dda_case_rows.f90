@@ -13,7 +13,7 @@ module dda_case_rows
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : verdict
-   use dda_step_context, only : rough_contact_t
+   use dda_step_context, only : contact_note_t
    use dda_text, only : counted, short_text, to_text
    use dda_verdict, only : largest_displacement, outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
@@ -142,7 +142,7 @@ contains
             & .and. .not. (this%limerick .or. this%scene%settings%current)) &
             & remark = joined(remark, small_displacement_remark(this%decision%system))
          if (outcome%has_residual) row%contact_residual = some_number(outcome%residual)
-         remark = joined(remark, rough_remark(outcome%rough))
+         remark = joined(remark, contact_remark(outcome%rough, outcome%reduced))
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
             & .and. .not. this%plan%velocities .and. source_of(this%family%deck) /= "arch") &
             & remark = joined(remark, fall_remark(this%scene%system, outcome%motion))
@@ -361,23 +361,31 @@ contains
       end if
    end function change_remark
 
-   !> What the user should know of contacts that were not solved to the end
-   pure function rough_remark(rough) result(remark)
-      type(rough_contact_t), intent(in) :: rough  !! The worst of them
+   !> What the user should know of contacts not solved to the end and of reduced restitution
+   pure function contact_remark(rough, reduced) result(remark)
+      type(contact_note_t), intent(in) :: rough    !! The worst contact [m/s]
+      type(contact_note_t), intent(in) :: reduced  !! The impact that lacks the most
       character(len=:), allocatable :: remark
 
       remark = ""
-      if (.not. rough%residual > 0.0_wp) return
-      remark = "contact forces leave openings or slips of up to "//short_text(rough%residual) &
-         & //" m/s against the law of contact"
-      if (all(rough%block > 0)) then
-         remark = remark//", the largest between blocks "//to_text(rough%block(1))//" and " &
-            & //to_text(rough%block(2))
-      else
-         remark = remark//", the largest at a bar"
-      end if
-      remark = remark//" at "//short_text(rough%time)//" s"
-   end function rough_remark
+      if (rough%value > 0.0_wp) remark = "contact forces leave openings or slips of up to " &
+         & //short_text(rough%value)//" m/s against the law of contact, the largest " &
+         & //place_of(rough)
+      if (reduced%value > 0.0_wp) remark = joined(remark, "restitution was reduced by up to " &
+         & //short_text(100.0_wp*reduced%value)//" % lest it bring in energy, the most " &
+         & //place_of(reduced))
+   end function contact_remark
+
+   !> Where and when something was with a contact
+   pure function place_of(note) result(place)
+      type(contact_note_t), intent(in) :: note
+      character(len=:), allocatable :: place
+
+      place = "at a bar"
+      if (all(note%block > 0)) place = "between blocks "//to_text(note%block(1))//" and " &
+         & //to_text(note%block(2))
+      place = place//" at "//short_text(note%time)//" s"
+   end function place_of
 
    !> What the user should know of jumps on the loading path
    pure function jump_remark(jumps, largest) result(remark)

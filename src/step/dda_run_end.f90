@@ -65,6 +65,7 @@ contains
          outcome%has_residual = in_time(run)
          outcome%residual = march%residual
          outcome%rough = march%rough
+         outcome%reduced = march%reduced
          outcome%steps = march%steps
          outcome%passes = march%passes
          outcome%factorisations = run%equations%factorisations

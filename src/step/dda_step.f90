@@ -8,7 +8,7 @@ module dda_step
    use dda_impact, only : foresee_event
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : in_time, most_spare_cuts, rough_contact_t, run_t, step_outcome_t
+   use dda_step_context, only : in_time, most_spare_cuts, contact_note_t, run_t, step_outcome_t
    use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
@@ -69,6 +69,8 @@ module dda_step
 
    !> Openings and slips against the law of contact matter beyond this share of the fastest speed
    real(wp), parameter :: rough = 1.0e-4_wp
+   !> Restitution that is reduced by less is reported by no remark
+   real(wp), parameter :: small_reduction = 1.0e-3_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
 
@@ -174,12 +176,23 @@ contains
          march%residual = max(march%residual, residual)
          fastest = max(largest_motion(run%system, step%velocity), &
             & largest_motion(run%system, step%state%motion)/step%dt)
-         if (residual <= max(rough*fastest, march%rough%residual)) return
-         march%rough = rough_contact_t(residual, march%time + step%dt)
+         if (residual <= max(rough*fastest, march%rough%value)) return
+         march%rough = contact_note_t(residual, march%time + step%dt)
          if (joint <= size(run%contacts%joint)) &
             & march%rough%block = run%contacts%joint(joint)%block
       end associate
    end subroutine note_residual
+
+   !> Keep the most that restitution was reduced by
+   pure subroutine note_reduction(run)
+      type(run_t), intent(inout) :: run
+
+      associate (march => run%march, step => run%step)
+         if (1.0_wp - step%restitution <= max(small_reduction, march%reduced%value)) return
+         march%reduced = contact_note_t(1.0_wp - step%restitution, march%time + step%dt, &
+            & run%contacts%joint(step%fastest_impact)%block)
+      end associate
+   end subroutine note_reduction
 
    !> Carry an accepted step over, and count it
    pure subroutine commit(run)
@@ -187,7 +200,10 @@ contains
 
       if (run%contacts%searched) call next_reach(run%system, run%step, run%march)
       call measure_step(run)
-      if (in_time(run)) call note_residual(run)
+      if (in_time(run)) then
+         call note_residual(run)
+         call note_reduction(run)
+      end if
       call carry_over(run)
       run%march%steps = run%march%steps + 1
       run%march%clock%tries = .false.

@@ -11,7 +11,7 @@ module dda_step_context
    implicit none
    private
 
-   public :: energy_t, march_t, rough_contact_t, run_state_t, run_t, step_context_t, step_outcome_t
+   public :: energy_t, march_t, contact_note_t, run_state_t, run_t, step_context_t, step_outcome_t
    public :: in_time, most_spare_cuts, near_gap
 
    !> Most steps to spare for events. Each step adds one, and each that is cut to end at an event
@@ -36,13 +36,12 @@ module dda_step_context
       real(wp) :: residual = 0.0_wp
    end type energy_t
 
-   !> The largest opening or slip against the law of contact of a run, among those that matter
-   !> beside the fastest speed
-   type :: rough_contact_t
-      real(wp) :: residual = 0.0_wp  !! The opening or slip [m/s]
-      real(wp) :: time = 0.0_wp      !! When [s]
-      integer :: block(2) = 0        !! Where: the two blocks, or none at a bar
-   end type rough_contact_t
+   !> What a run reports of one contact, the worst in its way
+   type :: contact_note_t
+      real(wp) :: value = 0.0_wp  !! How much
+      real(wp) :: time = 0.0_wp   !! When [s]
+      integer :: block(2) = 0     !! Where: the two blocks, or none at a bar
+   end type contact_note_t
 
    !> What the checks of a try say: whether the step counts, and if not what the next try changes
    type :: step_outcome_t
@@ -91,6 +90,7 @@ module dda_step_context
       integer :: worst = 0
       real(wp) :: impact = 0.0_wp          !! Energy that impacts took from the velocities [J/m]
       real(wp) :: restitution = 1.0_wp     !! Share of the restitution that its impacts have
+      integer :: fastest_impact = 0        !! Joint of the fastest of them
       real(wp) :: slowest_impact = 0.0_wp  !! Contacts that meet more slowly do not rebound [m/s]
       logical :: has_velocity = .false.    !! Whether there are velocities for its end
       !> How the corners are about to move, where contacts are searched: (2, n_vertex) [m]
@@ -201,8 +201,10 @@ module dda_step_context
       type(energy_t) :: energy
       !> Largest opening or slip against the law of contact in this run [m/s]
       real(wp) :: residual = 0.0_wp
-      !> Likewise of those that matter
-      type(rough_contact_t) :: rough
+      !> The largest opening or slip of those that matter [m/s]
+      type(contact_note_t) :: rough
+      !> The largest share of restitution that was taken away, lest it bring in energy
+      type(contact_note_t) :: reduced
    end type march_t
 
    !> What the next step of a run begins with

@@ -80,6 +80,9 @@ contains
          before = kinetic_energy(equations, impact%steady)
          allowed = before - sum(step%state%force*step%state%increment) + energy_noise*before
          step%restitution = 1.0_wp
+         step%fastest_impact = 0
+         if (any(impact%part > 0.0_wp)) &
+            & step%fastest_impact = maxloc(maxval(impact%part, dim=1), dim=1)
          do try = 0, max_tries
             if (try == max_tries) step%restitution = 0.0_wp
             call solve_rates(run, impact, step%restitution)

@@ -16,7 +16,7 @@ module dda_verdict
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_kinds, only : pi, wp
    use dda_settings, only : settings_t, verdict
-   use dda_step_context, only : march_t, rough_contact_t, run_t, step_context_t
+   use dda_step_context, only : march_t, contact_note_t, run_t, step_context_t
    use dda_step_interval, only : longest_motion
    implicit none
    private
@@ -93,7 +93,9 @@ module dda_verdict
       logical :: has_residual = .false.
       real(wp) :: residual = 0.0_wp
       !> The largest that matters
-      type(rough_contact_t) :: rough
+      type(contact_note_t) :: rough
+      !> The largest share of restitution that was taken away
+      type(contact_note_t) :: reduced
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop

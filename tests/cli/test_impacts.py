@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
-from block_scene import Point, block, rows_of, run_blocks
+from block_scene import Point, block, rows_of, run_blocks, turned
 
 FLOOR = block([(-9.0, -1.0), (12.0, -1.0), (12.0, 0.0), (-9.0, 0.0)], "fixed")
 #: What E = 5 GPa lets blocks of half a metre swing, over their speeds
@@ -138,3 +139,28 @@ def test_slide_that_turns_is_exact(tmp_path: Path, step: float) -> None:
     point, = speeds(tmp_path, blocks, friction=5.0, step=step, duration=0.9, restitution=0.0, direction=-70.0)
     assert point["vx"] == pytest.approx((pull - rub) * back, abs=1e-8)
     assert point["x"] - 0.75 == pytest.approx(-0.2 * up + (pull - rub) * back**2 / 2.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("friction, reduced", [(44.0, True), (0.0, False)])
+def test_restitution_that_would_bring_in_energy_is_reduced_and_said(
+    tmp_path: Path, friction: float, reduced: bool
+) -> None:
+    """The second impact of a rod whose corner slips would bring in energy by e = 1 and Coulomb's law (Kane)."""
+    rod = turned([(-1.0, -0.05), (1.0, -0.05), (1.0, 0.05), (-1.0, 0.05)], 0.886)
+    low = min(y for _, y in rod)
+    text = block([(-9.0, -1.0), (9.0, -1.0), (9.0, 0.0), (-9.0, 0.0)], "fixed")
+    text += block([(x, y - low + 0.05) for x, y in rod], "velocity -0.9726 -0.9649 1.911")
+    run_blocks(tmp_path, text, f"&joint friction_deg = {friction} /\n&load gravity = 0 /\n"
+               "&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, duration = 0.1, unknowns = 3, "
+               "restitution = 1 /\n&output energy = .true. /\n")
+    rows = [(float(row["time"]), float(row["kinetic"])) for row in rows_of(tmp_path / "out" / "energy.csv")]
+    gains = {time: (now - before) / before for (_, before), (time, now) in zip(rows, rows[1:])}
+    assert max(gains.values()) < 1e-9
+    said = re.search(r"restitution was reduced by up to ([\d.]+) % lest it bring in energy, "
+                     r"the most between blocks 1 and 2 at ([\d.]+) s", (tmp_path / "out" / "log.txt").read_text())
+    assert bool(said) == reduced
+    if said:
+        # what is left of it neither brings in energy nor takes any
+        time, gain = min(gains.items(), key=lambda row: abs(row[0] - float(said[2])))
+        assert time == pytest.approx(float(said[2]), rel=1e-5) and gain > -1e-3
+        assert 0.1 < float(said[1]) < 5.0
