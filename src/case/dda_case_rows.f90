@@ -361,7 +361,7 @@ contains
       end if
    end function change_remark
 
-   !> What the user should know of contacts not solved to the end and of reduced restitution
+   !> Remark on contact residuals and on reduced restitution
    pure function contact_remark(rough, reduced) result(remark)
       type(contact_note_t), intent(in) :: rough    !! The worst contact [m/s]
       type(contact_note_t), intent(in) :: reduced  !! The impact that lacks the most
@@ -372,11 +372,11 @@ contains
          & //short_text(rough%value)//" m/s against the law of contact, the largest " &
          & //place_of(rough)
       if (reduced%value > 0.0_wp) remark = joined(remark, "restitution was reduced by up to " &
-         & //short_text(100.0_wp*reduced%value)//" % lest it bring in energy, the most " &
+         & //short_text(100.0_wp*reduced%value)//" % so that impacts add no energy, the most " &
          & //place_of(reduced))
    end function contact_remark
 
-   !> Where and when something was with a contact
+   !> Blocks and time of a contact note
    pure function place_of(note) result(place)
       type(contact_note_t), intent(in) :: note
       character(len=:), allocatable :: place

@@ -21,7 +21,7 @@ module dda_contact_interior
    use dda_contact_springs, only : factor_springs, lay_out, respond
    use dda_contact_types, only : unbounded
    use dda_contact_yield, only : force_of_flows, interior_search_t, iterate_t, &
-      & set_yielding_springs, yield_to
+      & set_yielding_springs, set_joint_step
    use dda_friction_cone, only : cone_kind
    use dda_kinds, only : wp
    use dda_spring_products, only : add_forces
@@ -34,15 +34,15 @@ module dda_contact_interior
    real(wp), parameter :: compliance = 1.0e-6_wp
    !> Most turns
    integer, parameter :: most_turns = 30
-   !> Most turns of the convex problem
-   integer, parameter :: most_convex = 60
+   !> Maximum number of iterations of the convex problem
+   integer, parameter :: max_convex_iterations = 60
    !> Turns without progress that end the search
    integer, parameter :: patience = 5
    !> Forces begin so far off their bounds at the least, over the size of a force: near where it is
    !> known, afar where that leads nowhere
    real(wp), parameter :: near = 1.0e-2_wp, afar = 2.0e-1_wp
-   !> The same of the convex problem, whose way is straight from anywhere far inside
-   real(wp), parameter :: centre = 0.3_wp
+   !> The same for the convex problem, which converges from any start far from its bounds
+   real(wp), parameter :: convex_lift = 0.3_wp
    !> The most by which near forces are lifted, over the same
    real(wp), parameter :: highest = 1.0e-1_wp
    !> A step shorter than this is stuck at a bound
@@ -90,8 +90,8 @@ contains
       end do
    end subroutine solve_interior
 
-   !> Find forces of the convex problem, its offset by the slip that the forces at hand leave. They
-   !> bring in no energy, however far they are from Coulomb's law, and replace those at hand
+   !> Solve the convex problem whose offset follows from the slip of the given forces, and replace
+   !> these. Its forces add no energy, however far they are from Coulomb's law
    pure subroutine solve_convex(p, tolerance, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! What may be left of the problem, as an opening [m]
@@ -107,8 +107,8 @@ contains
       opening = openings(p, force, move_blocks(p, force))
       search%convex = .true.
       where (search%bounded(3, :)) search%offset = p%springs%cone%friction*abs(opening(3, :))
-      call begin(p, search, force, centre, z)
-      do turn = 1, most_convex
+      call begin(p, search, force, convex_lift, z)
+      do turn = 1, max_convex_iterations
          call see_lack(p, z, search, left)
          if (left <= tolerance .or. .not. left <= huge(left)) exit
          call improve(p, search, z, gone)
@@ -120,7 +120,7 @@ contains
       residual = residual_of(p, force, move_blocks(p, force))
    end subroutine solve_convex
 
-   !> Keep the forces of less residual
+   !> Keep the forces with the smaller residual
    pure subroutine keep_better(p, trial, force, residual)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: trial(:, :)          !! Other forces: (3, n_joint) [N/m]
@@ -300,7 +300,7 @@ contains
       do i = 1, size(p%joint)
          associate (open => search%opening(:, i) - moved(:, i))
             step%force(:, i) = given(:, i) + matmul(search%springs%stiff(:, :, i), open)
-            call yield_to(p, z, search, i, source(:, i), open, step)
+            call set_joint_step(p, z, search, i, source(:, i), open, step)
          end associate
          step%slack(:, i) = step%slack(:, i) + search%distance(:, i)
       end do

@@ -27,26 +27,25 @@ module dda_contact_solver
 
    public :: group_joints, settle_contacts
 
-   !> Openings against the law that count as none, over what free fall makes in a step; over the
-   !> fastest motion of the group they call for no factor
-   real(wp), parameter :: unseen = 1.0e-7_wp
-   !> Openings that count as none over the fastest motion of the group, where nothing falls
-   real(wp), parameter :: of_fastest = 1.0e-9_wp
-   !> What the interior point may leave, which is dear, over the fastest motion of the group
-   real(wp), parameter :: dear = 1.0e-5_wp
-   !> So few joints are settled to rounding, for what rests must not creep
-   integer, parameter :: few_joints = 100
-   !> What counts as rounding, over what counts as none
-   real(wp), parameter :: finest = 1.0e-6_wp
+   !> Gap tolerance over the free fall of the longest step
+   real(wp), parameter :: gap_tolerance = 1.0e-7_wp
+   !> Gap tolerance over the fastest motion of the group, where nothing falls
+   real(wp), parameter :: motion_tolerance = 1.0e-9_wp
+   !> Tolerance of the interior point over the fastest motion of the group
+   real(wp), parameter :: interior_tolerance = 1.0e-5_wp
+   !> Groups of so many joints are solved to rounding, so that blocks at rest do not creep
+   integer, parameter :: small_group_joints = 100
+   !> Gap tolerance of small groups over that of large ones
+   real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
    !> Sweeps before a factor is tried, and after it
-   integer, parameter :: few_sweeps = 32, most_sweeps = 64
-   !> A shear force that lacks less of its bound has reached it
-   real(wp), parameter :: rounding = 1.0e-9_wp
-   !> Work that forces may bring in, over the energy of the motion without them
-   real(wp), parameter :: no_work = 1.0e-6_wp
-   !> What faces may begin with, and what is left of the convex problem, over the fastest motion of
-   !> the group
-   real(wp), parameter :: near = 1.0e-2_wp, afar = 1.0e-3_wp
+   integer, parameter :: first_sweeps = 32, last_sweeps = 64
+   !> Relative distance from its bound at which a shear force counts as sliding
+   real(wp), parameter :: bound_tolerance = 1.0e-9_wp
+   !> Work that contact forces may add, over the energy of the motion without them
+   real(wp), parameter :: max_energy_gain = 1.0e-6_wp
+   !> Residual at which faces may start, and tolerance of the convex problem, over the fastest
+   !> motion of the group
+   real(wp), parameter :: near_solution = 1.0e-2_wp, convex_tolerance = 1.0e-3_wp
 
 contains
 
@@ -96,7 +95,7 @@ contains
       state%settled = .true.
    end subroutine settle_contacts
 
-   !> Forces of one group: cheap stages go as far as they come, dear ones to what is enough
+   !> Solve one group: sweeps, faces, interior point, and the convex problem where these fail
    pure subroutine settle_group(p, fineness, fall, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
@@ -108,24 +107,24 @@ contains
 
       residual = residual_of(p, force, move_blocks(p, force))
       speed = speed_of(p, move_blocks(p, 0.0_wp*force))
-      tolerance = max(p%noise, fineness*max(unseen*fall, of_fastest*speed))
-      enough = max(tolerance, dear*speed)
-      exact = merge(finest, 1.0_wp, size(p%joint) <= few_joints)*tolerance
-      call sweep_joints(p, exact, few_sweeps, force, residual)
-      if (residual%opening > exact .and. residual%opening <= near*speed) &
+      tolerance = max(p%noise, fineness*max(gap_tolerance*fall, motion_tolerance*speed))
+      enough = max(tolerance, interior_tolerance*speed)
+      exact = merge(rounding_tolerance, 1.0_wp, size(p%joint) <= small_group_joints)*tolerance
+      call sweep_joints(p, exact, first_sweeps, force, residual)
+      if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
       if (residual%opening > enough) call solve_interior(p, enough, force, residual, passes)
-      if (residual%opening > near*speed) &
-         & call solve_convex(p, afar*speed, force, residual, passes)
+      if (residual%opening > near_solution*speed) &
+         & call solve_convex(p, convex_tolerance*speed, force, residual, passes)
       if (residual%opening > tolerance) &
-         & call sweep_joints(p, tolerance, most_sweeps, force, residual)
-      if (residual%opening > exact .and. residual%opening <= near*speed) &
+         & call sweep_joints(p, tolerance, last_sweeps, force, residual)
+      if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
-      if (work_of(p, force) > no_work*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
+      if (work_of(p, force) > max_energy_gain*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
          & call solve_convex(p, enough, force, residual, passes)
    end subroutine settle_group
 
-   !> Work of the forces by openings and slip: none by Coulomb's law but what friction takes [J/m]
+   !> Work of contact forces on openings and slip: negative under Coulomb's law [J/m]
    pure real(wp) function work_of(p, force)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: force(:, :)  !! The forces: (3, n_joint) [N/m]
@@ -156,7 +155,7 @@ contains
       do j = 1, size(cone)
          associate (face => faces(j), f => force(:, j))
             face%open = .not. f(1:2) + shift(1:2, j) > 0.0_wp
-            if (abs(f(3)) >= (1.0_wp - rounding)*shear_bound(cone(j), f + shift(:, j))) &
+            if (abs(f(3)) >= (1.0_wp - bound_tolerance)*shear_bound(cone(j), f + shift(:, j))) &
                & face%slip = merge(1, -1, f(3) > 0.0_wp)
             if (all(face%open) .and. .not. abs(f(3)) > 0.0_wp) face%slip = 0
          end associate

@@ -8,7 +8,7 @@ module dda_contact_yield
    implicit none
    private
 
-   public :: force_of_flows, iterate_t, interior_search_t, set_yielding_springs, yield_to
+   public :: force_of_flows, iterate_t, interior_search_t, set_yielding_springs, set_joint_step
 
    !> One iterate, or a step from it
    type :: iterate_t
@@ -149,7 +149,7 @@ contains
    end function force_of_flows
 
    !> Distances and flows of one joint that a step of its forces brings
-   pure subroutine yield_to(p, z, search, i, source, opening, step)
+   pure subroutine set_joint_step(p, z, search, i, source, opening, step)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
       type(interior_search_t), intent(in) :: search
@@ -191,6 +191,6 @@ contains
             flow = 0.0_wp
          end where
       end associate
-   end subroutine yield_to
+   end subroutine set_joint_step
 
 end module dda_contact_yield

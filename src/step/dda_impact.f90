@@ -23,7 +23,7 @@ module dda_impact
    !> of what the longest step of free fall adds to it, times the square of the number of blocks, or
    !> the most, and only slips that turn and whose friction takes as much. What two blocks leave of
    !> their speeds, 2e-3, is late by a step; in a pile no impact ends a step, and steps stay long
-   real(wp), parameter :: notable = 1.0e-6_wp, most_notable = 1.0e-2_wp
+   real(wp), parameter :: min_event_energy = 1.0e-6_wp, max_event_energy = 1.0e-2_wp
 
    !> Slip of this share of the slowest impact, or of what it changes by in the step, has turned
    real(wp), parameter :: at_once = 1.0e-3_wp
@@ -200,7 +200,7 @@ contains
       integer :: j
 
       earliest = huge(earliest)
-      least = notable_energy(run)
+      least = event_energy(run)
       do j = 1, size(run%contacts%joint)
          associate (slip => run%step%speed(3, j), now => acceleration(3, j))
             if (.not. abs(run%contacts%force(3, j)) > 0.0_wp) cycle
@@ -222,7 +222,7 @@ contains
       integer :: j, k
 
       least = 0.0_wp
-      if (.not. run%settings%restitution > 0.0_wp) least = notable_energy(run)
+      if (.not. run%settings%restitution > 0.0_wp) least = event_energy(run)
       earliest = huge(earliest)
       outcome%overshoot = 0.0_wp
       associate (dt => run%step%dt, start => run%contacts%gap, speed => run%step%speed)
@@ -249,14 +249,15 @@ contains
    end function earliest_impact
 
    !> Energy of an event that ends a step [J/m]
-   pure real(wp) function notable_energy(run)
+   pure real(wp) function event_energy(run)
       type(run_t), intent(in) :: run
 
-      notable_energy = min(most_notable, notable*real(size(run%equations%mass, 3), wp)**2) &
+      event_energy = min(max_event_energy, &
+         & min_event_energy*real(size(run%equations%mass, 3), wp)**2) &
          & *(kinetic_energy(run%equations, packed_velocity(run%system, &
          & size(run%step%state%motion, 1))) &
          & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
-   end function notable_energy
+   end function event_energy
 
    !> How easily an impact at a contact moves its two blocks; shear does not turn blocks that lie on
    !> one another

@@ -69,7 +69,7 @@ module dda_step
 
    !> Openings and slips against the law of contact matter beyond this share of the fastest speed
    real(wp), parameter :: rough = 1.0e-4_wp
-   !> Restitution that is reduced by less is reported by no remark
+   !> Smallest reduction of restitution that is reported
    real(wp), parameter :: small_reduction = 1.0e-3_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
@@ -183,7 +183,7 @@ contains
       end associate
    end subroutine note_residual
 
-   !> Keep the most that restitution was reduced by
+   !> Keep the largest reduction of restitution
    pure subroutine note_reduction(run)
       type(run_t), intent(inout) :: run
 

@@ -36,7 +36,7 @@ module dda_step_context
       real(wp) :: residual = 0.0_wp
    end type energy_t
 
-   !> What a run reports of one contact, the worst in its way
+   !> A value to report of one contact, with its time
    type :: contact_note_t
       real(wp) :: value = 0.0_wp  !! How much
       real(wp) :: time = 0.0_wp   !! When [s]
@@ -203,7 +203,7 @@ module dda_step_context
       real(wp) :: residual = 0.0_wp
       !> The largest opening or slip of those that matter [m/s]
       type(contact_note_t) :: rough
-      !> The largest share of restitution that was taken away, lest it bring in energy
+      !> Largest reduction of restitution, as a share
       type(contact_note_t) :: reduced
    end type march_t
 

@@ -142,7 +142,7 @@ def test_slide_that_turns_is_exact(tmp_path: Path, step: float) -> None:
 
 
 @pytest.mark.parametrize("friction, reduced", [(44.0, True), (0.0, False)])
-def test_restitution_that_would_bring_in_energy_is_reduced_and_said(
+def test_restitution_that_would_add_energy_is_reduced_and_reported(
     tmp_path: Path, friction: float, reduced: bool
 ) -> None:
     """The second impact of a rod whose corner slips would bring in energy by e = 1 and Coulomb's law (Kane)."""
@@ -156,7 +156,7 @@ def test_restitution_that_would_bring_in_energy_is_reduced_and_said(
     rows = [(float(row["time"]), float(row["kinetic"])) for row in rows_of(tmp_path / "out" / "energy.csv")]
     gains = {time: (now - before) / before for (_, before), (time, now) in zip(rows, rows[1:])}
     assert max(gains.values()) < 1e-9
-    said = re.search(r"restitution was reduced by up to ([\d.]+) % lest it bring in energy, "
+    said = re.search(r"restitution was reduced by up to ([\d.]+) % so that impacts add no energy, "
                      r"the most between blocks 1 and 2 at ([\d.]+) s", (tmp_path / "out" / "log.txt").read_text())
     assert bool(said) == reduced
     if said:
