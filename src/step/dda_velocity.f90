@@ -42,10 +42,9 @@ module dda_velocity
    real(wp), parameter :: energy_noise = 1.0e-12_wp
    !> Steps shorter than this share of the longest one are not cut for what contacts leave
    real(wp), parameter :: shortest = 1.0e-3_wp
-   !> Energy that what contacts leave may bring in, over that of motion, of strain, of the fall in
-   !> the longest step, and what loads bring in: in the longest step, and at the most in a shorter
-   !> one, for what is left does not shrink with the step
-   real(wp), parameter :: energy_left = 1.0e-5_wp, most_left = 1.0e-2_wp
+   !> Energy that contacts may add, over that of motion, of strain, of the fall in the longest step,
+   !> and the work of loads
+   real(wp), parameter :: max_energy_gain = 1.0e-6_wp
 
    !> What the end of a step asks of velocities
    type :: impact_t
@@ -96,7 +95,7 @@ contains
          ! points that are led bring in energy of their own, and what contacts leave ends no run
          if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
             & .or. step%dt <= shortest*step%longest .or. &
-            & kinetic_energy(equations, step%velocity) <= allowed + energy_left_over(run, before)
+            & kinetic_energy(equations, step%velocity) <= allowed + allowed_gain(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          ! what has closed by a force has been stopped on its way, not at its end
@@ -105,16 +104,15 @@ contains
       end associate
    end subroutine solve_impacts
 
-   !> Energy that contacts may bring in by what they leave [J/m]
-   pure real(wp) function energy_left_over(run, kinetic)
+   !> Energy that contacts may add in a step [J/m]
+   pure real(wp) function allowed_gain(run, kinetic)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: kinetic  !! Energy of motion [J/m]
 
-      energy_left_over = min(most_left, energy_left*run%step%longest/run%step%dt) &
-         & *(kinetic + run%march%energy%elastic &
+      allowed_gain = max_energy_gain*(kinetic + run%march%energy%elastic &
          & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp &
          & + sum(abs(run%equations%outer*run%step%state%motion)))
-   end function energy_left_over
+   end function allowed_gain
 
    !> Which contacts are closed at the end of a step, and which of them have met in it, faster than
    !> weight makes resting contacts meet: they must part with restitution times that speed. If they
