@@ -81,6 +81,14 @@ def test_train_on_a_floor_meets_as_in_one_dimension() -> None:
     assert speeds == pytest.approx([-0.310212, 0.680940, 1.632699], abs=1e-6)
 
 
+def test_plastic_train_shares_its_momentum() -> None:
+    """Two blocks that stick meet a third: all go on together, after impacts that have no time between them."""
+    train = Train([0.0, 1.5, 3.0], [1.0] * 3, [2.0, 1.0, 3.0], [3.0, 0.0, -1.0], 0.0)
+    train.run(3.0)
+    assert train.speed == pytest.approx([0.5] * 3, abs=1e-9)
+    assert train.apart < 1e-9
+
+
 def test_block_on_a_resting_block_rises_again() -> None:
     world = floor(1.0)
     world.add(rectangle(-0.5, 0.0, 1.0, 1.0))

@@ -16,6 +16,10 @@ SLOWEST = 0.1
 APART = 1e-4
 
 
+#: Gap [m] and approach speed [m/s] of rounding
+TOUCH = 1e-12
+
+
 @dataclass
 class Train:
     """Blocks in a row: left ends, widths, masses and velocities; walls have infinite mass."""
@@ -48,6 +52,8 @@ class Train:
     def meet(self, k: int) -> float:
         """Time until block k meets the next one."""
         gap = self.left[k + 1] - self.left[k] - self.width[k]
+        if gap <= TOUCH and self.speed[k] - self.speed[k + 1] > TOUCH:
+            return 0.0  # blocks that touch after a plastic impact
         found, past = math.inf, 0.0
         # between the times at which one of the two stops, the relative motion is a parabola
         stops = [abs(self.speed[i]) / self.friction for i in (k, k + 1)] if self.friction > 0.0 else [math.inf] * 2
