@@ -328,7 +328,7 @@ contains
       end associate
    end subroutine trim_room
 
-   !> Whether a block has no area, but for rounding of its corners
+   !> Return whether the area of a block is zero within the rounding of its corners
    pure logical function has_flat_block(plan)
       type(block_plan_t), intent(in) :: plan
       real(wp) :: area, size_of_all

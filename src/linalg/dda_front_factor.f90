@@ -152,7 +152,7 @@ contains
       integer, intent(in) :: n                            !! Rows
       real(wp), intent(in) :: one(n), two(n), three(n)    !! The columns
       real(wp), intent(in) :: factor(3)                   !! How much of each
-      real(wp), intent(inout) :: rest(n)                  !! What they are taken from
+      real(wp), intent(inout) :: rest(n)                  !! Vector that they are subtracted from
       integer :: i
 
       do i = 1, n

@@ -322,7 +322,7 @@ contains
       integer, intent(in) :: width, below
       real(wp), intent(in) :: right(width, *)  !! The rows to the right: (width, below)
       real(wp), intent(in) :: known(below)     !! Solution of the rows below
-      real(wp), intent(inout) :: x(width)      !! What they are taken from
+      real(wp), intent(inout) :: x(width)      !! Vector that they are subtracted from
       integer :: c
 
       if (below == 0) return

@@ -28,7 +28,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! What they leave
+      type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
       type(contact_springs_t) :: springs
       type(joint_face_t) :: face(size(p%joint))

@@ -57,20 +57,20 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! What they leave
+      type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
       type(interior_search_t) :: search
       type(iterate_t) :: z
       real(wp) :: gone, least, left
       integer :: turn, waited
-      logical :: anew
+      logical :: has_restarted
 
       call pose(p, force, search)
       call begin(p, search, force, near, z)
       least = huge(least)
       waited = 0
       gone = 0.0_wp
-      anew = .false.
+      has_restarted = .false.
       do turn = 1, most_turns
          call see_lack(p, z, search, left)
          call keep_better(p, admissible(p, z%force), force, residual)
@@ -78,8 +78,8 @@ contains
          least = min(least, left)
          if (residual%opening <= tolerance .or. waited == patience &
             & .or. .not. left <= huge(left)) return
-         if (turn > 1 .and. turn <= patience .and. gone < stuck .and. .not. anew) then
-            anew = .true.
+         if (turn > 1 .and. turn <= patience .and. gone < stuck .and. .not. has_restarted) then
+            has_restarted = .true.
             call begin(p, search, force, afar, z)
             call see_lack(p, z, search, left)
             least = huge(least)
@@ -96,7 +96,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! What may be left of the problem, as an opening [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! What they leave
+      type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
       type(interior_search_t) :: search
       type(iterate_t) :: z

@@ -101,7 +101,7 @@ contains
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
       real(wp), intent(in) :: fall            !! What free fall brings in a step [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(out) :: residual  !! What they leave against the law of contact
+      type(residual_t), intent(out) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations
       real(wp) :: enough, exact, speed, tolerance
 

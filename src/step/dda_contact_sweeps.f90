@@ -36,7 +36,7 @@ contains
       real(wp), intent(in) :: tolerance       !! The tolerance [m]
       integer, intent(in) :: most             !! Most sweeps
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! By how much openings are against the law
+      type(residual_t), intent(inout) :: residual  !! Residual of the forces
       type(sweeps_t) :: sweeps, before, way
       type(residual_t) :: now
       real(wp) :: last, square

@@ -1,4 +1,4 @@
-!> How joints yield at their bounds in an interior-point iteration: springs that take what is left
+!> Yielding of joints at their bounds in an interior-point iteration, as springs of the joints
 !>
 !> Equations and bounds are those of dda_contact_interior.
 module dda_contact_yield
@@ -50,7 +50,7 @@ module dda_contact_yield
       real(wp), allocatable :: product(:, :)
    end type interior_search_t
 
-   !> How a joint yields at its bounds
+   !> Stiffness of one joint at its bounds
    type :: joint_yield_t
       real(wp) :: friction  !! Coefficient of friction
       !> Stiffness of each force without the bounds of friction, of Coulomb's law with them: (3)
@@ -67,9 +67,9 @@ module dda_contact_yield
 
 contains
 
-   !> Springs of the joints as their bounds yield: the inverse of C + F_flow' (z/b) F, or, of the
-   !> convex problem, of C + F' (z/b) F. That is given term by term, for the matrix is so near to a
-   !> singular one that no elimination leaves digits
+   !> Set the springs of the joints: the inverse of C + F_flow' (z/b) F, or of C + F' (z/b) F in the
+   !> convex problem. Closed form, because elimination of the nearly singular 3x3 matrix loses all
+   !> digits
    pure subroutine set_yielding_springs(p, z, search)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
@@ -101,7 +101,7 @@ contains
       end do
    end subroutine set_yielding_springs
 
-   !> How one joint yields at its bounds
+   !> Return the stiffness of one joint at its bounds
    pure type(joint_yield_t) function yield_of(p, z, search, i) result(y)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
@@ -122,7 +122,7 @@ contains
       y%det = y%both + sum(y%wide)*y%thin
    end function yield_of
 
-   !> Forces of one joint that flows at its bounds make while its blocks stand still
+   !> Return the forces of one joint due to flows at its bounds, with its blocks held
    pure function force_of_flows(p, z, search, i, flow) result(force)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
@@ -148,14 +148,14 @@ contains
       force(3) = force(3) + y%own(3)*(given(1) - given(2))
    end function force_of_flows
 
-   !> Distances and flows of one joint that a step of its forces brings
+   !> Set the distances and flows of one joint for a step of its forces
    pure subroutine set_joint_step(p, z, search, i, source, opening, step)
       type(contact_problem_t), intent(in) :: p
       type(iterate_t), intent(in) :: z
       type(interior_search_t), intent(in) :: search
       integer, intent(in) :: i               !! The joint
-      real(wp), intent(in) :: source(4)      !! Flows while its forces stay the same: (4) [m]
-      real(wp), intent(in) :: opening(3)     !! What the forces close by: (3) [m]
+      real(wp), intent(in) :: source(4)      !! Flows at constant forces: (4) [m]
+      real(wp), intent(in) :: opening(3)     !! Openings and slip to be closed: (3) [m]
       type(iterate_t), intent(inout) :: step !! The step; distances and flows of the joint are set
       type(joint_yield_t) :: y
       real(wp) :: both, n, pressed, sheared, soft
@@ -164,7 +164,7 @@ contains
          slack(1:2) = force(1:2)
          flow(1:2) = source(1:2) - z%flow(1:2, i)/z%slack(1:2, i)*slack(1:2)
          if (search%bounded(3, i)) then
-            ! as sums of its forces, which are large, distances from its bounds would have no digits
+            ! sums of the forces, which are large, would leave no digits of the distances
             y = yield_of(p, z, search, i)
             associate (e => y%stiff, other => y%stiff(2:1:-1))
                if (search%convex) then
