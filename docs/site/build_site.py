@@ -22,38 +22,52 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Pages in the order of the menu, by chapter; others of docs/ follow
 CHAPTERS = {
     "Start": {
-        "gallery.md": "Gallery",
         "index.md": "Overview",
         "getting-started.md": "Getting started",
+        "tutorial.md": "Tutorial",
+        "gallery.md": "Gallery",
         "installation.md": "Installation",
     },
-    "How to": {
-        "howto.md": "Arches, studies, results, pictures",
-        "howto_blocks.md": "My own blocks",
-        "limerick.md": "Limerick models",
-        "howto_tunnel.md": "A tunnel and its bolts",
-        "howto_slope.md": "A slope with water",
-        "howto_fortran.md": "From a Fortran program",
-        "howto_python.md": "From Python",
+    "User guide": {
+        "howto.md": "All tasks",
+        "howto_arches.md": "Arches",
+        "howto_bridges.md": "Bridges",
+        "howto_blocks.md": "Blocks",
+        "howto_drawings.md": "Drawings",
+        "howto_motion.md": "Motion and earthquakes",
+        "howto_tunnel.md": "Tunnels",
+        "howto_slope.md": "Slopes",
+        "howto_studies.md": "Studies and campaigns",
+        "howto_figures.md": "Figures",
+        "howto_python.md": "Python",
+        "howto_fortran.md": "Fortran",
+        "modelling.md": "Modelling choices",
+        "glossary.md": "Glossary",
     },
     "Reference": {
         "input.md": "The input deck",
         "keys.md": "Every key",
+        "tables.md": "Tables and columns",
         "messages.md": "Messages",
+        "limerick.md": "Limerick models",
         "python.md": "Python interfaces",
         "fortran/index.html": "Fortran interfaces",
     },
-    "Theory and method": {
-        "theory.md": "Theory", "method.md": "Method", "limits.md": "Limits", "shi.md": "Shi's routines"},
-    "Evidence": {
-        "paper.md": "The paper",
+    "Theory": {
+        "theory.md": "Analytic solutions", "method.md": "Method", "limits.md": "Limits", "paper.md": "The paper"},
+    "Verification": {
         "validation.md": "Validation",
         "accuracy.md": "Accuracy",
-        "testing.md": "Testing",
         "performance.md": "Performance",
         "scaling.md": "Scaling",
     },
-    "Inside": {"architecture.md": "Architecture", "modules.md": "Modules", "tolerances.md": "Tolerances"},
+    "Developers": {
+        "architecture.md": "Architecture",
+        "testing.md": "Testing",
+        "modules.md": "Modules",
+        "tolerances.md": "Tolerances",
+        "shi.md": "Shi's routines",
+    },
 }
 #: Formulas in a line that are longer than so many characters of TeX scroll on narrow screens
 LONG = 30
@@ -144,7 +158,7 @@ def settings(docs: Path) -> dict:
         for chapter, pages in CHAPTERS.items()
     ]
     known = {name for pages in CHAPTERS.values() for name in pages}
-    nav[-1]["Inside"] += [{Path(name).stem: name} for name in sorted(found - known)]
+    nav[-1]["Developers"] += [{Path(name).stem: name} for name in sorted(found - known)]
     return {
         "site_name": "voussoir",
         "docs_dir": str(docs),
@@ -161,13 +175,14 @@ def write_pages(docs: Path, dda: Path) -> None:
     """The pages as MkDocs wants them: those of docs/, the README as the first, and the made ones."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("site"))
     readme = (ROOT / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
-    for name in ("CONTRIBUTING.md", "LICENSE"):
+    for name in ("CONTRIBUTING.md", "CITATION.cff", "LICENSE"):
         readme = re.sub(rf"\[([^\]]*)\]\({name}\)", r"\1", readme)
     (docs / "index.md").write_text(readme, encoding="utf-8")
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8").replace("](../README.md)", "](index.md)")
         text = re.sub(r"\[([^\]]*)\]\(\.\./[^)]*\)", r"\1", text)
         text = re.sub(r"^```sh install$", "```text", text, flags=re.M)
+        text = re.sub(r"^```(\w+) geometry$", r"```\1", text, flags=re.M)
         page.write_text(with_formulas(text), encoding="utf-8")
     (docs / "style.css").write_text(STYLE, encoding="utf-8")
     done = subprocess.run([dda, "help", "keys"], capture_output=True, text=True, check=True)
