@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
+import textwrap
 from pathlib import Path
 
 from voussoir import results
@@ -23,22 +24,22 @@ PICTURES = ROOT / "docs" / "images" / "gallery"
 CROWDED = ("rings", "tunnel")
 HEAD = """# Gallery
 
-Twelve scenes, from the semicircle to a tunnel: what is asked, the picture that `voussoir plot` draws, the deck. All of
-them are in `input/gallery`; `voussoir examples --copy .` puts them into `./input`, and then, for the first one,
+Twelve scenes from a semicircle to a tunnel: a question, the picture of `voussoir plot`, and the deck. The decks are in
+`input/gallery`. An installed program copies them by `voussoir examples --copy .`; the first one runs by
 
 ```sh
 dda run input/gallery/01_semicircle.nml
 voussoir plot 01_semicircle
 ```
 
-This page is written by `cmake --build build --target gallery`.
+`cmake --build build --target gallery` writes this page and its pictures.
 
 ## Every shape
 
-What `&arch shape` draws, on abutments, a pier or buttresses, each with the line of thrust that `dda` finds under its
-weight (drawn by `docs/site/shape_gallery.py`, where their keys stand).
+The shapes of `&arch shape` on abutments, a pier or buttresses, each with its thrust line under dead load.
+`docs/site/shape_gallery.py` has their keys.
 
-![Arches of every shape with their lines of thrust](images/shapes.svg)
+![Arches of every shape with their thrust lines](images/shapes.svg)
 """
 
 
@@ -59,8 +60,9 @@ def page() -> str:
     for deck in decks():
         title = deck.read_text(encoding="utf-8").split("title = '")[1].split("'")[0]
         listing = "\n".join(line for line in deck.read_text(encoding="utf-8").splitlines() if line[:1] != "!")
+        sentence = textwrap.fill(sentence_of(deck), 118)
         text.append(
-            f"## {title}\n\n{sentence_of(deck)}\n\n![{title}](images/gallery/{deck.stem[3:]}.svg)\n\n"
+            f"## {title}\n\n{sentence}\n\n![{title}](images/gallery/{deck.stem[3:]}.svg)\n\n"
             f"`input/gallery/{deck.name}`:\n\n```fortran\n{listing}\n```\n"
         )
     return "\n".join(text)

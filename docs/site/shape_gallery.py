@@ -1,4 +1,4 @@
-"""Draw docs/images/shapes.svg: an arch of every shape with its line of thrust, as `dda` decides it."""
+"""Draw docs/images/shapes.svg: an arch of every shape with its thrust line."""
 
 from __future__ import annotations
 

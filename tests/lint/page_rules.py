@@ -25,7 +25,7 @@ PHRASES = (
     Word(r"\bline of heads\b", "piezometric line"),
     Word(r"\b(held|measured) points?\b", "restraint; monitoring point"),
     Word(r"\b(critical|greatest|least) push\b", "horizontal load factor at collapse"),
-    Word(r"\bfells?\b", "load at which it collapses"),
+    Word(r"\bfells\b|\bto fell\b", "load at which it collapses"),
     Word(r"\binterior springs?\b", "barrier (interior-point) stiffness"),
     Word(r"\bblocks that (keep their places|move and deform)\b", "small; large displacements"),
     Word(r"\b(row|line|file|page|picture|panel|entry|test|folder|corner|column|piece|front|module) an? "
