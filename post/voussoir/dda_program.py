@@ -51,7 +51,7 @@ def find_input(name: str) -> Path:
 
 
 def version_of(dda: Path) -> str:
-    """What `dda --version` prints, such as "dda 0.1.0"."""
+    """What `dda --version` prints, such as "dda 0.2.0"."""
     return subprocess.run([dda, "--version"], capture_output=True, text=True).stdout.strip()
 
 

@@ -17,7 +17,7 @@ module dda_help
    public :: print_help, version
 
    !> Version of the program
-   character(len=*), parameter :: version = "0.1.0"
+   character(len=*), parameter :: version = "0.2.0"
    !> What there is help on
    character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
       & "lines", "export", "keys", "models", "blocks", "help"]
