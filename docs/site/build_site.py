@@ -8,7 +8,6 @@ Fortran procedure (by FORD) and Python function (from their docstrings), by MkDo
 from __future__ import annotations
 
 import argparse
-import ast
 import importlib.util
 import json
 import re
@@ -17,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from python_page import python_page
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Pages in the order of the menu, by chapter; others of docs/ follow
@@ -62,6 +63,7 @@ CHAPTERS = {
         "scaling.md": "Scaling",
     },
     "Developers": {
+        "contributing.md": "Contributing",
         "architecture.md": "Architecture",
         "testing.md": "Testing",
         "modules.md": "Modules",
@@ -71,10 +73,6 @@ CHAPTERS = {
 }
 #: Formulas in a line that are longer than so many characters of TeX scroll on narrow screens
 LONG = 30
-#: Modules of the names that scripts import: those of the package itself, or all of a module
-PUBLIC = {
-    "deck/run": ("run", "Deck"), "deck/arch": ("Arch",), "deck/blocks": ("Blocks",), "results/__init__": (),
-    "theory/__init__": ()}
 #: Packages that build the site
 PACKAGES = ("mkdocs", "ford", "latex2mathml")
 #: What the theme lacks: room for tables, which wrap, and names that break where they must
@@ -85,7 +83,7 @@ STYLE = """.wy-nav-content { max-width: 1060px; }
 .wy-table-responsive td:first-child > code { white-space: nowrap; }
 .rst-content h2, .rst-content h3, .rst-content h3 code, .rst-content p code, .rst-content li code
 { white-space: normal; overflow-wrap: anywhere; }
-.rst-content img { background: #fff; max-width: 100%; }
+.rst-content img { background: #fff; max-width: 100%; max-height: 44rem; width: auto; height: auto; }
 .rst-content p:has(img + img) { display: grid; gap: 1em;
 grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
 pre code.language-message { white-space: pre-wrap; }
@@ -175,9 +173,12 @@ def write_pages(docs: Path, dda: Path) -> None:
     """The pages as MkDocs wants them: those of docs/, the README as the first, and the made ones."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("site"))
     readme = (ROOT / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
-    for name in ("CONTRIBUTING.md", "CITATION.cff", "LICENSE"):
+    readme = readme.replace("](CONTRIBUTING.md)", "](contributing.md)")
+    for name in ("CITATION.cff", "LICENSE"):
         readme = re.sub(rf"\[([^\]]*)\]\({name}\)", r"\1", readme)
     (docs / "index.md").write_text(readme, encoding="utf-8")
+    contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    (docs / "contributing.md").write_text(contributing, encoding="utf-8")
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8").replace("](../README.md)", "](index.md)")
         text = re.sub(r"\[([^\]]*)\]\(\.\./[^)]*\)", r"\1", text)
@@ -223,41 +224,6 @@ def keys_page(help_text: str) -> str:
             name, _, rest = line.strip().partition(" ")
             lines += [f"- `{name}` {rest.strip()}", ""]
     return "\n".join(lines)
-
-
-def python_page() -> str:
-    """Public names of the Python package, with their docstrings."""
-    lines = [
-        "# Python interfaces", "",
-        "What scripts import: `import voussoir`. [How to](howto_python.md) shows it at work.", "",
-    ]
-    for module, names in PUBLIC.items():
-        tree = ast.parse((ROOT / f"post/voussoir/{module}.py").read_text(encoding="utf-8"))
-        home = "voussoir" if names else f"voussoir.{module.partition('/')[0]}"
-        lines += [] if names else [f"## {home}", "", *block(ast.get_docstring(tree) or "")]
-        for node in tree.body:
-            if not isinstance(node, (ast.FunctionDef, ast.ClassDef)) or node.name.startswith("_"):
-                continue
-            if not names or node.name in names:
-                lines += interface(node, f"{home}.", "##" if names else "###")
-    return "\n".join(lines)
-
-
-def interface(node: ast.FunctionDef | ast.ClassDef, before: str, level: str) -> list[str]:
-    """A function, or a class and its public methods."""
-    head = before + node.name
-    if isinstance(node, ast.FunctionDef):
-        head += f"({ast.unparse(node.args)})"
-    lines = [f"{level} `{head}`", "", *block(ast.get_docstring(node) or "")]
-    for inner in node.body if isinstance(node, ast.ClassDef) else []:
-        if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
-            lines += interface(inner, f"{node.name}.", level + "#")
-    return lines
-
-
-def block(text: str) -> list[str]:
-    """A docstring as it stands."""
-    return ["```text", *text.splitlines(), "```", ""]
 
 
 if __name__ == "__main__":
