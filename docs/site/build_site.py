@@ -57,9 +57,9 @@ CHAPTERS = {
     "Theory": {
         "theory.md": "Analytic solutions", "method.md": "Method", "limits.md": "Limits", "paper.md": "The paper"},
     "Verification": {
-        "validation.md": "Validation",
+        "validation.md": "Verification manual",
         "accuracy.md": "Accuracy",
-        "performance.md": "Performance",
+        "performance.md": "Performance and accuracy",
         "scaling.md": "Scaling",
     },
     "Developers": {
