@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -129,9 +130,18 @@ def digits_of(number: str) -> int:
     return len(digits if "." in mantissa else digits.rstrip("0"))
 
 
+def text_of(path: Path) -> str:
+    """A page as Markdown; of a notebook its cells of words."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix != ".ipynb":
+        return text
+    cells = [cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "markdown"]
+    return "\n\n".join("".join(cell["source"]) for cell in cells)
+
+
 def offences(path: Path) -> list[str]:
     """Everything about a page that breaks the rules: FILE:LINE: what, and what instead."""
-    text = path.read_text(encoding="utf-8")
+    text = text_of(path)
     name = str(path.relative_to(REPOSITORY)) if path.is_relative_to(REPOSITORY) else path.name
     mean, long = lengths(text)
     found = []

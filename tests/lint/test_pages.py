@@ -12,7 +12,7 @@ import pytest
 
 REPOSITORY = page_rules.REPOSITORY
 EXCEPTIONS = REPOSITORY / "tests" / "lint" / "pages_to_rewrite.txt"
-PAGES = sorted([*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").glob("*.md")])
+PAGES = sorted([*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").glob("*.md"), *(REPOSITORY / "docs").glob("*.ipynb")])
 
 
 def exceptions() -> list[str]:
