@@ -153,6 +153,23 @@ def offences(path: Path) -> list[str]:
     return found
 
 
+#: Terms that pages of the guide link to the glossary where they first use them
+TERMS = (
+    "associated flow", "bracket", "Coulomb flow", "critical value", "current geometry", "dead load",
+    "factor of safety", "geometric safety factor", "hinge", "horizontal load factor", "live load", "load case",
+    "load factor", "loading path", "mechanism", "monitoring point", "piezometric line", "reference geometry",
+    "restraint", "thrust line", "verdict",
+)
+
+
+def unlinked_terms(text: str) -> list[str]:
+    """Terms that a page uses in its words and links nowhere to the glossary."""
+    words = plain(" ".join(paragraph for _, paragraph in paragraphs(re.sub(r"\[[^\]]*\]\([^)]*\)", " ", text))))
+    words = re.sub(r"horizontal\s+load\s+factor", "horizontal_load factor", words)
+    return [term for term in TERMS if f"glossary.md#{term.lower().replace(' ', '-')})" not in text and re.search(
+        rf"\b{term.replace('horizontal ', 'horizontal_')}s?\b", " ".join(words.split()), re.IGNORECASE)]
+
+
 def _longest(text: str) -> str:
     """Lines and lengths of the longest sentences."""
     longest = sorted(sentences(text), key=lambda sentence: -sentence.length)[:5]

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import page_rules
@@ -14,6 +15,9 @@ import word_rules
 REPOSITORY = page_rules.REPOSITORY
 EXCEPTIONS = REPOSITORY / "tests" / "lint" / "pages_to_rewrite.txt"
 PAGES = sorted([*REPOSITORY.glob("*.md"), *(REPOSITORY / "docs").glob("*.md"), *(REPOSITORY / "docs").glob("*.ipynb")])
+
+#: Beginnings of the names of the guide's pages; howto.md is their index
+GUIDE = ("getting-started", "tutorial", "howto_", "modelling")
 
 
 def exceptions() -> list[str]:
@@ -29,6 +33,19 @@ def test_page_keeps_the_rules_or_stands_on_the_list(page: Path) -> None:
         assert found != [], f"{name} keeps the rules: take it off {EXCEPTIONS.name}"
     else:
         assert found == []
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.name.startswith(GUIDE)], ids=lambda page: page.name)
+def test_guide_links_terms_to_the_glossary(page: Path) -> None:
+    assert page_rules.unlinked_terms(page.read_text(encoding="utf-8")) == []
+
+
+def test_glossary_has_the_terms_that_pages_link() -> None:
+    heads = re.findall(r"^### (.*)$", (REPOSITORY / "docs/glossary.md").read_text(encoding="utf-8"), re.M)
+    assert set(page_rules.TERMS) <= {head if head.startswith("Coulomb") else head.lower() for head in heads}
+    assert page_rules.unlinked_terms("A horizontal load factor.\n\n[Hinges](glossary.md#hinge), hinges.") == [
+        "horizontal load factor"]
+    assert page_rules.unlinked_terms("The load\nfactor.") == ["load factor"]
 
 
 def test_list_of_exceptions_names_pages_that_exist() -> None:
