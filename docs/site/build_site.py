@@ -178,6 +178,7 @@ def write_pages(docs: Path, dda: Path) -> None:
         readme = re.sub(rf"\[([^\]]*)\]\({name}\)", r"\1", readme)
     (docs / "index.md").write_text(readme, encoding="utf-8")
     contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    contributing = contributing.replace("](README.md)", "](index.md)")
     (docs / "contributing.md").write_text(contributing, encoding="utf-8")
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8").replace("](../README.md)", "](index.md)")
