@@ -48,6 +48,12 @@ def test_glossary_has_the_terms_that_pages_link() -> None:
     assert page_rules.unlinked_terms("The load\nfactor.") == ["load factor"]
 
 
+def test_readme_fits_a_screen_and_the_list_of_changes_is_for_users() -> None:
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    assert len(readme.splitlines()) <= 70 and len(readme.split()) <= 500
+    assert len((REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8").split()) <= 3000
+
+
 def test_list_of_exceptions_names_pages_that_exist() -> None:
     assert [name for name in exceptions() if not (REPOSITORY / name).exists()] == []
     assert exceptions() == sorted(set(exceptions()))
