@@ -234,7 +234,7 @@ def test_help_on_a_group_a_key_or_both() -> None:
 
 def test_help_on_a_file_of_blocks_has_every_entry_of_the_page() -> None:
     page = (Path(__file__).resolve().parents[2] / "docs" / "input.md").read_text(encoding="utf-8")
-    table = page[page.index("| entry | what it says |"):].split("\n\n")[0]
+    table = page[page.index("| entry | meaning |"):].split("\n\n")[0]
     entries = [row.split(" | ")[0].strip("| ").replace("`", "") for row in table.splitlines()[2:]]
     printed = help_on("help", "blocks").splitlines()
     assert len(entries) >= 16 and [entry for entry in entries if entry not in printed] == []
