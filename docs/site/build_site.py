@@ -58,9 +58,7 @@ CHAPTERS = {
         "theory.md": "Analytic solutions", "method.md": "Method", "limits.md": "Limits", "paper.md": "The paper"},
     "Verification": {
         "validation.md": "Verification manual",
-        "accuracy.md": "Accuracy",
         "performance.md": "Performance and accuracy",
-        "scaling.md": "Scaling",
     },
     "Developers": {
         "contributing.md": "Contributing",

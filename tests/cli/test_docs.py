@@ -44,7 +44,6 @@ NOT_WRITTEN = {
 ELSEWHERE = {
     "CONTRIBUTING.md": "a version of Ubuntu, and the share of lines that CI measures",
     "README.md": "a version of Ubuntu",
-    "accuracy.md": "campaigns of minutes and hours; test_work_precision.py and test_stability.py run their fast scenes",
     "architecture.md": "shares of the source, counted when the page was written",
     "gallery.md": "sentences of the decks; test_gallery.py compares them",
     "howto_bridges.md": "axle loads of vehicles",
@@ -54,8 +53,7 @@ ELSEWHERE = {
     "limerick.md": "the original program, which is not here; test_limerick.py runs what needs it not",
     "limits.md": "scenes of tests/physics and tests/cli, which the page names",
     "method.md": "constants of the source",
-    "performance.md": "times of one machine",
-    "scaling.md": "times of one machine",
+    "performance.md": "times of one machine; test_work_precision.py and test_stability.py run the fast scenes",
     "testing.md": "examples of faults, and times of one machine",
     "theory.md": "test_theory.py, test_theory_paper.py and test_theory_accuracy.py compare the solutions",
     "tolerances.md": "constants; tests/lint compares the page with the source",
