@@ -44,7 +44,6 @@ NOT_WRITTEN = {
 ELSEWHERE = {
     "CONTRIBUTING.md": "a version of Ubuntu, and the share of lines that CI measures",
     "README.md": "a version of Ubuntu",
-    "architecture.md": "shares of the source, counted when the page was written",
     "gallery.md": "sentences of the decks; test_gallery.py compares them",
     "howto_bridges.md": "axle loads of vehicles",
     "howto_fortran.md": "a program of Fortran; test_install.py builds it and compares what it prints",

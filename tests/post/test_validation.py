@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import math
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("numpy")
 
+from voussoir.bench import validation_page  # noqa: E402
 from voussoir.bench.checks import Check  # noqa: E402
 from voussoir.bench.expectations import Measured  # noqa: E402
 from voussoir.bench.scene import Scene  # noqa: E402
@@ -23,6 +25,7 @@ from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E4
 from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
 from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
+from voussoir.command.validation import titles_of  # noqa: E402
 from voussoir.dda_program import find_input  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -123,8 +126,9 @@ def test_command_writes_table_and_page(tmp_path: Path, capsys) -> None:
     assert float(rows[0]["computed"]) == pytest.approx(-4.905, rel=1e-12)
     assert float(rows[0]["error_2"]) < 1e-12
     page = (tmp_path / "out" / "validation.md").read_text()
-    assert "8 values, **0 missed**" in page
-    assert "| `stack` (weight above) | normal force of joint 1 [N/m] | 250000 | 250000 |" in page
+    assert "2 decks, 8 values, **0 missed**" in page
+    assert "### [`stack`](../input/benchmarks/stack.nml)\n\nStack of ten cubes.\n\nExact: weight above." in page
+    assert "| normal force of joint 1 [N/m] | 250000 | 250000 |" in page
 
 
 def test_miss_is_reported_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys) -> None:
@@ -134,7 +138,7 @@ def test_miss_is_reported_and_is_the_exit_status(tmp_path: Path, monkeypatch, ca
     monkeypatch.setattr("voussoir.command.validation.all_scenes", lambda: (false_scene,))
     words = ["validation", "--quiet", "--out", str(tmp_path), "--scenes", "column"]
     assert main(words) == 1
-    assert "0.25 | 0.2 | 2.0e-01 | 2e-08 **MISSED** |" in (tmp_path / "validation.md").read_text()
+    assert "0.25 | 0.2 | 2.0e-01 **MISSED** |" in (tmp_path / "validation.md").read_text()
     assert capsys.readouterr().out == ""
 
 
@@ -149,9 +153,24 @@ def test_what_is_no_scene_or_no_deck_is_bad_input(tmp_path: Path, capsys) -> Non
 
 def test_page_of_the_documents_has_every_scene() -> None:
     page = (REPOSITORY / "docs" / "validation.md").read_text()
+    sections = {part.partition("\n")[0]: part for part in page.split("\n## ")}
+    titles = titles_of(DECKS)
     for scene in SCENES:
+        entries = [part for part in sections[scene.group].split("\n### ") if f"Exact: {scene.note}." in part]
+        (entry,) = (part for part in entries if f"[`{scene.deck}`](../input/benchmarks/{scene.deck}.nml)" in part)
+        assert titles[scene.deck] in entry
         for check in scene.expectation.checks:
-            assert f"| `{scene.name}` ({scene.note}) | {check.what} |" in page
+            exact = check.exact if isinstance(check.exact, str) else f"{check.exact:.6g}"
+            assert f"| {check.what} | {exact} |" in entry
+
+
+def test_entry_has_both_geometries_in_one_row() -> None:
+    """A column of five cubes collapses at b/h = 0.2; deformable blocks with large displacements at a little less."""
+    lines = [line for scene in SCENES if scene.deck == "column" for line in run_program(scene)]
+    written = validation_page.page(lines, titles_of(DECKS), "dda 0")
+    assert "1 decks, 2 values, **0 missed**" in written
+    assert "Exact: b/h. Accepted: 2e-08, current 0.0001.\n" in written
+    assert re.search(r"^\| horizontal force over weight \| 0.2 \| 0.2 \| \S+ \| 0.199996 \| 1.8e-05 \|$", written, re.M)
 
 
 def test_every_deck_of_the_benchmarks_is_a_scene() -> None:
