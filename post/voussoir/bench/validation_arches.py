@@ -24,7 +24,7 @@ _scene = partial(benchmark, ARCHES)
 def _arches() -> list[Scene]:
     """Scenes of section 1.8."""
     rows = [
-        critical(f"least t/R of {n} voussoirs", exact, 1e-6, case, 1.0)
+        critical(f"minimum t/R of {n} voussoirs", exact, 1e-6, case, 1.0)
         for case, (n, exact) in enumerate(THICKNESS.items(), 1)
     ]
     states = [
@@ -95,7 +95,7 @@ def _sliding() -> Scene:
     """Semicircles whose springings slide."""
     rows = [(mu, n, exact) for mu, row in SLIDING_ARCHES for n, exact in zip((15, 27, 50), row, strict=True)]
     checks = [
-        critical(f"least t/R, friction {mu}, {n} voussoirs", exact, 1e-6 if mu > 0.4 else 5.1e-5, case, 1.0)
+        critical(f"minimum t/R, friction {mu}, {n} voussoirs", exact, 1e-6 if mu > 0.4 else 5.1e-5, case, 1.0)
         for case, (mu, n, exact) in enumerate(rows, 1)
     ]
     return _scene("arch_sliding", "limit analysis, four digits", *checks)
@@ -120,7 +120,7 @@ PULSES = ((100, 0.22393, 0.0006, 0.2363), (60, 0.47627, 0.001, 0.4857), (45, 0.8
 def _pulses() -> list[Scene]:
     """How long a pulse an arch bears; the classical model of four links is on the unsafe side."""
     scenes = [
-        _scene(f"arch_pulse_{percent}", "rigid time stepping, written apart",
+        _scene(f"arch_pulse_{percent}", "independent integrator of rigid blocks",
                critical(f"longest pulse of {percent / 100:g} g [s]", exact, accept, 1, 1.0), slow=True)
         for percent, exact, accept, _ in PULSES
     ]
@@ -128,7 +128,7 @@ def _pulses() -> list[Scene]:
         verdict("collapsed", f"{percent / 100:g} g for {links} s", case)
         for case, (percent, _, _, links) in enumerate(PULSES, 1)
     ]
-    return [*scenes, _scene("arch_pulse_four_links", "four links bear it", *links, slow=True)]
+    return [*scenes, _scene("arch_pulse_four_links", "the model of four links predicts no collapse", *links, slow=True)]
 
 
 #: Every scene of this module

@@ -34,7 +34,7 @@ def _assemblies() -> list[Scene]:
     ):
         scenes += benchmark_in_both(ASSEMBLIES, deck, source, critical(what, exact, 2e-8), moved=1e-4)
     four = verdict("stable", "reference geometry"), verdict("stable", "current geometry", 2)
-    return [*scenes, benchmark(ASSEMBLIES, "four_corners", "stands", *four)]
+    return [*scenes, benchmark(ASSEMBLIES, "four_corners", "stable", *four)]
 
 
 def _in_notch(friction_deg: float) -> float:
@@ -104,15 +104,15 @@ def _pressed() -> list[Scene]:
     bar = snap_load(4.0, 0.4, YOUNG * 0.1) / (0.1 * math.hypot(4.0, 0.4))
     thrust = 25000.0 * 0.5 * 4.0**2 / (8.0 * 0.5)
     beam = tuple(Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust) for k in range(3))
-    sagging = Check("thrust of the sagging beam over w LL/(8 (h - z))", 1.0, _sagging, 1e-4)
+    sagging = Check("thrust of the sagging beam over w L^2/(8 (h - z))", 1.0, _sagging, 1e-4)
     roof = critical("unit weight of the wedge [N/m3]", pull, 1e-4)
     pairs = zip(benchmark_in_both(ASSEMBLIES, "jammed", "2 mu N = W", jammed),
-                benchmark_in_both(ASSEMBLIES, "roof_wedge", "Brady and Brown, derived again", roof, moved=2e-3))
+                benchmark_in_both(ASSEMBLIES, "roof_wedge", "Brady and Brown, rederived", roof, moved=2e-3))
     return [
         *(scene for pair in pairs for scene in pair),
-        benchmark(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", *beam),
-        benchmark(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", sagging, settings=MOVED),
-        benchmark(ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0",
+        benchmark(ASSEMBLIES, "voussoir_beam", "w L^2/(8h)", *beam),
+        benchmark(ASSEMBLIES, "voussoir_beam", "w L^2/(8 (h - z))", sagging, settings=MOVED),
+        benchmark(ASSEMBLIES, "snap_through", "maximum of 2 EA (z/l) (l0 - l)/l0",
                   critical("unit weight [N/m3]", bar, 1e-4)),
     ]
 
@@ -143,8 +143,8 @@ def _walls() -> list[Scene]:
         for case, (mu, limit, push) in enumerate(rows, 1):
             what = f"tilt of limit analysis, friction {mu} [deg]"
             checks.append(Check(what, limit, _associated_tilt, 1e-4, case, scale=1.0))
-            checks.append(critical(f"push of first collapse, friction {mu}", push, 2e-6, case))
-        scenes.append(benchmark(ASSEMBLIES, deck, "loading path", *checks))
+            checks.append(critical(f"load factor at first collapse, friction {mu}", push, 2e-6, case))
+        scenes.append(benchmark(ASSEMBLIES, deck, "limit analysis; independent program of the loading path", *checks))
     return scenes
 
 

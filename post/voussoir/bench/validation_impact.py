@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.bench.checks import DENSITY, GRAVITY, YOUNG, Check, Outcome
 from voussoir.bench.scene import Scene, benchmark
 
-ROCKING = "Blocks that rock"
+ROCKING = "Rocking"
 IMPACT = "Impact and energy"
 
 #: Columns of energy.csv that are stored, and the ones that are gone
@@ -77,7 +77,7 @@ def _rocking() -> list[Scene]:
     for deck, b, h in (("rocking_stocky", 0.25, 0.5), ("rocking_slender", 0.2, 1.0), ("rocking_tall", 0.25, 1.0)):
         checks = []
         for block, share in enumerate((0.25, 0.5, 0.75), 1):
-            start = f"from {share} of its angle"
+            start = f"from {share} of the angle"
             exact = quarter_period(b, h, share)
             checks.append(Check(f"quarter period {start} [s]", exact, _upright(block), 1e-5))
             exact = next_amplitude(b, h, share)
@@ -85,17 +85,17 @@ def _rocking() -> list[Scene]:
             checks.append(Check(f"next amplitude {start}", exact, swing, 1e-3))
         source = "Housner 1963, nonlinear"
         scenes.append(benchmark(ROCKING, deck, source, *checks, rate=True))
-    pulses = (("pulse_rocks", 0.98, "stands"), ("pulse_overturns", 1.02, "fallen"))
+    pulses = (("pulse_rocks", 0.98, "rocks"), ("pulse_overturns", 1.02, "overturns"))
     for deck, share, falls in pulses:
         what = f"0.3 g for {share} of 0.40905 s"
         check = Check(what, falls, _fate(1, 0.2, 1.0))
-        scenes.append(benchmark(ROCKING, deck, "nonlinear, integrated", check))
+        scenes.append(benchmark(ROCKING, deck, "equation of rocking, integrated numerically", check))
     checks = []
     for k, (b, h, push, time) in enumerate(PULSES):
-        for i, (share, falls) in enumerate(((0.98, "stands"), (1.02, "fallen")), 1):
+        for i, (share, falls) in enumerate(((0.98, "rocks"), (1.02, "overturns")), 1):
             what = f"{2 * b:g} x {2 * h:g} m: {push:g} g for {share} of {time} s"
             checks.append(Check(what, falls, _fate(2 * k + i, b, h)))
-    return [*scenes, benchmark(ROCKING, "pulses", "nonlinear, integrated", *checks, slow=True)]
+    return [*scenes, benchmark(ROCKING, "pulses", "equation of rocking, integrated numerically", *checks, slow=True)]
 
 
 #: Half width, half height [m], push [g] and the time that overturns the block [s]
@@ -116,7 +116,7 @@ def _fate(block: int, b: float, h: float):
 
     def measure(outcome: Outcome) -> str:
         tilt = outcome.direction(2 * block - 1, 2 * block) - math.pi / 2.0
-        return "fallen" if np.abs(tilt).max() > 1.5 * math.atan2(b, h) else "stands"
+        return "overturns" if np.abs(tilt).max() > 1.5 * math.atan2(b, h) else "rocks"
 
     return measure
 
@@ -148,7 +148,7 @@ def _bounces() -> list[Scene]:
     flight = 2.0 * math.sqrt(2.0 / GRAVITY)
     period = Check("time between impacts, e = 1.0 [s]", flight, _period, 1e-6, 4)
     fall = DENSITY * GRAVITY
-    rise = "largest rise of energy in a step, e = {}, over the fall's"
+    rise = "largest gain of energy per step over the fall, e = {}"
     rises = tuple(
         Check(rise.format(e), 0.0, largest_rise, 1e-9, case, fall) for case, e in enumerate((0.0, 0.5, 0.8, 1.0), 1)
     )
@@ -158,11 +158,11 @@ def _bounces() -> list[Scene]:
             speed = lambda outcome, block=block: float(outcome.velocity(block)[0])  # noqa: E731
             what = f"velocity of block {block}, e = {e} [m/s]"
             met.append(Check(what, exact, speed, 1e-6, case, scale=3.0))
-    never = Check("largest rise of energy in a step [J/m]", 0.0, largest_rise, 1e-6, scale=1.0)
+    never = Check("largest gain of energy per step [J/m]", 0.0, largest_rise, 1e-6, scale=1.0)
     return [
         benchmark(IMPACT, "bounce", "e^(2n) H", *tops, period, *rises, rate=True),
         benchmark(IMPACT, "collision", "v1 - (1 + e) m2/(m1 + m2) (v1 - v2)", *met, rate=True),
-        benchmark(IMPACT, "momentum", "energy never rises", never),
+        benchmark(IMPACT, "momentum", "no gain of energy", never),
     ]
 
 

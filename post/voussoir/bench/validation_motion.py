@@ -11,8 +11,8 @@ import numpy as np
 from voussoir.bench.checks import DENSITY, GRAVITY, Check, Outcome, end, verdict
 from voussoir.bench.scene import Scene, benchmark
 
-FLIGHT = "Blocks that fly"
-SLIDING = "Blocks that slide"
+FLIGHT = "Free flight"
+SLIDING = "Sliding"
 
 #: Blocks of the deck `momentum`: width and height [m], velocity [m/s], spin [rad/s]
 _THROWN = (
@@ -116,31 +116,31 @@ def _flights() -> list[Scene]:
     """Scenes without contact, and one in which blocks meet freely."""
     terminal = -GRAVITY / 4.0 * (10.0 - (1.0 - math.exp(-40.0)) / 4.0)
     fast = lambda outcome: float(outcome.energy("kinetic")[-1])  # noqa: E731
-    away = "largest change of a corner's distance from the centre, relative"
+    away = "relative change of a corner distance"
     strain = Check(away, 0.0, _radius_change, 1e-12, scale=1.0)
-    area = Check("largest change of area, relative", 0.0, _area_change, 1e-12, scale=1.0)
+    area = Check("relative change of area", 0.0, _area_change, 1e-12, scale=1.0)
     scene = partial(benchmark, FLIGHT)
     return [
         scene(
-            "free_fall", "-g tt/2; m (g t)^2/2",
+            "free_fall", "-g t^2/2; m (g t)^2/2",
             Check("v after 1 s [m]", -GRAVITY / 2.0, end(1), 1e-10),
             Check("kinetic energy [J/m]", DENSITY * 2.0 * GRAVITY**2 / 2.0, fast, 1e-10), rate=True),
         scene(
-            "projectile", "vx t, vy t - g tt/2",
+            "projectile", "vx t, vy t - g t^2/2",
             Check("u after 1 s [m]", 3.0, end(0), 1e-10),
             Check("v after 1 s [m]", 5.0 - GRAVITY / 2.0, end(1), 1e-10),
             Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0), strain, area, rate=True),
         scene(
-            "spin", "angle w t, nothing else",
+            "spin", "angle w t",
             Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
-            Check("way of the centre [m]", 0.0, end(0), 1e-10, scale=1.0), strain, area, slow=True),
+            Check("displacement of the centre [m]", 0.0, end(0), 1e-10, scale=1.0), strain, area, slow=True),
         scene(
-            "spin_and_fall", "both of them",
+            "spin_and_fall", "free fall and angle w t",
             Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, end(1), 1e-9),
             Check("angle after 2 s [rad]", 0.5, _turned, 1e-9), rate=True),
         scene("damped_fall", "-(g/c) (t - (1 - exp(-c t))/c)", Check("v after 10 s [m]", terminal, end(1), 1e-9),
               rate=True),
-        scene("momentum", "constant", *_momentum_checks(), rate=True),
+        scene("momentum", "conservation of momentum", *_momentum_checks(), rate=True),
     ]
 
 
@@ -160,23 +160,24 @@ def _slides() -> list[Scene]:
     ]
     top = 2.0 / slide(30.0, 15.0, up=True)
     back = slide(30.0, 15.0) * (1.0 - top) ** 2 / 2.0 - top
-    law = "g (sin a - cos a tan phi) tt/2"
+    law = "g (sin a - cos a tan phi) t^2/2"
     states = [
         verdict("collapsed" if case < 3 else "stable", f"{phi} deg, {geometry} geometry", case)
         for case, (phi, geometry) in enumerate(itertools.product((29.9, 30.1), ("reference", "current")), 1)
     ]
     scene = partial(benchmark, SLIDING)
     return [
-        scene("slope", "stands iff phi > a", *states),
+        scene("slope", "stable for phi > a", *states),
         scene(
-            "slope_creep", "at rest",
-            Check("way in 100000 steps, strain and all [m]", 0.0, _along(30.0), 1e-6, scale=1.0),
+            "slope_creep", "no motion",
+            Check("displacement in 100000 steps, with strain [m]", 0.0, _along(30.0), 1e-6, scale=1.0),
             Check("creep after the first 1000 steps [m]", 0.0, _creep, 1e-6, scale=1.0), slow=True),
         scene("incline", law, *ways, rate=True),
         scene("incline_30", law, Check("s(2 s) [m]", 2.0 * slide(30.0, 20.0), _along(30.0), 1e-3), rate=True),
-        scene("upslope_stays", "vv/(2g (sin a + cos a tan phi))",
-              Check("way [m]", -4.0 / (2.0 * slide(20.0, 30.0, up=True)), _along(20.0), 1e-2), rate=True),
-        scene("upslope_returns", "up, then down", Check("s(1 s) [m]", back, _along(30.0), 1e-2), rate=True),
+        scene("upslope_stays", "v^2/(2g (sin a + cos a tan phi))",
+              Check("displacement [m]", -4.0 / (2.0 * slide(20.0, 30.0, up=True)), _along(20.0), 1e-2), rate=True),
+        scene("upslope_returns", "two motions of constant acceleration",
+              Check("s(1 s) [m]", back, _along(30.0), 1e-2), rate=True),
     ]
 
 
@@ -200,9 +201,9 @@ def _shaken() -> list[Scene]:
     return [
         benchmark(
             SLIDING,
-            deck, "Newmark 1965, integrated",
-            Check("way down the slope at the end [m]", exact, _along(dip), 1e-2),
-            Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24), rate=True)
+            deck, "Newmark 1965, integrated numerically",
+            Check("final displacement down the slope [m]", exact, _along(dip), 1e-2),
+            Check("final speed [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24), rate=True)
         for deck, dip, exact, speed in _NEWMARK
     ]
 
@@ -236,8 +237,8 @@ def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> floa
 def _sticking() -> Scene:
     """A block that a periodic force moves to and fro."""
     exact = stick_slip(5.0, 8.0, 10.0)
-    check = Check("way after 10 s [m]", exact, end(0), 1e-2)
-    return benchmark(SLIDING, "stick_slip", "F cos t against friction, integrated", check, rate=True)
+    check = Check("displacement after 10 s [m]", exact, end(0), 1e-2)
+    return benchmark(SLIDING, "stick_slip", "F cos t against friction, integrated numerically", check, rate=True)
 
 
 #: Every scene of this module

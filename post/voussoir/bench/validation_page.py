@@ -1,57 +1,55 @@
-"""The table of the validation suite, as CSV and as a page."""
+"""The verification manual: results of the validation suite, as CSV and as a page."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from voussoir.bench.report_tables import markdown, write_csv
+from voussoir.bench.report_tables import grouped, markdown, write_csv
+from voussoir.bench.scene import MOVED, Scene
 from voussoir.bench.validation_run import Line
 
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
 
-_HEAD = """# Validation
+_HEAD = """# Verification manual
 
-Scenes with exact answers: what the answer is, what the program computes, and how far apart the
-two are. This page is written by `voussoir validation` from a run of the decks in
-`input/benchmarks`; do not edit it, run the command again.
+Problems with exact answers, one entry per problem: model, input, exact value and its source, result and error.
+`voussoir validation` writes this page from the decks of `input/benchmarks`. Do not edit it.
 
-- *error*: over the exact value; where that is 0, or where a way or an angle is compared as it
-  stands, in the unit of the quantity or over what it names. Scenes that stand or fall have none.
-- *accepted*: the largest error that is accepted. A line that misses it says **MISSED**.
-- *rate*: order of the error in the time step, from runs with the deck's step, a half and a
-  quarter of it. A dash: not run in shorter steps, or round-off (below 1e-9).
-- *time*: wall time of the whole deck with its own step [s]. It depends on the machine.
-- A scene named with `current` is the deck with `--set analysis%geometry=current`: blocks that
-  move and strain.
+- **Exact value**: the entry states its formula or source.
+- **Error**: relative to the exact value. It is absolute where that value is 0, and for displacements and angles.
+  Verdicts have no error.
+- **Accepted**: the largest accepted error. A larger one is marked **MISSED**.
+- **Rate**: order of convergence in the time step, from three runs with halved steps. A dash means a single run or
+  errors below 1e-9.
+- **Current**: the same deck with `--set analysis%geometry=current`, that is, large displacements and deformable
+  blocks. Its error includes the elastic shift.
 """
 
 _TAIL = """
-## What the lines that miss show
+## Convergence rates
 
-- **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's. The answer
-  under Coulomb friction depends on the way of the loads; [limits.md](limits.md) says what was found.
+- Free flight is exact at any step. Bounces with restitution are exact too, since a step ends at each impact.
+- Rocking converges with second order, also without restitution. Housner's blocks are rigid; the decks use a modulus
+  of 5e12 Pa, since 5e9 Pa changes the period by 1e-5. Errors below 1e-6 may not decrease, because they depend on
+  where the reversal lies in its step.
+- `upslope_returns`: the error arises in the step of the reversal, and varies with its position in the step.
+- A rate near 0 means an error that does not depend on the step. On slopes it is the elastic strain under
+  self-weight, 1e-7 to 1e-6 m. Newmark's decks sample the ground motion every 4 to 5 ms; samples every 1 ms reduce
+  their error to 1e-4. In `toppling_onset` above the critical angle it is the strain of the block.
 
-## What the rates show
+## Dry walls
 
-- Flight is exact at any step, and so are bounces with restitution: a step ends where blocks meet.
-- **rocking.** Second order in the step, without restitution. Housner's blocks are rigid: these have a modulus of
-  5e12 Pa, for with 5e9 Pa their strain makes 1e-5 of the period. Some next amplitudes fall faster than that, or
-  not at all below 1e-6, as the step in which the block turns back lies.
-- **upslope_returns.** The error is made in the step in which the block turns; where in the step
-  that is changes with its length.
-- A rate near 0 is an error that is not one of the step. On slopes it is the strain of the block
-  that settles when its weight comes on (1e-7 to 1e-6 m). Newmark's decks give the ground's motion
-  at points 4 or 5 ms apart; with points at every ms their errors are near 1e-4. In `toppling_onset`
-  above phi_c it is the strain of the block; ten thousand times as stiff it errs by 3e-6.
+Limit analysis with dilatant friction is an upper bound of the tilt at collapse. The collapse load under Coulomb
+friction depends on the loading path ([limits.md](limits.md#coulomb-friction-and-the-loading-path)).
 
-## Not in the suite
+## Not included
 
-- **Newton's cradle.** Simultaneous impacts are not unique.
-- **The cantilever of one block.** A block has one strain and does not bend ([limits.md](limits.md)).
-- **Sliding of a flat arch** between walls that do not yield: its thrust may grow, so there is no
-  one coefficient of friction at which it slips.
+- **Newton's cradle**: simultaneous impacts have no unique solution.
+- **Cantilever of one block**: a block has one strain and does not bend.
+- **Sliding of a flat arch** between rigid walls: its thrust is not bounded, so no coefficient of friction is critical.
 """
 
 
@@ -66,14 +64,28 @@ def write_lines(lines: Sequence[Line], file: Path) -> None:
     ))
 
 
-def page(lines: Sequence[Line], version: str) -> str:
-    """The page of lines in the order of their sections, and of what `dda --version` prints."""
+def page(lines: Sequence[Line], titles: Mapping[str, str], version: str) -> str:
+    """Return the verification manual.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        Results, in the order of their sections.
+    titles : mapping of str to str
+        Titles of the decks by their names.
+    version : str
+        Output of `dda --version`.
+    """
     missed = sum(not line.accepted for line in lines)
-    scenes = len({line.scene.name for line in lines})
-    text = [_HEAD, f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."]
-    heads = ("scene", "quantity", "exact", "computed", "error", "accepted", "rate", "time")
+    decks = len({line.scene.deck for line in lines})
+    text = [_HEAD, f"{decks} decks, {len(lines)} values, **{missed} missed**; computed by {version}."]
     for section, own in itertools.groupby(lines, lambda line: line.scene.group):
-        text += ["", f"## {section}", "", *markdown(heads, "l" * len(heads), map(_row, own))]
+        text += ["", f"## {section}"]
+        problems: dict[tuple[str, str], list[Line]] = {}
+        for line in own:
+            problems.setdefault(_problem(line.scene), []).append(line)
+        for problem in problems.values():
+            text += _entry(problem, titles)
     return "\n".join(text) + "\n" + _TAIL
 
 
@@ -88,16 +100,74 @@ def _verdict(line: Line) -> str:
     return "ok" if line.accepted else "MISSED"
 
 
-def _row(line: Line) -> list[str]:
-    """A row of the page."""
-    check = line.check
-    if isinstance(check.exact, str):
-        cells = [check.exact, str(line.computed), "", ""]
+def _problem(scene: Scene) -> tuple[str, str]:
+    """Key of decks that share an entry: the first word of their names, and the source of their exact values."""
+    return re.sub(r"s?(_.*)?$", "", scene.deck), scene.note
+
+
+def _is_current(scene: Scene) -> bool:
+    """Whether a scene is its deck with large displacements."""
+    return scene.settings == MOVED
+
+
+def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
+    """Entry of one problem: its decks, its exact value, and its table."""
+    decks = grouped((line.scene for line in lines), "deck")
+    links = {deck: f"[`{deck}`](../input/benchmarks/{deck}.nml)" for deck in decks}
+    plain = [line for line in lines if not _is_current(line.scene)]
+    moved = {(line.scene.deck, line.check.what): line for line in lines if _is_current(line.scene)}
+    pairs = [(line, moved.get((line.scene.deck, line.check.what)) if plain else None) for line in plain or lines]
+    columns = _columns(pairs, len(decks) > 1)
+    cells = [[cell(*pair) for cell in columns.values()] for pair in pairs]
+    if len(decks) == 1:
+        about = [f"### {links[lines[0].scene.deck]}", "", f"{titles[lines[0].scene.deck]}."]
     else:
-        cells = [f"{check.exact:.8g}", f"{line.computed:.8g}"]
-        cells += [f"{line.errors[0]:.1e}", f"{check.accept:g}"]
-    if not line.accepted:
-        cells[3] = f"{cells[3]} **MISSED**".strip()
-    rate = "-" if line.rate is None else f"{round(line.rate, 1) + 0.0:.1f}"
-    name = f"`{line.scene.name}` ({line.scene.note})"
-    return [name, check.what, *cells, rate, f"{line.seconds:.2f}"]
+        family = _problem(lines[0].scene)[0].replace("_", " ").capitalize()
+        about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items())]
+    exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
+    return ["", *about, "", exact, "", *markdown(list(columns), "l" * len(columns), cells)]
+
+
+def _accepted(lines: Iterable[Line], moved: Iterable[Line]) -> str:
+    """Sentence on the largest accepted errors, empty for verdicts."""
+    bounds = [_bounds(lines), _bounds(moved)]
+    if bounds[0] == bounds[1] or not all(bounds):
+        bounds = [bounds[0] or bounds[1]]
+    return f" Accepted: {', current '.join(bounds)}." if bounds[0] else ""
+
+
+def _bounds(lines: Iterable[Line]) -> str:
+    """Least and largest of the accepted errors."""
+    bounds = [line.check.accept for line in lines if not isinstance(line.check.exact, str)]
+    return " to ".join(f"{bound:g}" for bound in dict.fromkeys((min(bounds), max(bounds)))) if bounds else ""
+
+
+def _columns(pairs: list[tuple[Line, Line | None]], named: bool) -> dict[str, Callable[[Line, Line | None], str]]:
+    """Columns of a table: their heads, and the cell of a line and its counterpart in current geometry."""
+    heads: dict[str, Callable[[Line, Line | None], str]] = {}
+    if named:
+        heads["deck"] = lambda line, _: f"`{line.scene.deck}`"
+    heads["quantity"] = lambda line, _: line.check.what
+    heads["exact"] = lambda line, _: _number(line.check.exact)
+    heads["computed"] = lambda line, _: _number(line.computed)
+    measured = any(not isinstance(line.check.exact, str) for line, _ in pairs)
+    if measured or not all(line.accepted for line, _ in pairs):
+        heads["error"] = lambda line, _: _error(line)
+    if any(line.rate is not None for line, _ in pairs):
+        heads["rate"] = lambda line, _: "-" if line.rate is None else f"{round(line.rate, 1) + 0.0:.1f}"
+    if any(moved for _, moved in pairs):
+        heads["current"] = lambda _, moved: _number(moved.computed) if moved else "-"
+        if measured:
+            heads["its error"] = lambda _, moved: _error(moved) if moved else "-"
+    return heads
+
+
+def _number(value: float | str) -> str:
+    """A verdict, or a number of six digits."""
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
+def _error(line: Line) -> str:
+    """Error of a line, marked if it is not accepted."""
+    error = "" if isinstance(line.check.exact, str) else f"{line.errors[0]:.1e}"
+    return error if line.accepted else f"{error} **MISSED**".strip()

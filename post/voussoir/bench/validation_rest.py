@@ -10,7 +10,7 @@ import numpy as np
 from voussoir.bench.checks import GRAVITY, Check, Outcome, critical, verdict
 from voussoir.bench.scene import Scene, benchmark, benchmark_in_both
 
-TOPPLING = "Blocks that topple"
+TOPPLING = "Toppling"
 
 DEGREE = math.pi / 180.0
 #: Decks of blocks that begin to topple: width, height [m], slope and the literature's angle [deg]
@@ -62,13 +62,13 @@ def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
 
 #: Stacks that lean out a little less and a little more than they can
 _OVERHANGS = (
-    ("overhang_stands", "stable", "five blocks at 0.99 of L/2 sum 1/k"),
-    ("overhangs_stand", "stable", "one to four blocks at 0.99 of L/2 sum 1/k"),
-    ("overhang_of_one_falls", "collapsed", "one block at 1.01 of it"),
-    ("overhang_of_two_falls", "collapsed", "two blocks at 1.01 of it"),
-    ("overhang_of_three_falls", "collapsed", "three blocks at 1.01 of it"),
-    ("overhang_of_four_falls", "collapsed", "four blocks at 1.01 of it"),
-    ("overhang_falls", "collapsed", "five blocks at 1.01 of it"),
+    ("overhang_stands", "stable", "five blocks, 0.99 of the limit"),
+    ("overhangs_stand", "stable", "one to four blocks, 0.99 of the limit"),
+    ("overhang_of_one_falls", "collapsed", "one block, 1.01 of the limit"),
+    ("overhang_of_two_falls", "collapsed", "two blocks, 1.01 of the limit"),
+    ("overhang_of_three_falls", "collapsed", "three blocks, 1.01 of the limit"),
+    ("overhang_of_four_falls", "collapsed", "four blocks, 1.01 of the limit"),
+    ("overhang_falls", "collapsed", "five blocks, 1.01 of the limit"),
 )
 
 
@@ -77,16 +77,16 @@ def _toppling() -> Iterator[Scene]:
     tilt = math.tan(math.atan(0.25) - 10 * DEGREE)
     force = "horizontal force over weight"
     for deck, source, *checks in (
-        ("toppling", "tan(atan(b/h) - a)", critical("force across gravity over weight", tilt, 2e-8)),
+        ("toppling", "tan(atan(b/h) - a)", critical("transverse force over weight", tilt, 2e-8)),
         ("push", "min(mu, b/h)", critical(f"{force}, tan phi 0.7", 0.5, 2e-8),
-         critical("the same, tan phi 0.3", 0.3, 2e-8, 2)),
+         critical(f"{force}, tan phi 0.3", 0.3, 2e-8, 2)),
         ("column", "b/h", critical(force, 0.2, 2e-8)),
     ):
         yield from benchmark_in_both(TOPPLING, deck, source, *checks, moved=1e-4)
     for onset in ONSETS:
         yield _onset(*onset)
     for deck, state, what in _OVERHANGS:
-        yield from benchmark_in_both(TOPPLING, deck, "harmonic", verdict(state, what))
+        yield from benchmark_in_both(TOPPLING, deck, "overhang L/2 sum 1/k", verdict(state, what))
     yield from benchmark_in_both(
         TOPPLING, "goodman_bray", "Goodman and Bray 1976: 38.15; limit analysis: 33.4",
         verdict("stable", "40 deg", 1), verdict("collapsed", "32.9 deg", 5), verdict("collapsed", "30 deg", 6))

@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.bench.checks import GRAVITY, YOUNG, Check, Outcome
 from voussoir.bench.scene import Scene, benchmark, benchmark_in_both
 
-STRAIN = "Strain of blocks"
+STRAIN = "Deformable blocks"
 
 
 def _strains() -> list[Scene]:
@@ -32,13 +32,13 @@ def _strains() -> list[Scene]:
     # the determinant of a step of constant acceleration is 1/(1 + square/2), square = (w dt)^2
     angle = 2.0 * math.pi * frequency * 2e-6
     lost = 1.0 - (1.0 + angle**2 / 2.0) ** (-math.pi / angle)
-    swing = (Check("frequency, 1.10266 of the bar's [1/s]", frequency, _swings(1), 1e-3),)
-    decay = (Check("amplitude lost in a cycle of 2565 steps", lost, _lost_amplitude, 1e-2),)
+    swing = (Check("frequency, 1.10266 times that of a bar [1/s]", frequency, _swings(1), 1e-3),)
+    decay = (Check("loss of amplitude per cycle of 2565 steps", lost, _lost_amplitude, 1e-2),)
     return [
         *benchmark_in_both(STRAIN, "uniaxial", "Hooke", *pressed_checks),
-        *benchmark_in_both(STRAIN, "bar_own_weight", "rho g HH/(2E)", *bar),
+        *benchmark_in_both(STRAIN, "bar_own_weight", "rho g H^2/(2E)", *bar),
         benchmark(STRAIN, "bar_swings", "sqrt(3E/rho)/(2 pi H)", *swing, rate=True),
-        benchmark(STRAIN, "bar_swings", "a step: 1/sqrt(1 + (w dt)^2/2)", *decay),
+        benchmark(STRAIN, "bar_swings", "amplitude per step 1/sqrt(1 + (w dt)^2/2)", *decay),
     ]
 
 
@@ -64,14 +64,14 @@ def _sheared() -> list[Scene]:
         for i, (name, exact) in enumerate((("sx", -2e6), ("sy", -1e6), ("txy", 0.0)))
     ]
     far = lambda outcome: float(np.hypot(*outcome.end(1)))  # noqa: E731
-    stays.append(Check("way of the far corner over its distance", 0.0, far, 1e-9, scale=2.2))
+    stays.append(Check("relative displacement of the far corner", 0.0, far, 1e-9, scale=2.2))
     turned = tuple(
         Check(f"{name} after a quarter turn [Pa]", exact, lambda o, i=i: float(o.stress(1)[i]), 1e-6)
         for i, (name, exact) in enumerate((("sx", -1e6), ("sy", -2e6), ("txy", -5e5)))
     )
     return [
         benchmark(STRAIN, "pure_shear", "2 (1 + nu) tau/E", *shear),
-        benchmark(STRAIN, "stress_stays", "what it was", *stays),
+        benchmark(STRAIN, "stress_stays", "initial stress", *stays),
         benchmark(STRAIN, "stress_turns", "sx, sy = sy, sx; txy = -txy", *turned),
     ]
 
@@ -83,7 +83,7 @@ def _chains() -> list[Scene]:
         for point, n in enumerate((2, 4, 8), 1)
     ]
     bar = math.sqrt(YOUNG / 2500.0) / 8.0
-    columns.append(Check("that of eight against the bar's [1/s]", bar, _swings(3), 2e-3))
+    columns.append(Check("eight blocks against a bar [1/s]", bar, _swings(3), 2e-3))
     moduli = (
         ("a bar, E", YOUNG),
         ("a plate, E/(1 - nu^2)", YOUNG / (1.0 - 0.3**2)),

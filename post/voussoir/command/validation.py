@@ -1,15 +1,16 @@
-"""`voussoir validation`: scenes with exact answers beside what the program computes."""
+"""`voussoir validation`: problems with exact answers and the results of the program."""
 
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 
 from voussoir.bench.validation_page import page, told, write_lines
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
-from voussoir.files import write_text
+from voussoir.files import read_text, write_text
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,14 +28,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the scenes and write the table: 1 if an error is larger than accepted."""
-    lines = _lines(arguments)
+    decks = arguments.decks or find_input("benchmarks")
+    lines = _lines(arguments, decks)
     arguments.out.mkdir(parents=True, exist_ok=True)
     write_lines(lines, arguments.out / "validation.csv")
-    write_text(arguments.out / "validation.md", page(lines, version_of(find_dda())))
+    write_text(arguments.out / "validation.md", page(lines, titles_of(decks), version_of(find_dda())))
     return 0 if all(line.accepted for line in lines) else 1
 
 
-def _lines(arguments: argparse.Namespace) -> list[Line]:
+def titles_of(decks: Path) -> dict[str, str]:
+    """Titles of the decks of a folder by their names."""
+    found = {deck.stem: re.search(r"title = '((?:[^']|'')*)'", read_text(deck)) for deck in decks.glob("*.nml")}
+    return {name: title[1].replace("''", "'") if title else name for name, title in found.items()}
+
+
+def _lines(arguments: argparse.Namespace, decks: Path) -> list[Line]:
     """Lines of all scenes that were asked for."""
     scenes = all_scenes()
     names = {scene.deck for scene in scenes}
@@ -42,7 +50,6 @@ def _lines(arguments: argparse.Namespace) -> list[Line]:
     if unknown:
         known = ", ".join(sorted(names))
         raise DdaError(f"expected a scene, got '{unknown[0]}'; the scenes are {known}")
-    decks = arguments.decks or find_input("benchmarks")
     lines = []
     for scene in scenes:
         if arguments.scenes and scene.deck not in arguments.scenes:
