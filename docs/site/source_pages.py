@@ -7,42 +7,40 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Rooms from the lowest floor up, and what each is for
-ROOMS = {
+#: Packages from the lowest layer up, and the purpose of each
+PACKAGES = {
     "base": "Numbers, texts, errors as values",
-    "theory": "Analytic solutions and exact arches; stands alone, compiled by f2py too",
+    "theory": "Analytic solutions and exact arches, also compiled by f2py",
     "files": "Text and binary files, tables, tokens",
-    "geometry": "Vectors, polygons, search of neighbours; knows no block",
-    "linalg": "The matrix of blocks and its factor; knows no DDA",
+    "geometry": "Vectors, polygons, search of neighbours",
+    "linalg": "The block matrix and its factor",
     "model": "Materials, blocks, joints, supports, settings",
     "mesh": "Lines to blocks (Shi: dc)",
-    "joint_lines": "Sets of joints, slopes and openings to lines (Shi: dl)",
-    "formats": "Limerick files, plain and DDAML, and what VTU and XML files are made of",
-    "input": "Decks, files of blocks, records, maps of joints",
-    "output": "Tables and pictures of results",
+    "joint_lines": "Joint sets, slopes and openings to lines (Shi: dl)",
+    "formats": "Limerick files, plain and DDAML",
+    "input": "Decks, files of blocks, records, joint maps",
+    "output": "Tables and frames of results",
     "arch": "Arches as polygons and as chains",
     "submatrix": "Submatrices of one block (Shi: df11 to df16)",
-    "contact": "What touches (Shi: df04 to df07), and the friction cone",
-    "solver": "Joints on a graph: interior springs, Coulomb's law, loading path, proofs",
-    "statics": "Equilibrium without steps: the joint graph of a scene, chains, histories of loads",
+    "contact": "Contact detection (Shi: df04 to df07), and the friction cone",
+    "solver": "Joints on a graph: limit analysis, Coulomb's law, loading path, certificates",
+    "statics": "Equilibrium without steps: joint graphs, chains, time histories",
     "step": "Steps and runs (Shi: df)",
     "limerick": "Shi's scheme",
-    "search": "One decision, critical values, mechanisms; knows no deck",
+    "search": "One decision, critical values, mechanisms",
     "scene": "The scene of a deck",
-    "case": "One case of a deck: what it computes, and the rows that it writes",
+    "case": "One case of a deck: its computation and its rows",
     "app": "The command dda",
 }
 MODULES = """# Modules
 
-Every module of `src/`, room by room from the lowest floor up, with the first sentence of its own head.
-The page is written by `python3 docs/site/source_pages.py`.
-[architecture.md](architecture.md) says what a room may import.
+Every module of `src/` by package, from the lowest layer up, with the first sentence of its source.
+[architecture.md](architecture.md) describes the layers. `python3 docs/site/source_pages.py` writes this page.
 """
 TOLERANCES = """# Tolerances
 
-Every threshold and limit of `src/`, room by room, with its reason. Each stands as a named constant in the module that
-uses it, so that reason and use are read together; this page is the overview.
-It is written by `python3 docs/site/source_pages.py`.
+Every threshold and limit of `src/` by package, with its module, constant, value and purpose. Relative thresholds name
+their reference quantity. The module has further reasons. `python3 docs/site/source_pages.py` writes this page.
 """
 #: A named number at the beginning of a module, with the comment before it
 CONSTANT = re.compile(r"((?: *!> ?.*\n)+) {3}(?:real\(wp\)|integer), parameter :: (\w+) = (\S.*)\n")
@@ -57,49 +55,50 @@ def main() -> None:
 
 
 def pages() -> dict[str, str]:
-    """The pages as they should be, by their names."""
+    """Pages by their names."""
     return {"modules.md": modules(), "tolerances.md": tolerances()}
 
 
 def modules() -> str:
-    """Every module with what it is."""
+    """Table of the modules."""
     parts = [MODULES]
-    for room, purpose in ROOMS.items():
-        parts.append(f"\n## {room}\n\n{purpose}.\n\n| module | what it is |\n| --- | --- |\n")
-        for file in sorted((ROOT / "src" / room).glob("*.f90")):
+    for package, purpose in PACKAGES.items():
+        parts.append(f"\n## {package}\n\n{purpose}.\n\n| module | purpose |\n| --- | --- |\n")
+        for file in sorted((ROOT / "src" / package).glob("*.f90")):
             parts.append(f"| `{file.stem}` | {first_sentence(file)} |\n")
     return "".join(parts)
 
 
 def tolerances() -> str:
-    """Every threshold with its reason."""
+    """Table of the thresholds."""
     parts = [TOLERANCES]
-    for room in ROOMS:
-        rows = [row for file in sorted((ROOT / "src" / room).glob("*.f90")) for row in constants(file)]
+    for package in PACKAGES:
+        rows = [row for file in sorted((ROOT / "src" / package).glob("*.f90")) for row in constants(file)]
         if rows:
-            parts.append(f"\n## {room}\n\n| module | name | value | reason |\n| --- | --- | --- | --- |\n")
+            parts.append(f"\n## {package}\n\n| module: constant | value | purpose |\n| --- | --- | --- |\n")
             parts += rows
     return "".join(parts)
 
 
 def constants(file: Path) -> list[str]:
-    """Rows of the numbers that a module names at its beginning."""
+    """Rows of the named numbers at the start of a module."""
     text = file.read_text(encoding="utf-8").split("\ncontains\n")[0]
     rows = []
     for comment, name, value in CONSTANT.findall(text):
-        reason = " ".join(line.strip()[2:].strip() for line in comment.splitlines())
+        comment = " ".join(line.strip()[2:].strip() for line in comment.splitlines())
+        reason = re.split(r"[.:;] ", comment)[0]
         if not NO_THRESHOLD.match(name):
-            rows.append(f"| `{file.stem}` | `{name}` | {number(value)} | {reason} |\n".replace("\\|", "|"))
+            rows.append(f"| `{file.stem}`: `{name}` | {number(value)} | {reason} |\n".replace("\\|", "|"))
     return rows
 
 
 def number(value: str) -> str:
-    """A Fortran number without its kind."""
+    """Fortran number without its kind."""
     return re.sub(r"_wp\b", "", value).replace(".0e", "e").replace("e-0", "e-").replace("*", "\\*")
 
 
 def first_sentence(file: Path) -> str:
-    """What a source says of itself first: its head up to an empty line, or to a stop."""
+    """First sentence of the head of a source, up to an empty line or a full stop."""
     head = []
     for line in file.read_text(encoding="utf-8").splitlines():
         if not line.startswith("!>") or not line[2:].strip():

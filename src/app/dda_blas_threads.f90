@@ -1,5 +1,4 @@
-!> Threads of BLAS: one, for cases run side by side have their own, and sums of several threads
-!> round differently
+!> Number of BLAS threads: one, so that concurrent cases keep their digits
 module dda_blas_threads
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none

@@ -1,4 +1,4 @@
-!> dda help blocks: the form of a file of blocks
+!> dda help blocks: the format of a file of blocks
 module dda_block_help
    implicit none
    private

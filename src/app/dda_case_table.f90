@@ -1,4 +1,4 @@
-!> The table that a run shows: a line a case, in their order, and no wider than the screen
+!> The table on the screen: one line per case, within the width of the terminal
 module dda_case_table
    use dda_case, only : searched_name
    use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, source_of
@@ -59,15 +59,15 @@ module dda_case_table
       type(lines_t), allocatable :: waiting(:)
    end type case_table_t
 
-   !> Most cases that are printed one by one
+   !> Maximum number of cases printed one by one
    integer, parameter :: max_rows = 100
-   !> Widest number and word of a swept parameter
+   !> Largest width of a number and of a word
    integer, parameter :: number_width = 12, word_width = 20
    !> Blanks before a column
    integer, parameter :: gap = 2
-   !> Names of swept parameters are cut to so many characters at least, or the width of their values
+   !> Least width of the name of a swept parameter
    integer, parameter :: short_title = 10
-   !> Most digits that a number is shown with
+   !> Maximum number of digits of a number
    integer, parameter :: most_digits = 10
    !> Blanks before a remark
    integer, parameter :: indent = 6

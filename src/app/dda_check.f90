@@ -1,4 +1,4 @@
-!> dda check: read and check decks, say what would be computed
+!> dda check: read and check decks, and report the computation
 submodule (dda_verbs) dda_check
    use dda_deck, only : deck_t
    use dda_process, only : deck_stem, error_is_terminal, exit_status

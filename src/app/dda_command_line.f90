@@ -11,7 +11,7 @@ module dda_command_line
 
    public :: command_t, read_command
 
-   !> Longest argument that is taken
+   !> Maximum length of an argument
    integer, parameter :: longest = 32768
    !> Verbs that take files
    character(len=*), parameter :: verbs(*) = [character(len=9) :: "run", "check", "cut", "lines", &

@@ -13,7 +13,7 @@ submodule (dda_verbs) dda_cut
    use dda_write_vtu, only : write_cut_table, write_cut_vtu
    implicit none
 
-   !> Most rows of a list on the screen
+   !> Maximum number of rows of a list
    integer, parameter :: most_rows = 50
 
 contains

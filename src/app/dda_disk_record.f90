@@ -1,4 +1,4 @@
-!> disk.record: how much of results.csv a loss of power has not taken
+!> disk.record: length of results.csv that is safe on disk
 !>
 !> A row that the system has been given survives the end of the program, but not that of the system.
 !> So the tables are brought to the disk now and then, results.csv last, and its length is written

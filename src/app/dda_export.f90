@@ -1,5 +1,4 @@
-!> dda export: arch decks as files of the Limerick line or of blocks, blocks cut from lines as files
-!> of blocks
+!> dda export: arches as Limerick files or files of blocks, and cut blocks as files of blocks
 submodule (dda_verbs) dda_export
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_binary_file, only : write_file

@@ -1,4 +1,4 @@
-!> dda lines: from a map of joints to a file of lines (Shi: DL)
+!> dda lines: joint map to file of lines (Shi: DL)
 submodule (dda_verbs) dda_lines
    use dda_binary_file, only : write_file
    use dda_joint_map, only : joint_map_t

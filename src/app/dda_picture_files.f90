@@ -1,4 +1,4 @@
-!> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
+!> Files of frames: VTU with an index for ParaView, and CSV
 submodule (dda_verbs:dda_run_cases) dda_picture_files
    use dda_block_rows, only : contact_states, frame_joint_rows
    use dda_binary_file, only : remove_link

@@ -1,4 +1,4 @@
-!> The plan of a deck in words: what would be computed, and how
+!> The plan of a deck in words
 submodule (dda_verbs:dda_check) dda_print_plan
    use dda_boundary, only : boundary_t
    use dda_deck, only : geometry_of, has_group, keeps_velocities, source_of

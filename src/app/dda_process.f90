@@ -1,4 +1,4 @@
-!> What the program asks of the operating system
+!> Requests to the operating system
 module dda_process
    use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_intptr_t, c_long, &
       & c_null_char, c_null_funptr, c_short

@@ -1,4 +1,4 @@
-!> The tables of one deck's results: begun, added to case by case, closed
+!> Result tables of one deck: start, rows per case, end
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : is_link, sync_binary
@@ -48,7 +48,7 @@ module dda_result_tables
    !> The places by name
    type(table_enum), parameter :: table = table_enum()
 
-   !> Lines of joints are written when they are together about so long [bytes]
+   !> Size of the buffer for joint rows [bytes]
    integer, parameter :: most_bytes = 65536
 
    !> One table
@@ -78,11 +78,10 @@ module dda_result_tables
       logical :: has_vtu = .false.  !! Whether pictures are wanted as VTU too
    end type result_tables_t
 
-   !> Time between two occasions to bring the tables to the disk, at least and beside the time that
-   !> it takes: on a slow disk no more than a twentieth of a run goes into it
+   !> Least time between two synchronisations, and its ratio to their duration
    integer, parameter :: sync_seconds = 1, sync_ratio = 20
 
-   !> Characters of a header by which a table is known: deck,case of results.csv
+   !> Characters of a header that identify a table
    integer, parameter :: origin_length = 9
 
    !> Columns of results.csv that a swept parameter shares

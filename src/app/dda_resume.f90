@@ -1,4 +1,4 @@
-!> dda run --resume: what an earlier run of the same deck has finished
+!> dda run --resume: finished cases of an earlier run of the same deck
 !>
 !> A case is finished where its row in results.csv is whole, for that row is written last, and where
 !> its rows have the bytes and the check sum that sizes.record tells. Everything else of that run,

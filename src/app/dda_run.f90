@@ -20,7 +20,7 @@ submodule (dda_verbs) dda_run
    use dda_text, only : to_text
    implicit none
 
-   !> Most cases at the same time
+   !> Maximum number of concurrent cases
    integer, parameter :: max_jobs = 256
 
    interface

@@ -1,4 +1,4 @@
-!> The cases of a deck, one after another: prepared, computed, written down
+!> Cases of a deck in sequence: prepare, compute, write
 submodule (dda_verbs:dda_run) dda_run_cases
    use dda_case, only : case_t, prepare_case
    use dda_case_rows, only : tell_case
@@ -14,11 +14,9 @@ submodule (dda_verbs:dda_run) dda_run_cases
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    implicit none
 
-   !> Most cases that a thread takes at a time
+   !> Maximum number of cases per batch
    integer, parameter :: max_batch = 32
-   !> Cases are taken together as long as they take less than this [s]: a wait of one thread for
-   !> another one costs as much as a short case, and what is not yet written is lost if the run is
-   !> killed
+   !> Duration up to which cases form a batch [s]
    real(wp), parameter :: short_batch = 2.0e-3_wp
 
    interface

@@ -1,4 +1,4 @@
-!> What a run was asked for, and who computes it: results with equal records go together
+!> Record of the deck and program of a run; results with equal records belong together
 module dda_run_record
    use dda_build_mark, only : build_mark
    use dda_deck, only : deck_sweep_t, deck_t, parameter_name

@@ -1,5 +1,4 @@
-!> What the user reads: standard output, written like every other file, for Fortran's own unit does
-!> not say when it is full; warnings on standard error, and how far a run is
+!> Standard output with detection of errors, warnings, and progress
 module dda_screen
    use, intrinsic :: iso_fortran_env, only : error_unit, int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, descriptor_of, &
@@ -22,12 +21,12 @@ module dda_screen
       type(binary_file_t) :: file  !! Its file
    end type screen_t
 
-   !> The system's number of standard output, and the last one that has a meaning of its own
+   !> Unit numbers of standard output and standard error
    integer, parameter :: standard_output = 1, standard_error = 2
-   !> Columns of what is no terminal, and of a terminal that does not know how many it has
+   !> Columns of a file, and of a terminal of unknown width
    integer, parameter :: file_width = 100, unknown_width = 80
 
-   !> Width of a line on the screen
+   !> Width of a line
    integer, parameter :: width = 60
    !> Tells of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t

@@ -1,4 +1,4 @@
-!> The verbs of the command: what it does with a file, or with decks
+!> Verbs of the command: actions on a file or on decks
 module dda_verbs
    use dda_command_line, only : command_t
    use dda_error, only : error_t

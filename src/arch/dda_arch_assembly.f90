@@ -1,4 +1,4 @@
-!> Arches as blocks: voussoirs in rings, span by span, on piers, buttresses and fixed springings
+!> Arches as blocks: rings of voussoirs, spans, piers, buttresses and fixed springings
 module dda_arch_assembly
    use dda_arch, only : springing
    use dda_arch_form, only : arch_form_t, form_problem_t
@@ -41,13 +41,13 @@ module dda_arch_assembly
       integer :: n_block = 0, n_vertex = 0, n_top = 0
    end type arch_assembly_t
 
-   !> Material of supports, whose joints may be another law's
+   !> Material number of supports
    integer, parameter :: of_supports = 2
-   !> The friction angle of joints that cannot slide [deg]
+   !> Friction angle of joints without slip [deg]
    real(wp), parameter :: no_slip_deg = 90.0_wp
-   !> Corners nearer than this share of a pier's width are one
+   !> Distance below which corners coincide, over the pier width
    real(wp), parameter :: same = 1.0e-9_wp
-   !> Corners on a line span no more than this share of their coordinates beside its length
+   !> Deviation of corners on a line, over their coordinates
    real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
    interface

@@ -51,9 +51,9 @@ module dda_arch_chain
       real(wp), allocatable :: gyration(:, :)
    end type arch_rays_t
 
-   !> Most that the stiffness of two joints may differ by, as for other springs
+   !> Largest ratio of joint stiffnesses
    real(wp), parameter :: stiffest = 1.0e2_wp
-   !> A block counts as no smaller at a joint than this share of the root of its area
+   !> Least size of a block at a joint, over the root of its area
    real(wp), parameter :: least_size = 0.1_wp
 
 contains

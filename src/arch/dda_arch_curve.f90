@@ -1,4 +1,4 @@
-!> The line that an arch is built on: arcs of ellipses, parabolas and catenaries from left to right
+!> Curves of arches: arcs of ellipses, parabolas and catenaries from left to right
 module dda_arch_curve
    use dda_kinds, only : wp
    use dda_vector, only : cross

@@ -1,4 +1,4 @@
-!> Forms of arches by span and rise, or by radius and angle
+!> Shapes of arches by span and rise, or by radius and angle
 module dda_arch_form
    use dda_arch_curve, only : close_curve, curve_t, piece_form, piece_t
    use dda_kinds, only : degree, pi, wp

@@ -1,4 +1,4 @@
-!> Sections of an arch: where its joints are, and the corners of its chords between them
+!> Sections of an arch: joints, and corners of the chords between them
 submodule (dda_arch_assembly) dda_arch_sections
    use dda_arch_curve, only : curve_length, curve_t, station_at, station_t
    use dda_arch_form, only : form_curve
@@ -6,7 +6,7 @@ submodule (dda_arch_assembly) dda_arch_sections
    use dda_vector, only : cross
    implicit none
 
-   !> Lengths closer than this share of the whole are one
+   !> Difference below which lengths are equal, over the total length
    real(wp), parameter :: same = 1.0e-9_wp
 
 contains

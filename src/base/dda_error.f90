@@ -1,4 +1,4 @@
-!> Failures are values: the last argument of whatever can fail; warnings are values too
+!> Failures as values, the last argument of every procedure that can fail; warnings are values too
 module dda_error
    use dda_text, only : to_text
    implicit none
@@ -29,7 +29,7 @@ module dda_error
       integer :: left_out = 0  !! How many other ones found no place in it
    end type warnings_t
 
-   !> Longest list
+   !> Maximum length of a list in a message
    integer, parameter :: most_items = 50
 
 contains

@@ -1,4 +1,4 @@
-!> Arrays whose room doubles where it must, so that many items cost no more than each of them
+!> Arrays with doubling capacity, so that appending has constant cost
 module dda_growth
    use dda_kinds, only : wp
    implicit none

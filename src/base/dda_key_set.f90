@@ -1,4 +1,4 @@
-!> A set of whole numbers that is asked in the same time however many it holds
+!> A set of whole numbers with lookup in constant time
 module dda_key_set
    use, intrinsic :: iso_fortran_env, only : int64
    implicit none

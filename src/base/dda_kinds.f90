@@ -1,4 +1,4 @@
-!> Working precision of every real number of the program, small integers, and numbers with a name
+!> Working precision of all real numbers, kinds of integers, and named constants
 module dda_kinds
    use, intrinsic :: iso_fortran_env, only : int8, real64
    implicit none
@@ -8,7 +8,7 @@ module dda_kinds
 
    !> IEEE double precision
    integer, parameter :: wp = real64
-   !> Integers that stay small and are many: what joints do
+   !> Kind of small integers, such as contact states
    integer, parameter :: small = int8
 
    !> Half a turn [rad]

@@ -1,4 +1,4 @@
-!> Random numbers of their own: the same seed gives the same numbers on every machine
+!> Reproducible random numbers, equal on every machine
 !>
 !> L'Ecuyer's MRG32k3a (1999): two recurrences of order three, whose products fit into 64 bits.
 module dda_random

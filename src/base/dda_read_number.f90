@@ -3,9 +3,9 @@ submodule (dda_text) dda_read_number
    use, intrinsic :: iso_c_binding, only : c_char, c_double, c_null_char, c_null_ptr, c_ptr
    implicit none
 
-   !> Longest text of a number [characters]
+   !> Maximum length of a number [characters]
    integer, parameter :: longest_number = 400
-   !> Numbers are below this power of ten
+   !> Decimal exponent that numbers stay below
    integer, parameter :: border = 308
 
    interface

@@ -1,4 +1,4 @@
-!> Numbers as people write them
+!> Numbers in the form that people write
 submodule (dda_text) dda_short_text
    implicit none
 

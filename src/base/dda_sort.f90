@@ -1,4 +1,4 @@
-!> The order of many numbers
+!> Sorting of numbers
 module dda_sort
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
@@ -7,7 +7,7 @@ module dda_sort
 
    public :: list_by_owner, place_in, rising_order, sort_numbers, sorted_order
 
-   !> Fewer numbers are sorted without counting their digits
+   !> Size below which numbers are sorted by comparison
    integer, parameter :: few = 128
 
 contains

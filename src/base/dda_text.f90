@@ -1,4 +1,4 @@
-!> Numbers to text, text to numbers, small words on strings, and texts that grow line by line
+!> Numbers to text, text to numbers, string functions, and growing texts
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
@@ -19,11 +19,10 @@ module dda_text
    character(len=11), parameter :: scientific_form(15:17) = &
       & ["(es24.14e3)", "(es24.15e3)", "(es24.16e3)"]
 
-   !> Length that every number has room in
+   !> Length that fits every number
    integer, parameter :: longest = 32
 
-   !> Rounding of what is left of a product of a number and a power of ten, as a share of the 17th
-   !> digit
+   !> Round-off of a product with a power of ten, over the 17th digit
    real(wp), parameter :: rounding = 1.0e-6_wp
 
    interface

@@ -1,4 +1,4 @@
-!> Characters in UTF-8, the one coding of text that the program reads and writes
+!> Characters in UTF-8, the only text encoding that the program reads and writes
 module dda_utf_8
    implicit none
    private

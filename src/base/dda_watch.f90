@@ -1,4 +1,4 @@
-!> Progress of a long task, for someone who watches it
+!> Progress callback of a long task
 module dda_watch
    use dda_kinds, only : wp
    implicit none

@@ -1,5 +1,4 @@
-!> Blocks and joints of a case as rows: corners, how they are held and how they move; forces,
-!> openings and what joints do in the collapse of what falls or would fall next; joints of a picture
+!> Rows of blocks and joints of a case: corners, supports, motion, forces, openings, mechanism
 module dda_block_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t

@@ -1,5 +1,4 @@
-!> The decision of a case: as a chain, stage by stage, or from where an earlier run has ended; what
-!> its pictures show, and the runs that are repeated for them
+!> Decision of a case: as a chain, by stages, or from a restart; and its frames
 submodule (dda_compute_case) dda_case_decision
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain

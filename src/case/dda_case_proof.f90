@@ -1,4 +1,4 @@
-!> What proves the verdict of a case: forces that carry its load, a mechanism on which it has power
+!> Certificate of the verdict of a case: forces that carry its load, or a mechanism
 !>
 !> Both are of limit analysis: forces prove that a load can be carried, a mechanism that it cannot
 !> be under any law of friction. A collapse on the loading path below the associated limit has no
@@ -22,7 +22,7 @@ submodule (dda_compute_case) dda_case_proof
 
    !> Relative gap of the limit of a load factor beside a decision
    real(wp), parameter :: limit_gap = 1.0e-13_wp
-   !> The thrust of an arch of more joints than this is reported only where it is asked for
+   !> Maximum number of joints for a default thrust range
    integer, parameter :: most_thrust_joints = 2001
 
 contains

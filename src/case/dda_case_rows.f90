@@ -1,4 +1,4 @@
-!> A computed case as rows of the result tables
+!> Rows of a computed case in the result tables
 module dda_case_rows
    use dda_block_rows, only : ends_on_path, fallen_contacts, joint_rows, tell_blocks, &
       & tell_mechanism, tell_mechanism_motion, tell_nearest, tell_roles, tell_total_motion
@@ -22,11 +22,11 @@ module dda_case_rows
 
    public :: tell_case, change_remark, fall_remark, joined, jump_remark, path_remark
 
-   !> A bracket whose middle is off by more than this share of its half is lopsided
+   !> Offset of the middle of a bracket, over its half, that causes a remark
    real(wp), parameter :: lopsided = 0.05_wp
-   !> A block moves in a collapse if it goes this share of the way of the one that goes farthest
+   !> Displacement of a moving block over the largest
    real(wp), parameter :: moves = 1.0e-3_wp
-   !> Most blocks that are named
+   !> Maximum number of named blocks
    integer, parameter :: most_named = 5
    !> Words for the verdicts, by their number
    character(len=10), parameter :: verdict_word(0:4) = [character(len=10) :: "undecided", &

@@ -1,4 +1,4 @@
-!> Computing a case: searched or decided, proven, with the scenes that its tables need
+!> Computation of a case: search or decision, certificate, and scenes of its tables
 module dda_compute_case
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_arch_chain, only : arch_rays

@@ -1,5 +1,4 @@
-!> Bars and reactions of a case as rows: of a static one at its end, of a dynamic one in every step;
-!> and its proofs
+!> Rows of bars and reactions of a case, and of its certificates
 module dda_force_rows
    use dda_bar, only : bar_name, bar_state_t
    use dda_bar_joints, only : bar_joint

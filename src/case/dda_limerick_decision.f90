@@ -1,5 +1,4 @@
-!> Shi's scheme in a case: a run as a decision of ours, with its verdict and the joints at its end;
-!> the critical value by a bracket of two runs, halved
+!> Shi's scheme in a case: verdict of a run, and critical value by bisection
 submodule (dda_compute_case) dda_limerick_decision
    use dda_block_system, only : begin_motion, block_system_t
    use dda_contact_types, only : place_joint
@@ -19,9 +18,9 @@ submodule (dda_compute_case) dda_limerick_decision
    use dda_search, only : critical_t, keep_decision, search_t
    implicit none
 
-   !> First step away from the start, over the start; the steps double
+   !> First stride over the start; strides double
    real(wp), parameter :: first_stride = 0.02_wp
-   !> Most runs of a search
+   !> Maximum number of runs of a search
    integer, parameter :: max_runs = 100
 
 contains

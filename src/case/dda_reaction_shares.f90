@@ -1,4 +1,4 @@
-!> Reactions of one block shared among the points that hold it
+!> Distribution of the reactions of one block to its supports
 submodule (dda_force_rows) dda_reaction_shares
    use dda_deformation, only : moved_point
    use dda_outer_loads, only : outer_loads
@@ -9,7 +9,7 @@ submodule (dda_force_rows) dda_reaction_shares
    use dda_vector, only : cross
    implicit none
 
-   !> Columns of which less than this share of the largest is left say nothing new
+   !> Remainder below which a column is dependent, over the largest
    real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains

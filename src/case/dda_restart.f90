@@ -1,4 +1,4 @@
-!> The state of a run as a file, from which it continues to the last bit as if it had not stopped
+!> The state of a run as a file, for a continuation that is equal to the last bit
 !>
 !> The file holds what a run cannot make anew: motions, velocities, stresses, joints with their
 !> forces, and the march; everything else follows from the deck. Each number is checked on reading,
@@ -47,7 +47,7 @@ module dda_restart
       real(wp) :: march(n_march) = 0.0_wp     !! The march: (n_march)
    end type state_t
 
-   !> Larger than any number of a run, and small enough to be squared twice
+   !> Upper limit of all numbers of a run
    real(wp), parameter :: beyond_all = 1.0e60_wp
 
    !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,

@@ -1,5 +1,4 @@
-!> The blocks of a restart file, and what a run carries from step to step; its joints: corners,
-!> edges and states as whole numbers, the rest as numbers
+!> Blocks, contacts and state of a restart file
 submodule (dda_restart) dda_restart_blocks
    use dda_block_system, only : begin_motion
    use dda_block_update, only : displace_blocks
@@ -10,19 +9,19 @@ submodule (dda_restart) dda_restart_blocks
    use dda_step_context, only : energy_t, most_spare_cuts
    implicit none
 
-   !> Larger than any displacement over the size of the model, any rotation and any strain
+   !> Upper limit of displacements over the model size, rotations and strains
    real(wp), parameter :: far = 1.0e12_wp
 
-   !> Longest reach over the width and height of a block: a step moves no corner by half as much
+   !> Longest reach over width and height of a block
    real(wp), parameter :: longest_reach = 20.0_wp
 
-   !> More passes than a run can have
+   !> Upper limit of the number of iterations of a run
    integer, parameter :: most_passes = 1000000000
 
    !> Shortest and longest step [s]
    real(wp), parameter :: shortest = 1.0e-40_wp, longest = 1.0e15_wp
 
-   !> An edge that is left with this share of its length bounds no block
+   !> Least remaining length of an edge over its length
    real(wp), parameter :: least_edge = 1.0e-3_wp
 
 contains

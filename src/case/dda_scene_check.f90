@@ -1,5 +1,4 @@
-!> Checks of a deck that need its scene: whether its modes can run the blocks; stages, widths,
-!> supports and units that the scene contradicts or makes doubtful
+!> Checks of a deck that require its scene: modes, stages, widths, supports, units
 module dda_scene_check
    use dda_block_scene, only : floating_block
    use dda_contacts, only : joint_search_t
@@ -26,7 +25,7 @@ module dda_scene_check
 
    public :: check_lines, check_scene
 
-   !> A block whose weight strains it more than this is doubtful
+   !> Strain under self-weight that causes a warning
    real(wp), parameter :: doubtful_strain = 1.0e-3_wp
 
    interface

@@ -1,5 +1,4 @@
-!> What the cases of a deck begin with: restart files that fit its blocks, and points that live
-!> loads lie on
+!> Checks of restart files and of the points of live loads
 submodule (dda_scene_check) dda_start_check
    use dda_deck, only : deck_error, file_beside, key_error, place_of
    use dda_deck_keys, only : deck_key

@@ -1,4 +1,4 @@
-!> Which of many live loads is carried at the least factor
+!> The load of least factor among many live loads
 !>
 !> The loads lie on arcs along which they are quadratic in a share of the way. A mechanism of one
 !> load says how much power all others have on it, and so which of them is carried at a smaller
@@ -22,9 +22,9 @@ submodule (dda_compute_case) dda_worst_load
 
    !> Relative gap of a limit
    real(wp), parameter :: gap = 1.0e-9_wp
-   !> A factor that is smaller by less than this share is none
+   !> Relative difference of a smaller factor
    real(wp), parameter :: smaller = 1.0e-7_wp
-   !> Loads that differ by less than this share of the largest are one
+   !> Difference below which loads are equal, over the largest
    real(wp), parameter :: same = 1.0e-7_wp
 
 contains

@@ -9,13 +9,13 @@ submodule (dda_compute_case:dda_worst_position) dda_worst_path
    use dda_search, only : critical_t, search_t
    implicit none
 
-   !> Positions of a road to begin with
+   !> Initial number of positions along a road
    integer, parameter :: first_trials = 48
-   !> A path is followed so far beyond the least factor: its last part takes longest
+   !> End of a path over the least factor
    real(wp), parameter :: reach = 1.1_wp
-   !> A factor that is smaller by less than this share is none
+   !> Relative difference of a smaller factor
    real(wp), parameter :: no_smaller = 1.0e-7_wp
-   !> Positions so near, over the size of all, are not parted
+   !> Least distance of positions over the total size
    real(wp), parameter :: nearest = 1.0e-7_wp
 
    !> Positions along a part of the road, from left to right

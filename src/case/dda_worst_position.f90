@@ -24,8 +24,7 @@ submodule (dda_compute_case) dda_worst_position
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
    implicit none
 
-   !> How far beside a passage an axle is on the next block, and how near the least is closed in,
-   !> over the size of all
+   !> Offset of an axle beside a passage, and resolution of the worst position, over the total size
    real(wp), parameter :: beside = 1.0e-10_wp, near = 1.0e-6_wp
 
    !> What the positions have in common

@@ -1,6 +1,4 @@
-!> Edges of different blocks that come near one another: found by a tree of boxes, and remembered
-!> with a margin, so that the tree is built again only when a corner has used its margin up
-!> (L. Verlet, 1967; the fattened boxes of E. Catto's Box2D)
+!> Near edges of different blocks by a tree of boxes with margins (Verlet 1967; Box2D)
 !>
 !> What is remembered is only where to look: whoever asks gets the pairs whose boxes overlap now, in
 !> the same order, whether or not they were remembered.
@@ -25,12 +23,11 @@ module dda_contact_search
    public :: find_edge_pairs, new_joint_search, look_around, law_between, touching_joints
    public :: near_joints
 
-   !> Least and most margin over the size of a block
+   !> Least and largest margin over the block size
    real(wp), parameter :: least = 0.05_wp, most = 0.5_wp
-   !> Margin over the reach, between these two: a block that moves steadily uses up two thirds of
-   !> its reach in a step
+   !> Margin over the reach, so that steady motion rarely rebuilds the tree
    real(wp), parameter :: ahead = 4.0_wp
-   !> Rounding of ways, relative, with room to spare
+   !> Relative round-off of displacements
    real(wp), parameter :: rounding = 1.0e-12_wp
 
 contains

@@ -1,5 +1,4 @@
-!> Contacts persist from step to step (Shi: df06): forces, states, slip and strength pass from the
-!> contacts of the step before to those of the next
+!> Contact transfer between steps (Shi: df06): forces, states, slip and strength
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
@@ -30,7 +29,7 @@ module dda_contact_transfer
       logical :: passed_on = .false.  !! Whether a contact of the next step has taken it over
    end type past_contact_t
 
-   !> An open end takes part in the slip of a joint as far as this share of its length allows
+   !> Share of the joint length within which an open end counts for slip
    real(wp), parameter :: closeness = 1.0e-4_wp
 
 contains

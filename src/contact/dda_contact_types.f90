@@ -1,5 +1,5 @@
-!> Contacts between blocks: a vertex against an edge; contacts of two edges that lie together form
-!> a joint, which has one shear spring
+!> Contacts of a corner against an edge; two contacts of common edges form a joint with one shear
+!> spring
 !>
 !> The springs of the joints as rows of a matrix (Shi: df18, df22)
 !>
@@ -86,13 +86,12 @@ module dda_contact_types
       logical :: give = .false.
    end type joint_springs_t
 
-   !> A tension, or a force, that nothing bounds [N/m]
+   !> Unlimited strength or force [N/m]
    real(wp), parameter :: unbounded = sqrt(huge(1.0_wp))
 
-   !> A block counts as no smaller across a joint than this share of the root of its area
+   !> Least size of a block across a joint, over the root of its area
    real(wp), parameter :: least_size = 0.1_wp
-   !> Most that the stiffness of two joints may differ by: a joint between two slivers is stiff far
-   !> beyond what the blocks around can feel, and would cut the longest step short
+   !> Largest ratio of joint stiffnesses; slivers would shorten the longest step
    real(wp), parameter :: stiffest = 1.0e2_wp
 
 contains

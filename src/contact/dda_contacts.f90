@@ -1,5 +1,4 @@
-!> Contacts of a system, what they carry from step to step, and how they are looked for (Shi: df04
-!> to df07)
+!> Contacts of a system, their state from step to step, and their detection (Shi: df04 to df07)
 module dda_contacts
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : edge_to_edge_joint, joint_place_t, joint_springs_t, joint_t, &

@@ -1,5 +1,5 @@
-!> From two blocks near one another to the joints between them (Shi: df05): edges that lie together,
-!> corners before edges, and corners before corners, for which one edge is the entrance
+!> Joints between two near blocks (Shi: df05): common edges, corners at edges, and corners at
+!> corners by the entrance edge
 module dda_entrance
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_contact_types, only : contact_t, joint_t
@@ -38,7 +38,7 @@ module dda_entrance
       integer(int64), allocatable :: closed(:)
    end type neighbourhood_t
 
-   !> Joints of a piece of a list
+   !> Joints per piece of a list
    integer, parameter :: most_joints = 64
 
    !> A piece of a list
@@ -52,11 +52,11 @@ module dda_entrance
       type(joint_piece_t), allocatable :: piece(:)  !! The joints, all pieces but the last full
    end type joint_list_t
 
-   !> Two edges lie together if their directions differ by no more than this sine
+   !> Sine of the largest angle between edges of a joint
    real(wp), parameter :: parallel = 0.1_wp
-   !> Edges that overlap by less than this share of the shorter one meet at corners only
+   !> Least overlap of two edges, over the shorter one
    real(wp), parameter :: least_overlap = 1.0e-6_wp
-   !> Corners nearer than this share of the shorter edge have met: what was the entrance remains it
+   !> Distance below which corners have met, over the shorter edge
    real(wp), parameter :: met = 1.0e-3_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Joints of blocks as they are drawn, and near misses: edges that almost lie together
+!> Joints of blocks as drawn, and near misses: edges with small gaps
 !>
 !> Corners of drawings are rounded. Edges within the contact tolerance form a joint. A gap that is
 !> little wider is closed by displacements that are small beside the blocks: static runs join such
@@ -26,11 +26,9 @@ module dda_near_miss
       logical :: is_joined = .false.    !! Whether static runs join the blocks
    end type near_miss_t
 
-   !> Multiple of the contact tolerance up to which near misses are joined: corners of both edges
-   !> are rounded, in two directions, and decimal places come in tens
+   !> Largest near miss that is joined, over the contact tolerance
    real(wp), parameter :: joined = 10.0_wp
-   !> Gaps above this share of the smaller block are meant. Within it blocks that move always look
-   !> for contacts
+   !> Largest near miss over the size of the smaller block
    real(wp), parameter :: widest = 1.0e-3_wp
 
 contains

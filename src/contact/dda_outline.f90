@@ -1,5 +1,5 @@
-!> Corners and edges of all blocks by one number each: edge i runs from corner i to the next corner.
-!> Vertices on a straight side are no corners: nothing meets them
+!> Corners and edges of all blocks, numbered: edge i connects corner i with the next one. Vertices
+!> on a straight side are no corners: nothing meets them
 module dda_outline
    use dda_block_system, only : block_system_t
    use dda_kinds, only : wp
@@ -32,9 +32,9 @@ module dda_outline
       logical :: faces = .false.
    end type corner_view_t
 
-   !> Sine of the angle by which the sides of a corner may dip below the edge that it points to
+   !> Sine of the angle by which sides of a corner may dip below an edge
    real(wp), parameter :: dip = 0.05_wp
-   !> A corner bent by less than this sine counts as flat
+   !> Sine of the bend below which a corner is flat
    real(wp), parameter :: flat = 1.0e-9_wp
 
 contains

@@ -1,6 +1,5 @@
-!> Separating axes: two convex blocks are apart as long as an edge of one has the other beyond its
-!> line. That line is the entrance: what must not cross it keeps the blocks apart, whichever corners
-!> meet
+!> Separating axes: an edge of one convex block that has the other block on its outer side. That
+!> line is the entrance: what must not cross it keeps the blocks apart, whichever corners meet
 module dda_parting_line
    use dda_entrance, only : add_single, join_edges, joint_list_t, neighbourhood_t, was_closed
    use dda_key_set, only : key_set_t, new_key_set
@@ -19,8 +18,7 @@ module dda_parting_line
       real(wp) :: time = -huge(1.0_wp)  !! When it crosses the line, in lengths of the travel
    end type line_t
 
-   !> A line that has parted two blocks in touch goes on while no other does better by more than
-   !> this share of the edge
+   !> Advantage below which a separating axis is kept, over the edge
    real(wp), parameter :: lasting = 1.0e-9_wp
 
 contains

@@ -1,5 +1,5 @@
-!> Files written through the C library, which says when a disk is full; Fortran's flush does not.
-!> Whatever fails on the way is reported when the file is flushed or closed
+!> Files written through the C library, which reports a full disk. Whatever fails on the way is
+!> reported when the file is flushed or closed
 module dda_binary_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
       & c_ptr, c_size_t

@@ -1,5 +1,4 @@
-!> Files of the C library: Fortran's open cuts the blanks at the end of a name, and its flush does
-!> not say when a disk is full
+!> Files of the C library: names may end with blanks, and a full disk is reported
 module dda_c_files
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_int64_t, c_intptr_t, c_ptr, c_size_t
    implicit none

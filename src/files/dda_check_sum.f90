@@ -1,4 +1,4 @@
-!> Check sums: the CRC-32 of a text, and the sum of those of its lines
+!> Checksums: the CRC-32 of a text, and the sum over its lines
 !>
 !> The sum does not depend on the order of the lines: the sums of several tables add up to one,
 !> however their lines were written in turns. zlib and Python know CRC-32, so that others can
@@ -10,7 +10,7 @@ module dda_check_sum
 
    public :: add_sums, crc_32, line_sum
 
-   !> Sums are counted modulo 2 to this power
+   !> Bits of a checksum
    integer, parameter :: bits = 32
    !> The polynomial of ISO 3309, the lowest bit first
    integer(int32), parameter :: polynomial = -306674912_int32

@@ -1,4 +1,4 @@
-!> Tokens of a deck and the cursor that walks over its text
+!> Tokens of a deck, and the cursor on its text
 !>
 !> Tokens are places in the text, not copies: groups, keys, values and group ends in their order.
 module dda_deck_token
@@ -10,7 +10,7 @@ module dda_deck_token
    public :: deck_scan_t, token_t, token_kind, token_text, shown
    public :: start, add_token, skip_blanks, word_end
 
-   !> Most tokens of a deck
+   !> Maximum number of tokens in a deck
    integer, parameter :: max_tokens = 2000000
    !> Blanks of a namelist: blank, tab, line feed
    character(len=3), parameter :: blanks = " "//achar(9)//achar(10)

@@ -1,5 +1,4 @@
-!> Tables written line by line, each line safe on its own, and the lines of a table that a run may
-!> have left unfinished
+!> Tables with separately written lines, and detection of unfinished lines
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only : int64
@@ -39,7 +38,7 @@ module dda_table_file
       end function c_rename
    end interface
 
-   !> Bytes read at a time
+   !> Bytes per read
    integer, parameter :: chunk = 65536
 
    !> A table that is read line by line

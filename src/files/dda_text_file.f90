@@ -1,5 +1,4 @@
-!> A text file as one string, whatever its line ends, or a failure with a line; and the mark by
-!> which another one of the same name is known
+!> A text file as one string, or an error with its line; and the checksum of its contents
 module dda_text_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t
@@ -18,7 +17,7 @@ module dda_text_file
 
    !> One megabyte [bytes]
    integer, parameter :: megabyte = 1024**2
-   !> Largest file that is read [bytes]
+   !> Maximum size of a file [bytes]
    integer, parameter :: max_file_size = 512*megabyte
    !> The message about a file of length 0, or a device without a length
    character(len=*), parameter :: no_bytes = "the file is empty; write into it"

@@ -1,5 +1,5 @@
-!> A text as words between blanks, each with its line, taken one after the other. What takes or
-!> checks them does nothing after an error: the first one stays
+!> A text as words separated by blanks, each with its line. What takes or checks them does nothing
+!> after an error: the first one stays
 module dda_word_list
    use dda_deck_token, only : shown
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
@@ -12,9 +12,9 @@ module dda_word_list
    public :: take_property, take_whole, take_word_numbers, largest_coordinate, largest_material
    public :: quoted, check_number, warn_of_rest
 
-   !> Largest coordinate, so that no square overflows
+   !> Largest coordinate, whose square does not overflow
    real(wp), parameter :: largest_coordinate = 1.0e15_wp
-   !> Largest number of a material
+   !> Largest material number
    integer, parameter :: largest_material = 1000000
 
    !> Words of a text, and the one that is taken next

@@ -1,4 +1,4 @@
-!> Analysis files in DDAML, the XML form
+!> Analysis files in DDAML, the XML format
 submodule (dda_read_limerick) dda_ddaml_analysis
    use dda_ddaml_form, only : analysis_form
    use dda_ddaml_material, only : choose, element_error, number_attribute, read_history, &
@@ -8,7 +8,7 @@ submodule (dda_read_limerick) dda_ddaml_analysis
    use dda_xml_tree, only : attribute_of, count_children, find_child
    implicit none
 
-   !> Most steps of that phase where the file does not say it
+   !> Default maximum number of steps of the gravity phase
    integer, parameter :: usual_gravity_steps = 5000
 
 contains

@@ -1,5 +1,4 @@
-!> Which elements a DDAML file has, where they stand and what they hold: nothing else is lost
-!> without a word
+!> Elements of a DDAML file, their places and contents; unknown ones are reported
 module dda_ddaml_form
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_word_list, only : quoted, split_words, this_row, this_word, word_list_t

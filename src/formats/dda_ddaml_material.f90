@@ -1,5 +1,5 @@
-!> Attributes and words of elements of DDAML, and the materials and loads that an analysis file says
-!> by them. What reads them does nothing after an error: the first one stays
+!> Attributes and words of DDAML elements, and the materials and loads of an analysis file. What
+!> reads them does nothing after an error: the first one stays
 module dda_ddaml_material
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
@@ -18,7 +18,7 @@ module dda_ddaml_material
    !> Largest whole number
    integer, parameter :: largest_whole = 1000000000
 
-   !> Weights that differ by less, relatively, are one weight with rounded digits
+   !> Relative difference within which unit weights are equal
    real(wp), parameter :: same_weight = 1.0e-6_wp
 
 contains

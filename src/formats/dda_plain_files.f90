@@ -1,5 +1,4 @@
-!> Geometry and analysis files in the plain form: numbers between blanks, in a fixed order (Shi:
-!> dc01, df02)
+!> Geometry and analysis files in the plain format: numbers in a fixed order (Shi: dc01, df02)
 module dda_plain_files
    use dda_error, only : error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
@@ -18,13 +17,13 @@ module dda_plain_files
    !> Roles of what a file has after its lines, in its order
    integer, parameter :: plain_order(6) = [entity_role%material, entity_role%bolt, &
       & entity_role%fix, entity_role%load, entity_role%measure, entity_role%hole]
-   !> Most things of a kind
+   !> Maximum number of entities of a kind
    integer, parameter :: most_things = 100000000
-   !> Largest magnitude of any number of an analysis
+   !> Largest magnitude of a number in an analysis
    real(wp), parameter :: largest_value = 1.0e30_wp
-   !> Most materials of a kind
+   !> Maximum number of materials of a kind
    integer, parameter :: most_materials = 1000000
-   !> Most steps
+   !> Maximum number of steps
    integer, parameter :: most_steps = 1000000000
 
 contains

@@ -1,5 +1,4 @@
-!> Geometry and analysis files of the Limerick line, plain or in DDAML, the XML form, known by their
-!> first word
+!> Reading of geometry and analysis files of the Limerick format, plain or DDAML
 module dda_read_limerick
    use dda_ddaml_form, only : check_elements, find_part, geometry_form
    use dda_ddaml_material, only : attribute_words, element_words
@@ -37,7 +36,7 @@ module dda_read_limerick
    character(len=*), parameter :: list_name(*) = [character(len=17) :: "Jointlist", &
       & "Matlinelist", "Fixedpointlist", "Loadpointlist", "Measuredpointlist", "Holepointlist", &
       & "Boltlist", "Seismicpointlist"]
-   !> Material of an entity that says none: it has none, it has the first one, or it must say it
+   !> Default material of an entity: none, the first one, or required
    integer, parameter :: no_material = 0, first_material = 1, own_material = -1
 
 contains

@@ -1,4 +1,4 @@
-!> Geometry and analysis files of the Limerick line, plain and DDAML, as texts
+!> Geometry and analysis files of the Limerick format, plain and DDAML, as texts
 module dda_write_limerick
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t

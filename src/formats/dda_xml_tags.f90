@@ -1,5 +1,4 @@
-!> Lines of the tags of an XML text, which libxml2 does not count beyond 65535, and what is refused
-!> before it is parsed
+!> Lines of XML tags, which libxml2 does not count beyond 65535, and checks before parsing
 module dda_xml_tags
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_error, only : error_t, fatal_error
@@ -41,7 +40,7 @@ module dda_xml_tags
 
    !> libxml2 compares each pair of attributes of an element: so many take a second
    real, parameter :: most_pairs = 9.0e8
-   !> libxml2 keeps names in so few lists that more of them take time with their square
+   !> Maximum number of names; libxml2 takes quadratic time for more
    integer, parameter :: most_names = 100000
    !> Two prime numbers that spread the keys of names; their product is no overflow
    integer(int64), parameter :: prime = 2147483647_int64, factor = 1000003_int64

@@ -1,4 +1,4 @@
-!> An XML file as a tree of elements: built tag by tag, then values that need no parser
+!> An XML file as a tree of elements with values
 module dda_xml_tree
    use dda_error, only : error_t
    use dda_xml_tags, only : find_tags, xml_tags_t

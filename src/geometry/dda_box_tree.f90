@@ -1,5 +1,4 @@
-!> Which of many boxes overlap: a balanced tree of boxes; n log n whatever their sizes and wherever
-!> they are
+!> Overlapping boxes by a balanced tree, in n log n for any sizes and positions
 module dda_box_tree
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_growth, only : make_room
@@ -11,7 +10,7 @@ module dda_box_tree
    public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, least_nearby
    public :: least_values, max_levels, new_box_tree, segment_tree
 
-   !> Levels that a tree can have
+   !> Maximum number of levels of a tree
    integer, parameter :: max_levels = 64
 
    !> Node i holds nodes 2 i and 2 i + 1; the leaves are the last n_leaf nodes

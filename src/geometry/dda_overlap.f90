@@ -1,4 +1,4 @@
-!> Whether two polygons overlap by more than rounded coordinates make them
+!> Overlap of two polygons beyond rounded coordinates
 module dda_overlap
    use dda_box_tree, only : box_tree_t, find_boxes
    use dda_kinds, only : wp

@@ -1,4 +1,4 @@
-!> Polygons: what they hold, how deep a point lies inside, where their edges cross
+!> Polygons: contents, depth of a point inside, intersections of edges
 module dda_polygon
    use dda_box_tree, only : box_distance, box_pairs, box_tree_t, find_boxes, max_levels, &
       & new_box_tree
@@ -13,7 +13,7 @@ module dda_polygon
    public :: contains_point, polygon_distance, depth_in, find_crossing, parts_inside
    public :: edge_ends, edge_tree, edges_near, has_tree
 
-   !> A corner whose sides turn by less than this tangent is none
+   !> Tangent of the bend below which a corner is flat
    real(wp), parameter :: flat = 1.0e-9_wp
 
 contains

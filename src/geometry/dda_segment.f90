@@ -1,4 +1,4 @@
-!> Straight segments: distances and where two of them meet (Shi: lns, dist, proj)
+!> Straight segments: distances and intersections (Shi: lns, dist, proj)
 module dda_segment
    use dda_kinds, only : wp
    use dda_vector, only : cross
@@ -7,7 +7,7 @@ module dda_segment
 
    public :: segment_distance, meeting_points, crossing_parameters, overshoot
 
-   !> How far beyond its ends a segment still meets another, over its length
+   !> Overshoot within which segments still meet, over their length
    real(wp), parameter :: overshoot = 1.0e-7_wp
 
 contains

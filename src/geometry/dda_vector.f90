@@ -1,5 +1,4 @@
-!> The small algebra of plane vectors, and areas and moments of polygons by simplex integration
-!> (Shi: area)
+!> Plane vectors, and areas and moments of polygons by simplex integration (Shi: area)
 module dda_vector
    use dda_kinds, only : wp
    implicit none

@@ -1,4 +1,4 @@
-!> The registry: what a deck says of the shape of an arch and of what lies on it
+!> Registry of the keys of arches, fill and ties
 module dda_arch_keys
    use dda_deck_key, only : key_kind, key_t
    use dda_kinds, only : wp

@@ -1,4 +1,4 @@
-!> Bars, water, absorbing faces and stages of a file of blocks
+!> Bars, water, absorbing boundaries and stages of a file of blocks
 submodule (dda_read_blocks:dda_block_points) dda_block_entries
    use dda_bar, only : bar_t
    use dda_boundary, only : absorbing_point_t, stage_change_t
@@ -8,7 +8,7 @@ submodule (dda_read_blocks:dda_block_points) dda_block_entries
    use dda_water, only : water_t
    implicit none
 
-   !> Points nearer than this share of the block's size are one
+   !> Distance below which points coincide, over the block size
    real(wp), parameter :: touching = 1.0e-8_wp
    !> Numbers that are not negative
    real(wp), parameter :: from_zero(2) = [0.0_wp, huge(1.0_wp)]

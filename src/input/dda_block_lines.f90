@@ -1,5 +1,5 @@
-!> Lines of a file of blocks as words, and the words' numbers, of which a record may stand in the
-!> place: WORD ... file 'NAME' [columns T X [Y]] [scale S]
+!> Lines of a file of blocks as words and numbers, or a record: WORD ... file 'NAME' [columns T X
+!> [Y]] [scale S]
 module dda_block_lines
    use dda_deck_key, only : in_range, key_kind, key_t, wanted
    use dda_deck_token, only : shown
@@ -13,9 +13,9 @@ module dda_block_lines
    public :: entry_t, line_t, split_line, take_numbers, take_words, largest_number, keep_entry
    public :: listed, take_record
 
-   !> Longest word of a line [characters]
+   !> Maximum length of a word [characters]
    integer, parameter :: word_size = 32
-   !> Most words of a line
+   !> Maximum number of words per line
    integer, parameter :: max_words = 40
    !> One line as words
    type :: line_t
@@ -36,7 +36,7 @@ module dda_block_lines
       integer :: n_column = 0             !! Numbers of each row
    end type entry_t
 
-   !> Largest magnitude of a number, so that neither its square nor what is made of it overflows
+   !> Largest magnitude of a number, whose square does not overflow
    real(wp), parameter :: largest_number = 1.0e30_wp
 
 contains

@@ -1,5 +1,4 @@
-!> Blocks of a file put together one after the other, and checked: what makes no block is refused by
-!> its number
+!> Assembly and checks of the blocks of a file; errors name the block
 submodule (dda_read_blocks) dda_block_plan_check
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_box_tree, only : find_boxes
@@ -13,16 +12,16 @@ submodule (dda_read_blocks) dda_block_plan_check
    use dda_error, only : add_warning
    implicit none
 
-   !> Corners nearer than this share of a block's extent are one
+   !> Distance below which corners coincide, over the extent of the block
    real(wp), parameter :: same_corner = 1.0e-8_wp
-   !> A block thinner than this share of its extent is none
+   !> Least thickness of a block over its extent
    real(wp), parameter :: too_thin = 1.0e-8_wp
 
-   !> Blocks may overlap by this multiple of the contact tolerance, for corners of both are rounded
+   !> Permitted overlap over the contact tolerance; corners of both blocks are rounded
    real(wp), parameter :: both = 2.0_wp
-   !> Corners rounded to this share of their block's extent are doubtful
+   !> Relative round-off of corners that causes a warning
    real(wp), parameter :: few_digits = 1.0e-9_wp
-   !> Blocks farther from zero than this multiple of their extent get an origin of their own
+   !> Distance from zero over the extent from which blocks have a local origin
    real(wp), parameter :: far_away = 100.0_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Points of a file of blocks, and what acts on them in time
+!> Points of a file of blocks and their actions
 submodule (dda_read_blocks) dda_block_points
    use dda_block_lines, only : take_numbers, take_record
    use dda_block_sites, only : add_held, block_at, close_held, depth_of, rivals_at, rounded
@@ -10,7 +10,7 @@ submodule (dda_read_blocks) dda_block_points
    use dda_error, only : add_warning, place_error
    implicit none
 
-   !> Points nearer than this share of the block's size are one
+   !> Distance below which points coincide, over the block size
    real(wp), parameter :: touching = 1.0e-8_wp
 
    interface

@@ -1,5 +1,4 @@
-!> Where the blocks of a file are, which of them holds a point, and which points hold them: whether
-!> one more is compatible
+!> Positions of the blocks of a file, points inside them, and compatible restraints
 module dda_block_sites
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : held_point_t, history_t, value_at
@@ -16,12 +15,12 @@ module dda_block_sites
    public :: compare_paths, site_t, add_held, block_at, close_held, depth_of, rivals_at, rounded
    public :: survey
 
-   !> Places nearer than this share of the block's size are the same
+   !> Distance below which positions coincide, over the block size
    real(wp), parameter :: same = 1.0e-9_wp
-   !> So many points of a block along a direction, of which three would do, are kept to choose from
+   !> Points per block and direction to select restraints from
    integer, parameter :: enough = 16
 
-   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
+   !> Permitted distance of a point outside its block, over the block size
    real(wp), parameter :: rounded = 1.0e-4_wp
 
    !> Where the blocks are, and the points that have been found on them
@@ -42,7 +41,7 @@ module dda_block_sites
       integer, allocatable :: before(:)
    end type site_t
 
-   !> A block of more corners than this has a tree of its edges
+   !> Corners from which a block has a tree of its edges
    integer, parameter :: few_corners = 32
 
 contains

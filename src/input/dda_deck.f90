@@ -1,5 +1,4 @@
-!> A deck in memory: a value for every key of the registry, and where each one came from; names of
-!> what may be varied, and new values, each checked against the registry first
+!> A deck in memory: a value and its origin for every key, and checked changes of values
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use dda_block_input, only : block_plan_t, new_plan

@@ -1,5 +1,4 @@
-!> Read the files that a deck names (lines, analysis, records of the ground in &ground or in a
-!> sweep), and check what it searches and sweeps, then every case, before anything is computed
+!> Reading of the files of a deck, and checks of its searches, sweeps and cases
 submodule (dda_read_deck) dda_deck_check
    use dda_deck, only : ground_record_t, key_error, parameter_name, place_of
    use dda_deck_check_case, only : check_case

@@ -1,4 +1,4 @@
-!> What the keys of one case must be to one another
+!> Consistency of the keys of one case
 module dda_deck_check_case
    use dda_key_names, only : analysis_damping, analysis_duration, analysis_flow, &
       & analysis_geometry, analysis_mode, analysis_restart, analysis_restitution, &
@@ -21,7 +21,7 @@ module dda_deck_check_case
 
    public :: check_case, check_model, search_bracket
 
-   !> Joints closer than this are one joint [deg]
+   !> Angle below which joints coincide [deg]
    real(wp), parameter :: same_angle = 1.0e-9_wp
 
 contains

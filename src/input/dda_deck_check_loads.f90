@@ -1,5 +1,4 @@
-!> What a deck says of the ground and of what means collapse in time, of live loads, and of the
-!> strength of its blocks
+!> Checks of ground motion, collapse criteria, live loads and strengths
 module dda_deck_check_loads
    use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of, refuse
    use dda_deck_keys, only : deck_key

@@ -1,4 +1,4 @@
-!> What the registry says of a key and of a group, and how that is said in words
+!> Registry entries of keys and groups, and their description
 module dda_deck_key
    use dda_kinds, only : wp
    use dda_text, only : lower_case, short_text, to_text
@@ -9,11 +9,11 @@ module dda_deck_key
    public :: wanted, full_name, near_group, near_key, near_word, has_word, listed_words
    public :: near_one, or_leave_out
 
-   !> Longest name of a key [characters]
+   !> Maximum length of a key name [characters]
    integer, parameter :: name_length = 32
-   !> Longest word of a list of words [characters]
+   !> Maximum length of a word in a list [characters]
    integer, parameter :: word_length = 64
-   !> Most items that a list may have
+   !> Maximum number of items in a list
    integer, parameter :: max_items = 100000
 
    !> What kind of value a key takes
@@ -59,7 +59,7 @@ module dda_deck_key
       character(len=72) :: meaning = ""  !! What the group describes
    end type group_t
 
-   !> Longest word that is compared letter by letter [characters]
+   !> Maximum length of words compared for suggestions [characters]
    integer, parameter :: longest = 40
 
 contains

@@ -1,4 +1,4 @@
-!> The registry: every group and key that a deck may hold
+!> The registry of all groups and keys of a deck
 !>
 !> A new key is one entry here, its name in dda_key_names, and its paragraph in docs/input.md.
 !> Reading, range checks, --set, sweeps, searches and the printed help follow from the entry.

@@ -1,4 +1,4 @@
-!> Namelist text into tokens with line numbers: the grammar of a deck, not its meaning
+!> Namelist text to tokens with line numbers
 module dda_deck_scan
    use dda_error, only : error_t, fatal_error, place_error
    use dda_text, only : to_text, lower_case, read_integer
@@ -10,7 +10,7 @@ module dda_deck_scan
 
    public :: scan_deck, scan_values
 
-   !> Longest text in quotes [characters]
+   !> Maximum length of a quoted text [characters]
    integer, parameter :: max_text = 1000
    !> Characters of a name
    character(len=37), parameter :: name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_"

@@ -1,5 +1,5 @@
-!> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it; and
-!> which of them --cases chooses
+!> Sweeps to cases: the last &sweep varies fastest, linked ones advance together; selection by
+!> --cases
 module dda_deck_sweep
    use dda_deck, only : deck_error, deck_sweep_t, deck_t, find_parameter, key_error, &
       & parameter_name, put_number, put_text
@@ -19,10 +19,10 @@ module dda_deck_sweep
    public :: add_sweep, few_cases, max_sweeps, n_cases, swept_texts, turn_to_case
    public :: choose_cases
 
-   !> Most &sweep groups of a deck
+   !> Maximum number of &sweep groups
    integer, parameter :: max_sweeps = 8
 
-   !> Tables that are written for at most so many cases where the deck does not say
+   !> Number of cases up to which detail tables are written by default
    integer, parameter :: few_cases = 100
 
 contains

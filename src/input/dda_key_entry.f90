@@ -1,4 +1,4 @@
-!> Groups, keys and their values, from the tokens of a namelist file by a registry
+!> Groups, keys and values from the tokens of a namelist file
 module dda_key_entry
    use dda_deck_key, only : full_name, group_t, key_kind, key_t, max_items, near_group, near_key, &
       & or_leave_out, wanted, word_length

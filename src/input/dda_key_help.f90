@@ -1,4 +1,4 @@
-!> The registry of groups and keys as text for people, and as JSON for programs
+!> The registry of groups and keys as help text and as JSON
 module dda_key_help
    use dda_deck_key, only : full_name, group_t, key_kind, key_t, wanted
    use dda_kinds, only : wp

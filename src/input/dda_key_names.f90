@@ -1,4 +1,4 @@
-!> The place of every key and group of the registry, by name: deck%value(arch_radius)
+!> Index of every key and group of the registry, by name: deck%value(arch_radius)
 module dda_key_names
    implicit none
    public

@@ -1,4 +1,4 @@
-!> Values of the keys of a registry: their defaults, and what numbers and texts they take
+!> Values of keys: defaults, numbers and texts
 module dda_key_value
    use dda_deck_key, only : full_name, has_word, in_range, key_kind, key_t, near_word, &
       & or_leave_out, wanted, word_length

@@ -1,5 +1,5 @@
-!> The registry of `dda lines`: every group and key of a map of joints, and the place of each key by
-!> name: group%value(outline_left)
+!> The registry of `dda lines`: keys of a joint map and their index by name:
+!> group%value(outline_left)
 module dda_map_keys
    use dda_deck_key, only : group_t, key_kind, key_t
    use dda_kinds, only : wp

@@ -1,5 +1,5 @@
-!> Which models there are, and what can be searched in them: the one place that says so. Decks are
-!> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
+!> Models, and the parameters that can be searched in them. Decks are checked by it; `dda check`
+!> prints what it says of a deck, `dda help models` all of it
 module dda_model_table
    use dda_deck_key, only : has_word, key_t, listed_words, word_length
    implicit none

@@ -1,4 +1,4 @@
-!> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
+!> Reading of a file of blocks: polygons, materials, points and actions, one per line
 module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
    use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, listed, split_line, &
@@ -33,7 +33,7 @@ module dda_read_blocks
       & entry_kind_t("base_displacement", 3), entry_kind_t("bar", 0), entry_kind_t("water", 2), &
       & entry_kind_t("absorb", 0), entry_kind_t("remove", 2), entry_kind_t("add", 2)]
 
-   !> Lines between two that are reported to the watch
+   !> Lines between two progress reports
    integer, parameter :: told_lines = 10000
 
    !> What has been read of a file

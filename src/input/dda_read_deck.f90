@@ -1,4 +1,4 @@
-!> Read a deck: file, --set values, sweeps, and every check before anything is computed
+!> Reading of a deck: file, --set values, sweeps, and all checks
 module dda_read_deck
    use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside, find_parameter, &
       & follow_joints, has_group, new_deck, parameter_t, put_text, split_name

@@ -1,5 +1,4 @@
-!> Read a map of joints, the deck of `dda lines`: its outline, the surface of the ground, openings,
-!> sets, points
+!> Reading of a joint map, the deck of `dda lines`: outline, ground surface, openings, sets, points
 module dda_read_joint_map
    use dda_error, only : error_t
    use dda_joint_map, only : arched_opening, bolts_t, horseshoe, joint_map_t, joint_set_t, &

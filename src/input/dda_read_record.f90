@@ -1,5 +1,4 @@
-!> Records of motion: files of numbers in columns, separated by semicolons, commas or blanks, below
-!> a header
+!> Records of motion: columns of numbers below a header
 module dda_read_record
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error, place_error
@@ -13,9 +12,9 @@ module dda_read_record
 
    public :: read_record, parse_record, column_size, separator_of, field_of, n_columns
 
-   !> Longest name of a column [characters]
+   !> Maximum length of a column name [characters]
    integer, parameter :: column_size = 80
-   !> Most columns of a record
+   !> Maximum number of columns of a record
    integer, parameter :: most_columns = 10000
    !> Largest magnitude of a number
    real(wp), parameter :: largest = 1.0e30_wp

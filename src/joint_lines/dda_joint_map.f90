@@ -1,4 +1,4 @@
-!> What a map of joints is made of, before lines are drawn: outline, openings, sets, points
+!> Contents of a joint map: outline, openings, sets, points
 !>
 !> Openings have their outlines here: circle and ellipse, arch on walls, horseshoe.
 module dda_joint_map

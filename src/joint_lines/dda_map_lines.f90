@@ -1,4 +1,4 @@
-!> From a map of joints to lines and points for the cut (Shi: DL)
+!> Joint maps to lines and points for dda cut (Shi: DL)
 !>
 !> Of each line those parts are kept that lie in rock: inside the outline, outside the openings.
 module dda_map_lines
@@ -18,9 +18,9 @@ module dda_map_lines
    public :: clip_line, draw_covering_length, draw_length, inner_point, joint_count
    public :: map_lines, outlines_cross, ray_exit, set_traces
 
-   !> Most traces of a map
+   !> Maximum number of traces of a map
    integer, parameter :: most_traces = 1000000
-   !> Parts shorter than this share of the line are none
+   !> Shortest part of a line, over its length
    real(wp), parameter :: least_share = 1.0e-12_wp
 
    interface

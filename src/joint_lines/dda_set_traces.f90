@@ -1,4 +1,4 @@
-!> The traces of a set of joints within a circle about the middle of the outline
+!> Traces of a joint set within a circle about the middle of the outline
 !>
 !> Joints are numbered from the anchor of the set outwards, and each has its own random numbers:
 !> a larger outline has more joints and the same ones where the smaller one was.
@@ -9,9 +9,9 @@ submodule (dda_map_lines) dda_set_traces
 
    !> What of a set has a sequence of numbers of its own
    integer, parameter :: n_kind = 6
-   !> Streams of a set, enough for its joints on both sides
+   !> Random streams per set, enough for both sides
    integer, parameter :: set_streams = 2000003
-   !> Most joints on one side of the anchor
+   !> Maximum number of joints on one side of the anchor
    integer, parameter :: most_joints = 1000000
 
    !> The line of one joint

@@ -1,4 +1,4 @@
-!> The equations of a step: pattern, blocks, contacts, bolts (Shi: df08, df10 to df18)
+!> Equations of a step: pattern, blocks, contacts, bolts (Shi: df08, df10 to df18)
 !>
 !> Bolts follow the original's rule (Shi: df17): linear springs that pull and push, whatever their
 !> strength, along the line between their ends at the beginning of each step.

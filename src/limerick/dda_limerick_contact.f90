@@ -1,5 +1,4 @@
-!> Contacts of Shi's scheme: a vertex against an edge, or two corners with two lines; how
-!> they begin, and what they carry from step to step (Shi: df06, df07)
+!> Contacts of Shi's scheme: initial state and transfer (Shi: df06, df07)
 module dda_limerick_contact
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_blocks_t, limerick_state

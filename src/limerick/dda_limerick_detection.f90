@@ -1,11 +1,10 @@
-!> Contacts by distance and by angle (Shi: df04, df05), from the directions and angles of all
-!> corners (Shi: angl)
+!> Contacts by distance and angle (Shi: df04, df05), and angles of all corners (Shi: angl)
 submodule (dda_limerick_step) dda_limerick_detection
    use dda_kinds, only : degree
    use dda_limerick_contact, only : append_contact, limerick_contact_t
    implicit none
 
-   !> Corners wider than this are concave [deg]
+   !> Angle above which corners are reentrant [deg]
    real(wp), parameter :: straight = 180.0001_wp
 
 contains

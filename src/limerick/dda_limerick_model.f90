@@ -1,5 +1,5 @@
-!> A model in the terms of the original program: polygons, materials, points, and its constants; and
-!> its blocks in a run
+!> A model in the terms of DDA for Windows: polygons, materials, points, constants; and its blocks
+!> in a run
 module dda_limerick_model
    use dda_block_system, only : n_unknown
    use dda_boundary, only : boundary_t, records_before, value_at
@@ -15,7 +15,7 @@ module dda_limerick_model
    public :: limerick_blocks_t, limerick_march_t, limerick_state, limerick_state_enum
    public :: new_blocks, new_march, measure_blocks
 
-   !> Friction angle of a joint that cannot slide [deg]
+   !> Friction angle of a joint without slip [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> What a block is made of, and how it begins

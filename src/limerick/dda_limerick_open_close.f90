@@ -1,4 +1,4 @@
-!> The open-close loop of the original (Shi: df18 to df22)
+!> Open-close iteration of Shi's scheme (Shi: df18 to df22)
 submodule (dda_limerick_step) dda_limerick_open_close
    use dda_block_factor, only : factorise, substitute
    use dda_deformation, only : displacement_matrix
@@ -9,11 +9,11 @@ submodule (dda_limerick_step) dda_limerick_open_close
    use dda_material, only : joint_law_t
    implicit none
 
-   !> Most passes of one attempt
+   !> Maximum number of iterations per attempt
    integer, parameter :: max_passes = 8
-   !> Slip back by less than this share of the half size does not lock a sliding contact
+   !> Reverse slip that keeps a contact sliding, over the half size
    real(wp), parameter :: reversal = 1.0e-7_wp
-   !> Joints of less friction stay sliding when they slip back: tangent of 0.9 degrees
+   !> Friction coefficient (0.9 degrees) below which contacts never lock
    real(wp), parameter :: slippery = 0.0157092553236649_wp
 
 contains

@@ -37,13 +37,13 @@ module dda_limerick_run
       real(wp) :: displacement_before = -huge(1.0_wp)
    end type limerick_outcome_t
 
-   !> Steps over which rest is judged
+   !> Number of steps in which rest is tested
    integer, parameter :: rest_steps = 1000
-   !> Change of the largest displacement in that many steps, over the half size, that counts as rest
+   !> Change of the largest displacement at rest, over the half size
    real(wp), parameter :: rest_share = 1.0e-7_wp
-   !> Friction angle of all joints while gravity is turned on [deg]
+   !> Friction angle in the gravity phase [deg]
    real(wp), parameter :: turning_on_deg = 89.0_wp
-   !> Cohesion of all joints then, in the units of the file, as in the original
+   !> Cohesion in the gravity phase, in units of the file
    real(wp), parameter :: turning_on_cohesion = 1.0e4_wp
 
 contains

@@ -1,5 +1,4 @@
-!> One step of Shi's scheme: its length and the stiffness of its contacts, both chosen by
-!> the last motion, and where it takes the blocks (Shi: df24, df25)
+!> One step of Shi's scheme: length, contact stiffness, and motion (Shi: df24, df25)
 module dda_limerick_step
    use dda_bar_springs, only : elongation_by
    use dda_error, only : error_t, fatal_error
@@ -95,20 +94,20 @@ module dda_limerick_step
 
    end interface
 
-   !> Most attempts at one step: the original has no such bound and may loop forever
+   !> Maximum number of attempts per step
    integer, parameter :: max_attempts = 200
 
-   !> What is left of the time step when contacts did not settle
+   !> Factor of the time step after an attempt without convergence
    real(wp), parameter :: cut = 0.3_wp
-   !> Growth of the time step from one step to the next, at most
+   !> Largest growth of the time step
    real(wp), parameter :: growth = 1.3_wp
-   !> A motion beyond this multiple of what is allowed is tried again
+   !> Motion over the permitted one from which a step is repeated
    real(wp), parameter :: too_far = 3.0_wp
-   !> A penetration beyond this multiple of its aim is tried again with a penalty ten times as large
+   !> Penetration over its target from which a step is repeated with ten times the penalty
    real(wp), parameter :: too_deep = 2.5_wp
-   !> A record of a load that is nearer than this share of the step has been reached
+   !> Distance to the time of a load within which it is reached, over the step
    real(wp), parameter :: short = 1.0e-6_wp
-   !> Least penalty over that of the step before
+   !> Least penalty over the previous one
    real(wp), parameter :: relaxation = 1.0_wp/3.0_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Factor and substitute by blocks: the solver of every step (Shi: df20, df21)
+!> Block factorisation and substitution: the solver of every step (Shi: df20, df21)
 !>
 !>    matrix = L D L',  D diagonal,  the diagonal of L ones;   matrix = L U if it is not symmetric
 !>

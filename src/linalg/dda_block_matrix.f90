@@ -1,6 +1,5 @@
-!> Matrix of small square blocks, coupled both ways: pattern first, numbers second (Shi: df08); and
-!> the tree by which its columns are eliminated (J. W. H. Liu, SIAM Journal on Matrix Analysis and
-!> Applications 11, 1990, 134)
+!> Matrix of small square blocks with symmetric pattern (Shi: df08), and its elimination tree (Liu
+!> 1990)
 module dda_block_matrix
    use dda_block_order, only : narrow_order
    use dda_kinds, only : wp

@@ -1,5 +1,4 @@
-!> Orders in which blocks are eliminated: a narrow one (reverse Cuthill-McKee), by minimum degree,
-!> or by nested dissection
+!> Elimination orders: narrow (reverse Cuthill-McKee), minimum degree, nested dissection
 !>
 !> Nested dissection (A. George, 1973) separates the blocks again and again. The few blocks that
 !> part a group in two are eliminated after both parts. Elimination then costs n**1.5 for n blocks
@@ -12,7 +11,7 @@ module dda_block_order
 
    public :: narrow_order, neighbour_lists, dissected_order, smallest_part, minimum_degree_order
 
-   !> Splitting smaller groups gains nothing
+   !> Size below which groups are not divided
    integer, parameter :: smallest_part = 200
 
    interface

@@ -1,4 +1,4 @@
-!> Which numbers a factor has, and where: columns in panels
+!> Structure of a factor: columns in panels
 !>
 !> A panel is a group of columns that follow one another and have the same rows below: what is
 !> eliminated by it are products of dense matrices. Columns whose rows differ a little share a
@@ -38,12 +38,11 @@ module dda_block_plan
       integer :: most_rows = 0, highest = 0
    end type elimination_plan_t
 
-   !> A matrix that is no wider than this in the narrow order is eliminated in it without a thought:
-   !> no other order does with much less
+   !> Bandwidth up to which the narrow order is used directly
    integer, parameter :: narrow = 3
-   !> Fewer blocks are not dissected
+   !> Number of blocks below which nested dissection is not tried
    integer, parameter :: few = 500
-   !> Most unknowns of a panel: more gain nothing
+   !> Maximum number of unknowns per panel
    integer, parameter :: most_columns = 144
 
 contains

@@ -1,5 +1,4 @@
-!> Factors of a dense panel: a few columns at a time are eliminated inline, and taken from the
-!> others by BLAS
+!> Factors of a dense panel: narrow column groups inline, updates by BLAS
 module dda_front_factor
    use dda_kinds, only : wp
    use dda_lapack, only : dgemm, dlaswp, dtrsm
@@ -8,7 +7,7 @@ module dda_front_factor
 
    public :: factor_front, narrow, take_triple
 
-   !> Columns up to which a call of BLAS takes longer than the work on them
+   !> Columns up to which inline elimination is faster than BLAS
    integer, parameter :: narrow = 12
 
 contains

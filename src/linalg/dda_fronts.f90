@@ -1,4 +1,4 @@
-!> Elimination by panels of a plan, with LAPACK's factors of dense matrices
+!> Elimination by panels with LAPACK factors of dense matrices
 !>
 !> A panel holds w columns in a matrix of w rows on the diagonal and m rows below it. Where the
 !> matrix is not symmetric, w rows with the m columns to the right of the diagonal follow. When its
@@ -14,7 +14,7 @@ module dda_fronts
 
    public :: assemble_fronts, eliminate_fronts, substitute_fronts
 
-   !> Columns of a symmetric product that are found at once: those above the diagonal are in vain
+   !> Columns of a symmetric product per call
    integer, parameter :: many = 48
 
 contains

@@ -1,4 +1,4 @@
-!> An order of the blocks that eliminates next whoever has the fewest neighbours: minimum degree
+!> Elimination order by minimum degree
 !>
 !> Elimination couples all neighbours of a block to one another. They are kept as one group instead
 !> of as pairs (a quotient graph), and how many neighbours a block has is bounded from above by the

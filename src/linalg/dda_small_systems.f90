@@ -1,5 +1,4 @@
-!> Systems of few unknowns: by elimination with the largest pivot of each column, by Cholesky's
-!> method, and least squares of columns that may depend on one another
+!> Small systems: elimination with column pivots, Cholesky's method, rank-revealing least squares
 !>
 !> Written out because cases run in threads: the serial OpenBLAS of Debian and Ubuntu, built without
 !> locks, mixes up the work space of threads that call it at the same time.

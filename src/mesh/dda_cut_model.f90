@@ -1,5 +1,5 @@
-!> Blocks that were cut from lines: polygons, what they are made of, what acts on them, and which
-!> edges lie together; the scales of a cut (Shi: dc02), and what it drops
+!> Blocks cut from lines: polygons, materials, actions, common edges; scales of a cut (Shi: dc02),
+!> and dropped parts
 !>
 !> Edges that lie together in part get corners there, so that they lie together as wholes.
 module dda_cut_model
@@ -14,7 +14,7 @@ module dda_cut_model
    public :: cut_remark_t, cut_remarks_t, cut_reason, cut_reason_enum, add_remark
    public :: cut_scale_t, cut_scale
 
-   !> Joint material of bonds: edges along which a block was cut around others that lie inside it
+   !> Joint material of bonds between pieces of one block
    integer, parameter :: bond_joint = 0
 
    !> Scales of a cut

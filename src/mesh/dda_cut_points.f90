@@ -1,4 +1,4 @@
-!> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
+!> Blocks of points, fixed lines and material lines (Shi: dc10, dc11, dc13)
 submodule (dda_cutting) dda_cut_points
    use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t
    use dda_line_model, only : entity_name
@@ -7,7 +7,7 @@ submodule (dda_cutting) dda_cut_points
    use dda_vector, only : along, area_moments, area_moments_t, right_normal
    implicit none
 
-   !> How far inside its block the point of a fixed line lies, over the size of the model
+   !> Depth of a fixed point inside its block, over the size of the model
    real(wp), parameter :: fixed_depth = 0.005_wp
 
 contains

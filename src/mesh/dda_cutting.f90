@@ -1,4 +1,4 @@
-!> From lines to blocks (Shi: dc)
+!> Lines to blocks (Shi: dc)
 !>
 !> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
 !> dc06).

@@ -1,5 +1,5 @@
-!> Islands: blocks that lie wholly inside another block. That block is cut by vertical lines through
-!> its islands into pieces without holes, which a bond holds together
+!> Islands: blocks inside another block. That block is cut by vertical lines through its islands
+!> into pieces without holes, which a bond holds together
 submodule (dda_cutting) dda_islands
    use dda_cut_model, only : bond_joint
    implicit none

@@ -1,4 +1,4 @@
-!> Lines and points as a geometry file gives them, before they are cut into blocks
+!> Lines and points of a geometry file
 module dda_line_model
    use dda_growth, only : make_room
    use dda_kinds, only : wp

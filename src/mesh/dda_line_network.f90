@@ -1,4 +1,4 @@
-!> Where lines meet, and the network of nodes and edges that they make (Shi: dc04, dc05)
+!> Intersections of lines, and their network of nodes and edges (Shi: dc04, dc05)
 module dda_line_network
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
@@ -15,7 +15,7 @@ module dda_line_network
    public :: crossings_t, find_crossings, add_node, drop_edge, edge_place, join_crossings
    public :: half_edge_start, nearest_node, network_t, new_node_table, node_table_t
 
-   !> Most crossings of a model
+   !> Maximum number of crossings
    integer, parameter :: max_crossings = 30000000
 
    !> Points that two lines have in common, by the numbers of the lines

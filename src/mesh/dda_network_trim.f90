@@ -1,5 +1,5 @@
-!> Edges that bound nothing or stand in the way are taken out of a network (Shi: dc05, dc06). From
-!> loops to blocks: corners on a straight edge go, coincident edges are found (Shi: dc08, dc09)
+!> Removal of edges that bound nothing or disturb a network (Shi: dc05, dc06). From loops to
+!> blocks: corners on a straight edge go, coincident edges are found (Shi: dc08, dc09)
 submodule (dda_cutting) dda_network_trim
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
    use dda_cut_model, only : add_remark, cut_reason, edge_pair_t

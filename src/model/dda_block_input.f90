@@ -1,4 +1,4 @@
-!> Blocks as a user gives them, before materials and laws are known: what makes a scene
+!> Blocks before materials and laws are assigned: the input of a scene
 module dda_block_input
    use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
@@ -9,7 +9,7 @@ module dda_block_input
 
    public :: block_plan_t, material_plan_t, law_plan_t, most_materials, new_plan, unsupported_block
 
-   !> Largest number of a material
+   !> Largest material number
    integer, parameter :: most_materials = 1000
 
    !> What a file says of a material; what it leaves out is that of the deck

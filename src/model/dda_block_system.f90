@@ -1,4 +1,4 @@
-!> The blocks: shape, moments, motion, stress; carried from step to step
+!> Blocks: shape, moments, motion, stress; state from step to step
 module dda_block_system
    use dda_bar, only : bar_state_t
    use dda_kinds, only : wp

@@ -1,4 +1,4 @@
-!> What acts on points of the blocks, and how it changes with time (Shi: df09)
+!> Actions on points of the blocks and their time histories (Shi: df09)
 module dda_boundary
    use dda_bar, only : bar_t
    use dda_kinds, only : wp

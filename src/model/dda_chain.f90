@@ -1,5 +1,4 @@
-!> Rigid blocks in a row between two fixed ones, each touching its two neighbours alone: the form in
-!> which a scene that needs no more is decided
+!> Rigid blocks in a row between two fixed ones: the model of single-ring arches
 module dda_chain
    use dda_kinds, only : wp
    implicit none

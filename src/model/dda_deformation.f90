@@ -1,4 +1,4 @@
-!> From the unknowns of a block to the displacement of its points (Shi: dspl)
+!> Displacement of points from the unknowns of a block (Shi: dspl)
 module dda_deformation
    use dda_kinds, only : wp
    implicit none

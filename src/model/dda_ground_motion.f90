@@ -1,4 +1,4 @@
-!> The acceleration of a ground whose velocity or displacement is given
+!> Ground acceleration from velocity or displacement
 !>
 !> Accelerations are histories, linear between their times. A velocity that is linear between its
 !> times has an acceleration that jumps there; a displacement is smoothed by a cubic spline, whose
@@ -11,7 +11,7 @@ module dda_ground_motion
 
    public :: acceleration_of_record, acceleration_of_velocity, acceleration_of_displacement
 
-   !> Length of a jump over the interval beside it
+   !> Length of a jump over the adjacent interval
    real(wp), parameter :: share = 1.0e-9_wp
 
 contains

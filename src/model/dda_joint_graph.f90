@@ -1,4 +1,4 @@
-!> Joints between blocks as flat arrays on a graph: blocks are its nodes, joints its edges
+!> Joints between blocks as flat arrays on a graph: blocks are nodes, joints are edges
 !>
 !> A joint carries two normal forces N1, N2 at its corners and one shear force T; forces that push
 !> the blocks apart are positive. Its three rows are at once how it opens and slips when the blocks
@@ -65,8 +65,7 @@ module dda_joint_graph
       real(wp), allocatable :: bound(:)
    end type joint_graph_t
 
-   !> Coefficient of friction, that of 89.9 degrees except for rounding, from which on a closed
-   !> joint cannot slide
+   !> Coefficient of friction (89.9 degrees) from which a closed joint does not slide
    real(wp), parameter :: rough = 572.9_wp
 
 contains

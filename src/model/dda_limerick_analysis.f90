@@ -1,4 +1,4 @@
-!> What an analysis file of the Limerick line says: materials, loads, constants of the scheme
+!> Contents of an analysis file of the Limerick format: materials, loads, constants of the scheme
 module dda_limerick_analysis
    use dda_kinds, only : wp
    implicit none

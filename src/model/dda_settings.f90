@@ -1,4 +1,4 @@
-!> Settings of a run, and how it can end
+!> Settings of a run, and its possible ends
 module dda_settings
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_kinds, only : wp
@@ -31,8 +31,7 @@ module dda_settings
    !> Names of the verdicts
    type(verdict_enum), parameter :: verdict = verdict_enum()
 
-   !> Blocks lie together within this share of the smaller one's size, for corners of drawings are
-   !> rounded
+   !> Gap within which blocks touch, over the size of the smaller one
    real(wp), parameter :: contact_tolerance = 1.0e-4_wp
 
    !> Settings of an analysis; never changed while it runs

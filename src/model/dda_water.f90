@@ -1,4 +1,4 @@
-!> Water below a line of heads: its pressure on the edges of blocks
+!> Water below a piezometric line: its pressure on the edges of blocks
 !>
 !> The pressure at a point is the weight of the water up to the line above it; no seepage is
 !> computed. Forces at both ends of an edge stand for it, as they do the same work on any motion
@@ -23,7 +23,7 @@ module dda_water
       integer :: line = 0               !! Line of the file
    end type water_t
 
-   !> Places nearer than this share of the line of heads are one
+   !> Distance below which positions coincide, over the piezometric line
    real(wp), parameter :: touching = 1.0e-12_wp
 
 contains

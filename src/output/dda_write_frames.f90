@@ -1,5 +1,4 @@
-!> Frames of a run as CSV: a row for each corner of each block (frames.csv), a row for each joint
-!> (frame_joints.csv)
+!> Frames of a run as CSV: block corners (frames.csv), joints (frame_joints.csv)
 module dda_write_frames
    use dda_kinds, only : wp
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text

@@ -1,4 +1,4 @@
-!> Results as CSV: headers, and rows of cases, joints, blocks, energy and reactions (Shi: df27)
+!> Results as CSV: headers and rows of cases, joints, blocks, energy and reactions (Shi: df27)
 module dda_write_results
    use dda_kinds, only : wp
    use dda_text, only : add_line, fields, growing_text_t, lines_of, print_number, to_text

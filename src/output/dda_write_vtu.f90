@@ -1,5 +1,4 @@
-!> Grids for ParaView: polygons, single points that carry forces, and blocks that were cut from
-!> lines (as a table too), as VTU with raw binary data appended, in the machine's own byte order
+!> Grids for ParaView: polygons, points with forces, and cut blocks, as VTU with raw binary data
 !>
 !> https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 module dda_write_vtu
@@ -35,7 +34,7 @@ module dda_write_vtu
       character(len=:), allocatable :: bytes       !! The numbers in the machine's own form
    end type field_t
 
-   !> Lines handed to the table at once
+   !> Lines written at once
    integer, parameter :: batch = 100
    character(len=1), parameter :: lf = achar(10)
 

@@ -1,5 +1,4 @@
-!> An arch as lines, points and an analysis in the conventions of the Limerick line: abutments are
-!> blocks with fixed points, joints overshoot the ring a little
+!> An arch as lines, points and an analysis in the Limerick format
 module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
@@ -21,13 +20,13 @@ module dda_arch_lines
 
    public :: arch_lines, arch_analysis, what_is_lost
 
-   !> How far a joint overshoots the ring, over its length
+   !> Overshoot of a joint over its length
    real(wp), parameter :: overshoot = 0.02_wp
-   !> Where the fixed points of an abutment lie, over its sides
+   !> Position of the fixed points of an abutment over its sides
    real(wp), parameter :: inset = 0.15_wp
-   !> Largest edge-node distance ratio that is written
+   !> Largest edge-node distance ratio
    real(wp), parameter :: largest_ratio = 0.01_wp
-   !> The angle that stands for joints that cannot slide [deg]
+   !> Friction angle of joints without slip [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
 contains

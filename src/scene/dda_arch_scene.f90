@@ -1,4 +1,4 @@
-!> From a deck to scenes: the arch that a deck describes, ready to run, and its exact critical value
+!> Scenes of an arch from a deck, and its exact critical value
 module dda_arch_scene
    use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
@@ -28,12 +28,12 @@ module dda_arch_scene
    public :: search_start, arch_resolution, chain_resolution
    public :: joint_law, material_of, set_loads, settings_of, unit_weight
 
-   !> Friction angles from here on mean that no joint slides [deg]
+   !> Friction angle from which no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
-   !> Rotation of a block that means collapse to a search in time by default [rad]
+   !> Default rotation of a collapse in a search in time [rad]
    real(wp), parameter :: overturned = pi/4.0_wp
 
-   !> Steps that a motion may take for each of full length
+   !> Default number of steps per step of full length
    real(wp), parameter :: cut_steps = 20.0_wp
 
 contains

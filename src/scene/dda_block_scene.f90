@@ -1,4 +1,4 @@
-!> From blocks as a user gives them to a scene ready to run; water becomes forces on their corners
+!> A scene from input blocks; water becomes forces on their corners
 module dda_block_scene
    use dda_block_input, only : block_plan_t, unsupported_block
    use dda_block_system, only : forget_rest, new_block_system
@@ -19,9 +19,9 @@ module dda_block_scene
 
    public :: base_t, block_scene, floating_block, lacks_friction
 
-   !> Points nearer to an edge than this share of its length lie on it
+   !> Distance of a point on an edge, over its length
    real(wp), parameter :: touching = 1.0e-8_wp
-   !> Records between two of the file, where the force grows with the square of the level
+   !> Interpolated times between two of the file, for forces quadratic in the level
    integer, parameter :: between = 32
 
    !> What the deck says of all blocks and joints
@@ -36,8 +36,7 @@ module dda_block_scene
       real(wp) :: water_rise = 0.0_wp  !! By how much all lines of heads have risen [m]
    end type base_t
 
-   !> Friction angles count up to this one: a joint that is open must not hold by friction without
-   !> bound [deg]
+   !> Largest friction angle; an open joint must not carry unlimited friction [deg]
    real(wp), parameter :: most_friction_deg = 89.9_wp
 
 contains

@@ -1,5 +1,4 @@
-!> The blocks of a deck, cut from lines or of an arch of any shape, as a file of blocks, with what
-!> acts on points of them
+!> Blocks of a deck as a file of blocks, with the actions on their points
 module dda_block_text
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t

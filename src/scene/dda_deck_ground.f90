@@ -1,4 +1,4 @@
-!> How the ground of a scene moves: a pulse, or a record
+!> Ground motion of a scene: a pulse or a record
 submodule (dda_deck_scene) dda_deck_ground
    use dda_boundary, only : history_t
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
@@ -8,9 +8,9 @@ submodule (dda_deck_scene) dda_deck_ground
    use dda_kinds, only : pi
    implicit none
 
-   !> Points of a period of a sine
+   !> Points per period of a sine
    integer, parameter :: points = 360
-   !> Length of the jump at the end of a pulse, over its duration
+   !> Length of the jump at the end of a pulse over its duration
    real(wp), parameter :: jump = 1.0e-9_wp
 
 contains

@@ -1,4 +1,4 @@
-!> From a deck of any kind to its scene, and to the scenes that differ by one number
+!> The scene of a deck of any kind, and scenes that differ by one number
 module dda_deck_scene
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, set_loads, settings_of, &

@@ -1,5 +1,4 @@
-!> Fill on an arch up to a level surface: its weight, the pressure that the arch can lean against,
-!> how far it spreads axles
+!> Fill on an arch up to a level surface: weight, passive pressure, spread of axle loads
 module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
    use dda_arch_scene, only : unit_weight
@@ -36,11 +35,11 @@ module dda_fill_loads
       real(wp) :: stiffness = 0.0_wp
    end type fill_t
 
-   !> A chord that rises less than this share of its length is not pressed
+   !> Rise over length below which a chord receives no passive pressure
    real(wp), parameter :: level = 1.0e-9_wp
-   !> A load so near to the crown, as a share of the width of the fill, is on no side
+   !> Distance from the crown of a load on neither side, over the width of the fill
    real(wp), parameter :: at_crown = 1.0e-12_wp
-   !> Bars that push as fill does begin so many lengths of the arch away: they stay level
+   !> Length of the bars of passive pressure over the arch, so that they stay level
    real(wp), parameter :: far = 1.0e3_wp
 
 contains

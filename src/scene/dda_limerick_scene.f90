@@ -1,4 +1,4 @@
-!> The model of the original program that a deck or a file of blocks describes, from its scene
+!> The model of Shi's scheme for a deck or a file of blocks
 module dda_limerick_scene
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : boundary_t, held_point_t, measured_point_t
@@ -25,13 +25,12 @@ module dda_limerick_scene
 
    public :: abutment_depth, check_limerick_blocks, limerick_scene, set_constants, widen
 
-   !> Depth of the abutments over the radius: with the overhang as large, an arch of 10 m has the
-   !> half size of 14.9 m that the published results of the original point to
+   !> Default depth of abutments over the radius; half size 14.9 m for a radius of 10 m
    real(wp), parameter :: usual_depth = 0.43_wp
-   !> Motion that means collapse over the radius of an arch, over the half size of anything else
+   !> Default displacement of a collapse over the radius or half size
    real(wp), parameter :: usual_collapse = 0.05_wp
 
-   !> Where the points are that hold a block: this share of the way from its corners to their middle
+   !> Position of restraints from the corners towards the middle of a block
    real(wp), parameter :: inset = 0.3_wp
 
 contains

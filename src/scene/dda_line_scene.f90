@@ -1,4 +1,4 @@
-!> From blocks that were cut from lines to a scene: edges that lie together are joints
+!> A scene from cut blocks: common edges are joints
 module dda_line_scene
    use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_bar, only : bar_t
@@ -23,13 +23,13 @@ module dda_line_scene
    public :: line_scene, check_line_scene, cut_lines, held_blocks, law_of_joint, line_system
    public :: points_of_lines
 
-   !> Friction angles from here on mean that a joint cannot slide [deg]
+   !> Friction angle from which a joint does not slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
-   !> Cohesion and tensile strength of a bond between pieces of one block [Pa]
+   !> Cohesion and tensile strength of bonds between pieces of a block [Pa]
    real(wp), parameter :: bond_strength = 1.0e15_wp
 
-   !> Least stiffness of a bolt, for those of which no file says what they are like
+   !> Least stiffness of a bolt without properties
    real(wp), parameter :: least_stiffness = 1.0e-12_wp
 
 contains

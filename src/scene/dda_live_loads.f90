@@ -1,4 +1,4 @@
-!> Live loads that a deck names, on the blocks of its scene
+!> Live loads of a deck on the blocks of its scene
 module dda_live_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
@@ -19,7 +19,7 @@ module dda_live_loads
 
    public :: add_live_loads, bears_live, check_live_points
 
-   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
+   !> Permitted distance of a point outside its block, over the block size
    real(wp), parameter :: rounded = 1.0e-4_wp
 
 contains

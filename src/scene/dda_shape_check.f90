@@ -1,5 +1,4 @@
-!> Whether the arches of a deck can be made, and run as it asks; their ties, bars between two points
-!> of their blocks
+!> Checks of arches of any shape and of their ties
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t

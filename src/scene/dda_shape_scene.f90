@@ -1,4 +1,4 @@
-!> Arches of any shape from a deck: the form that its keys make, the blocks, what acts on them
+!> Arches of any shape from a deck: shape, blocks, actions
 module dda_shape_scene
    use dda_arch_assembly, only : arch_assembly_t, assemble_arch
    use dda_arch_form, only : arch_form_t, form_problem_t
@@ -20,7 +20,7 @@ module dda_shape_scene
 
    public :: add_loads, add_lune_weights, find_crown_joint, shape_assembly, shape_form
 
-   !> Skewbacks of a flat arch lean so much where the deck does not say [deg]
+   !> Default angle of the skewbacks of a flat arch [deg]
    real(wp), parameter :: usual_skewback_deg = 30.0_wp
 
 contains

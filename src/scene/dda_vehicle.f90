@@ -1,4 +1,4 @@
-!> Axles of a vehicle on the upper faces of the blocks of a scene
+!> Axles of a vehicle on the upper faces of the blocks
 module dda_vehicle
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
@@ -36,9 +36,9 @@ module dda_vehicle
       real(wp) :: size = 0.0_wp      !! Size of all blocks [m]
    end type road_t
 
-   !> A corner no lower than the upper face by this share of the size of all is on it
+   !> Height below the upper face within which a corner is on it, over the total size
    real(wp), parameter :: on_top = 1.0e-9_wp
-   !> Farther from all corners than any axle is spread, over the size of all
+   !> Position beyond all corners and loaded lengths, over the total size
    real(wp), parameter :: beyond_all = 1.0e6_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Critical value of a parameter: a bracket of two decisions, one collapsed and one stable
+!> Critical value of a parameter: a bracket of a collapsed and a stable decision
 !>
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
@@ -17,16 +17,16 @@ module dda_bracket
 
    public :: close_bracket, decide_at, middle
 
-   !> Most decisions of a search
+   !> Maximum number of decisions of a search
    integer, parameter :: max_decisions = 100
-   !> Most values tried on the way from the start to the first collapse
+   !> Maximum number of values before the first collapse
    integer, parameter :: max_descent = 8
-   !> Most undecided values in a row on the way to a decided one
+   !> Maximum number of consecutive undecided values
    integer, parameter :: max_undecided = 6
 
-   !> Decisions that a proposal gets to lead to another collapse before the bracket is halved
+   !> Decisions of a proposal before the bracket is halved
    integer, parameter :: patience = 3
-   !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
+   !> Largest relative bracket of a result, unless the tolerance is larger
    real(wp), parameter :: widest = 1.0e-4_wp
 
    interface

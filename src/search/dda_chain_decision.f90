@@ -1,5 +1,4 @@
-!> Whether a chain is stable: joint forces within their cones that balance the loads prove that it
-!> is, a mechanism on which the loads do work that it is not; and a half model as the whole
+!> Verdict of a chain by a certificate of forces or a mechanism; half models as whole ones
 module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, cone_of, holds, influence, rounding_of_forces
@@ -15,9 +14,9 @@ module dda_chain_decision
 
    public :: decide_chain, doubtful, unfold
 
-   !> Forces beyond the cones by less than so many times their rounding prove nothing
+   !> Violation over its round-off below which nothing is proven
    real(wp), parameter :: doubtful = 4.0_wp
-   !> Joints that fail as much as their neighbours except for this share do so by rounding
+   !> Relative difference within which failing joints are equal
    real(wp), parameter :: tie = 1.0e-6_wp
 
 contains

@@ -1,5 +1,5 @@
-!> Critical value of a parameter: of runs in time, of a load coefficient, or of anything else, where
-!> what lies between two ends that agree is looked through, too
+!> Critical value of a parameter: in time, of a load coefficient, or in general, and between equal
+!> ends
 module dda_critical
    use dda_bracket, only : close_bracket, decide_at, middle
    use dda_chain_decision, only : unfold
@@ -19,7 +19,7 @@ module dda_critical
    !> Values between two ends, as shares of what is left, that may rule out nothing before the ends
    !> are held to agree
    real(wp), parameter :: share(7) = [4, 2, 6, 1, 3, 5, 7]/8.0_wp
-   !> Part of the range in which nothing is looked for any more
+   !> Share of the range below which the search between equal ends stops
    real(wp), parameter :: narrow = 1.0e-6_wp
 
    interface

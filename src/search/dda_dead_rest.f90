@@ -1,4 +1,4 @@
-!> Rest under the dead loads where the loading path falls before it has begun
+!> Rest under the dead loads without a loading path
 !>
 !> Forces that balance the dead loads may exist and yet be out of reach for joints that are loaded
 !> from nothing: blocks that nothing presses fall between their neighbours, and where friction is

@@ -1,4 +1,4 @@
-!> The ways to a decision: by the joint graph, by steps to rest or collapse, or in time
+!> Decisions by the joint graph, by steps to rest or collapse, or in time
 submodule (dda_decision) dda_decide
    use dda_block_system, only : begin_motion
    use dda_boundary, only : held_at_start
@@ -17,10 +17,10 @@ submodule (dda_decision) dda_decide
    use dda_verdict, only : outcome_t
    implicit none
 
-   !> Steps that the static beginning of a dynamic run may take, at the least
+   !> Least maximum number of steps of a static start
    integer, parameter :: least_static_steps = 400
 
-   !> A joint slides against friction if its force is more than this share of the largest
+   !> Least force of a sliding joint over the largest
    real(wp), parameter :: felt = 1.0e-9_wp
 
 contains

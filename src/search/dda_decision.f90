@@ -1,4 +1,4 @@
-!> Whether a structure is stable under Coulomb friction: the decision that searches are made of
+!> Stability of a structure under Coulomb friction: the decision of searches
 !>
 !> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
 !> every flow rule. What stands there without sliding stands. What slides before it comes to rest is

@@ -1,5 +1,5 @@
-!> A load coefficient as something that grows on the loading path: its value, the scene with another
-!> value of it, and its value where a path has ended
+!> A load coefficient on the loading path: its value, scenes with other values, and its value at
+!> the end
 !>
 !> It is measured from where it does nothing: the horizontal coefficient or the load factor itself,
 !> or the angle of gravity from upright.
@@ -20,7 +20,7 @@ module dda_load_coefficient
    public :: is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end
    public :: with_coefficient
 
-   !> A coefficient beside which rounding of the constant loads is not felt
+   !> Coefficient beside which round-off of constant loads is negligible
    real(wp), parameter :: many = 2.0_wp**40
 
 contains

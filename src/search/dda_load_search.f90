@@ -1,5 +1,5 @@
-!> Critical value of a load coefficient: the first collapse on the loading path, with the associated
-!> limit beside it. The coefficient comes last on the path, so one path finds its critical value
+!> Critical value of a load coefficient: the first collapse on the loading path, and the associated
+!> limit. The coefficient comes last on the path, so one path finds its critical value
 submodule (dda_critical) dda_load_search
    use dda_dead_rest, only : follow_from_rest
    use dda_decision, only : record_collapse, record_rest
@@ -29,11 +29,11 @@ submodule (dda_critical) dda_load_search
       type(graph_verdict_t) :: proof      !! How it falls, or stands at the end of the range
    end type side_t
 
-   !> Share by which a limit is surpassed to see how the blocks move, or to find it
+   !> Relative excess over a limit for its mechanism
    real(wp), parameter :: nudge = 1.0e-2_wp
    !> Relative accuracy of a loading path
    real(wp), parameter :: path_resolution = 1.0e-9_wp
-   !> Least relative gap of the two proofs of a limit
+   !> Least relative gap of both bounds of a limit
    real(wp), parameter :: least_gap = 1.0e-13_wp
 
 contains

@@ -43,14 +43,13 @@ module dda_mechanism
       character(len=8) :: springing = ""
    end type mechanism_t
 
-   !> An opening below this share of the largest opening or slip is elastic
+   !> Opening below which it is elastic, over the largest opening or slip
    real(wp), parameter :: elastic_share = 1.0e-4_wp
-   !> A slip below this share of the largest displacement is rounding
+   !> Slip below which it is round-off, over the largest displacement
    real(wp), parameter :: least_slip = 1.0e-6_wp
-   !> Sliding shares below this one count as none, and those above its complement as all
+   !> Sliding share below which the mode is rotation; above its complement, sliding
    real(wp), parameter :: little = 1.0e-3_wp
-   !> Most blocks of an assembly whose collapse is followed under Coulomb friction by steps where
-   !> the joint graph has proven it: of larger ones steps take minutes, and only for a picture
+   !> Maximum number of blocks whose collapse is followed by steps under Coulomb friction
    integer, parameter :: most_followed = 300
 
 contains

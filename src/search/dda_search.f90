@@ -1,4 +1,4 @@
-!> What a search looks for, and what it has found
+!> Input and result of a search
 module dda_search
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t

@@ -1,4 +1,4 @@
-!> Stages: blocks that are built or taken away while the others stand or move
+!> Stages: blocks built or removed while others are stable or move
 !>
 !> A static run follows the loading path from stage to stage. What a block that is taken away has
 !> carried is a load on its neighbours at first, which then goes to nothing; a block that is built
@@ -18,8 +18,7 @@ submodule (dda_decision) dda_stages
    use dda_verdict, only : outcome_t
    implicit none
 
-   !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it
-   !> presses with more than this share of the largest force
+   !> Least slip over the largest motion, and least force over the largest, of a joint that slid
    real(wp), parameter :: slip_share = 1.0e-9_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Critical value of a parameter of dynamic runs: two neighbours of which one stands, halved
+!> Critical value of a parameter of dynamic runs, by bisection
 !>
 !> What falls in time need not fall for all that is more, so values on both sides are run too. The
 !> critical value is the first change from the end that stands, or from the low end where both ends
@@ -7,7 +7,7 @@ submodule (dda_critical) dda_time_search
    use dda_bracket, only : decide_at
    implicit none
 
-   !> Most runs of a search
+   !> Maximum number of runs of a search
    integer, parameter :: max_runs = 200
    !> Where else two neighbours are parted, if their middle is undecided
    real(wp), parameter :: share(6) = [0.5_wp, 0.4_wp, 0.6_wp, 0.25_wp, 0.75_wp, 0.1_wp]
@@ -15,7 +15,7 @@ submodule (dda_critical) dda_time_search
    real(wp), parameter :: probe(4) = [0.02_wp, 0.1_wp, 0.3_wp, 0.65_wp]
    !> Values that are run between two ends that agree
    integer, parameter :: n_between = 7
-   !> Neighbours that undecided runs keep apart are an answer up to this width over their value
+   !> Largest relative distance of neighbours separated by undecided runs
    real(wp), parameter :: widest = 1.0e-3_wp
 
    !> What has been run

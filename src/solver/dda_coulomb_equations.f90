@@ -1,5 +1,5 @@
-!> Equations of a motion whose joints keep what they do, with damping:
-!> (A (S + viscosity*K) A' + damping*mass) v = load, K: joints as stiff as if closed and stuck
+!> Damped equations of a motion with fixed joint states: (A (S + viscosity*K) A' + damping*mass) v
+!> = load
 !>
 !> One factor serves many sets of faces. Where the stiffness of joints differs by D from that in the
 !> factor, and U are the answers of the blocks to unit forces at these joints,
@@ -24,15 +24,14 @@ module dda_coulomb_equations
 
    public :: coulomb_equations_t, new_coulomb_equations, path_damping, solve_equations, use_faces
 
-   !> Answers that are kept: more cost as much as a new factor
+   !> Maximum number of stored unit responses; more cost a new factor
    integer, parameter :: max_answer = 32
-   !> Of many blocks fewer are, so that they take no more numbers than this
+   !> Maximum number of stored values of unit responses
    integer, parameter :: most_numbers = 40000
-   !> Answers that are kept of any number of blocks
+   !> Least number of stored unit responses
    integer, parameter :: least_answers = 7
 
-   !> Damping by unit mass and unit compliance: at rest it takes a part of 1e-9 of the load, of soft
-   !> assemblies more, in motion nearly all; results are the same from 1e-12 to 1e-9
+   !> Damping of rates, in unit mass and compliance; results are equal from 1e-12 to 1e-9
    real(wp), parameter :: path_damping = 1.0e-10_wp
 
    !> A factor, and what has changed since
@@ -84,7 +83,7 @@ module dda_coulomb_equations
       real(wp) :: stiffest = 0.0_wp
    end type coulomb_equations_t
 
-   !> Answers that are worth their cost at once
+   !> Maximum number of new unit responses per update
    integer, parameter :: max_new = 16
 
 contains

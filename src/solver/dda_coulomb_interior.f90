@@ -1,5 +1,4 @@
-!> Coulomb's law by interior springs: the forces and the motion of an assembly under a load that is
-!> applied at once
+!> Coulomb's law by an interior-point method: forces and motion under a sudden load
 !>
 !>    A f + load = damping*mass*v,   C f + gap + A'v = F_flow' z,   s = F f >= 0, z >= 0, s z = 0
 !>
@@ -23,8 +22,7 @@ module dda_coulomb_interior
 
    public :: coulomb_interior_t, interior_motion, enough, sharp
 
-   !> What may be left of the equations and of the work of the load: motions that are no better
-   !> are none, those that are so good cannot be bettered
+   !> Accepted and best residual of equations and work
    real(wp), parameter :: enough = 1.0e-6_wp, sharp = 1.0e-10_wp
 
    !> An iterate, or a step from it

@@ -1,5 +1,4 @@
-!> Joints of an assembly as a loading path works on them: in units of their own, with what each of
-!> their parts can do
+!> Joints on a loading path: scaled units and possible states
 !>
 !> In these units the mean weight of a block, the mean compliance of a joint, half the mean length
 !> of a joint and the mean mass of a block are 1, so that every threshold of a path is a plain
@@ -46,7 +45,7 @@ module dda_coulomb_joints
       logical :: has_weight = .false.         !! Whether a load has chosen the unit of force
    end type coulomb_joints_t
 
-   !> Strength below this part of a block's weight is none
+   !> Least strength over the weight of a block
    real(wp), parameter :: faint = 1.0e-8_wp
 
 contains

@@ -1,4 +1,4 @@
-!> The matrix A S A' + damping*mass of joints with any stiffness S, and its factor
+!> The matrix A S A' + damping*mass for any joint stiffness S, and its factor
 module dda_coulomb_matrix
    use dda_block_factor, only : block_factor_t, factorise
    use dda_block_matrix, only : block_matrix_t

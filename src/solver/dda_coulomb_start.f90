@@ -1,4 +1,4 @@
-!> State of an assembly under a load that is applied at once
+!> State of an assembly under a sudden load
 !>
 !> Coulomb's law knows no unit of force: a load that grows in proportion from nothing makes every
 !> force and every motion grow in proportion, so that all at once is a loading path, too. Interior
@@ -13,11 +13,11 @@ submodule (dda_loading_path) dda_coulomb_start
    use dda_load_jump, only : jump_to_balance
    implicit none
 
-   !> What may be left of a load, by the weight of a block
+   !> Residual of equilibrium over the weight of a block
    real(wp), parameter :: balance = 1.0e-10_wp
-   !> Damping of blocks at rest may take such a share of their load, not more
+   !> Largest share of the load that damping may take at rest
    real(wp), parameter :: unseen = 1.0e-5_wp
-   !> Less damping is lost in rounding
+   !> Least damping above round-off
    real(wp), parameter :: least_damping = 1.1e-14_wp
 
 contains

@@ -1,4 +1,4 @@
-!> How an assembly responds to a load that grows: rates of motion and forces at a state
+!> Rates of motion and forces of an assembly under a growing load
 !>
 !> Most faces are given: a corner that pushes stays closed, one with a gap stays open, a joint
 !> within Coulomb's limit sticks. What is left, the weak faces, must agree with the rates: an
@@ -62,16 +62,13 @@ module dda_event_rates
       real(wp) :: unbalanced = 0.0_wp
    end type rates_t
 
-   !> A force below this part of a block's weight is none, a gap that it would close is none
+   !> Least force over the weight of a block, and least gap that it closes
    real(wp), parameter :: weak_force = 1.0e-9_wp
-   !> Share of the largest rate of opening, or of one, that is rounding, and of the largest rate of
-   !> motion: in long rows most joints are beyond the reach of what acts at the ends
+   !> Round-off over the largest opening rate, and over the largest motion rate
    real(wp), parameter :: rounding = 1.0e-11_wp, lost = 1.0e-14_wp
-   !> Passes that change all wrong faces at once, and faces that are few: if no more are wrong after
-   !> so many passes, pivots look for what they are to do. More go on changing at once, as in long
-   !> rows, where what happens at the ends is handed on from joint to joint
+   !> Iterations with simultaneous changes, and number of wrong states from which pivots take over
    integer, parameter :: few_passes = 6, few_wrong = 16
-   !> Passes at most
+   !> Maximum number of iterations
    integer, parameter :: most_passes = 100
 
    interface

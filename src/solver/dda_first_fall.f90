@@ -1,4 +1,4 @@
-!> How an assembly that cannot carry its load begins to fall
+!> First motion of an assembly that cannot carry its load
 !>
 !> Of all accelerations that the joints allow, the true ones are nearest to those of free fall, in
 !> the measure of the masses (Gauss). The interior-point method of limit analysis finds them, with
@@ -27,13 +27,13 @@ module dda_first_fall
 
    public :: find_coulomb_fall, find_first_motion
 
-   !> Forces below this share of the largest are none, joints as near to their limit are at it
+   !> Force below which a joint is unloaded or at its limit, over the largest
    real(wp), parameter :: nothing = 1.0e-6_wp
 
-   !> What may be left of equations and products, and what is aimed at
+   !> Accepted and aimed residual of equations and products
    real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-11_wp
 
-   !> What a unit of force closes a ray by, in units of the largest mass and of the largest load
+   !> Compliance of a ray, in units of the largest mass and load
    real(wp), parameter :: compliance = 1.0e-18_wp
 
 contains

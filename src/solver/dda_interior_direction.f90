@@ -1,4 +1,4 @@
-!> Directions of the interior-point method: springs, and corrections of what directions leave
+!> Directions of the interior-point method: barrier stiffness and corrections
 !>
 !> Corrections of the balance are added to the directions of x, v and the factor one by one, which
 !> keeps the balance when the springs spread over many decades. Free rays have springs of a

@@ -1,5 +1,5 @@
-!> Largest load factor that joints can carry, or how a load moves masses between them, by a
-!> primal-dual interior-point method
+!> Largest load factor of the joints, or motion of masses under a load, by a primal-dual
+!> interior-point method
 !>
 !>    largest f with  A x + f live + dead = 0,  x >= 0      A: arms of the rays, x: their forces
 !>    least -dead.v with  s = A'v >= 0,  live.v = 1         v: velocities of a mechanism
@@ -23,16 +23,15 @@ module dda_interior_point
 
    public :: start_by_forces, start_by_springs, worst, solve_cones
 
-   !> Turns without progress before the iteration ends
+   !> Iterations without progress before termination
    integer, parameter :: patience = 8
-   !> Share of a target by which a factor must grow to be progress
+   !> Least progress of a factor over its target
    real(wp), parameter :: headway = 0.01_wp
-   !> Least force and rate that an iteration begins with
+   !> Least initial force and rate
    real(wp), parameter :: inside = 1.0e-6_wp
-   !> Imbalance and violation of forces and velocities that prove something
+   !> Residual of forces and velocities in a certificate
    real(wp), parameter :: certain = 1.0e-12_wp
-   !> Gap of two proofs that rounding keeps from coming nearer: where forces hold one another that
-   !> are large beside the loads
+   !> Gap that round-off leaves between both bounds
    real(wp), parameter :: near = 1.0e-9_wp
 
 contains

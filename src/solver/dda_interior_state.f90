@@ -10,10 +10,10 @@ module dda_interior_state
    public :: no_limit, load_path_t, interior_point_t, interior_goal_t, interior_state
    public :: set_path, size_of_load
 
-   !> A factor beyond all others
+   !> Factor without limit
    real(wp), parameter :: no_limit = 1.0e200_wp
 
-   !> Share of a dead load that counts as none beside it
+   !> Least dead load relative to the live load
    real(wp), parameter :: nothing = 1.0e-14_wp
 
    !> How the iteration has ended

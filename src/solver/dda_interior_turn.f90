@@ -1,4 +1,4 @@
-!> One turn of the interior-point method: springs, predictor, corrector
+!> One iteration of the interior-point method: barrier stiffness, predictor, corrector
 !>
 !> Equation (M6) of docs/method.md
 module dda_interior_turn
@@ -16,23 +16,22 @@ module dda_interior_turn
    public :: lift
    public :: begin_turns, see_residuals, predict, correct, move
 
-   !> Share by which diagonal entries are raised
+   !> Relative shift of diagonal entries
    real(wp), parameter :: lift = 1.0e-14_wp
-   !> Stiffness of free rays over that of the others in the mean
+   !> Stiffness of free rays over the mean of the others
    real(wp), parameter :: stiffness_of_free = 1.0e8_wp
-   !> Share of the way to the border of the cones
+   !> Step over the distance to the boundary of the cones
    real(wp), parameter :: share_of_way = 0.995_wp
-   !> Corrections of centrality in a turn, how much longer each tries to make the steps, and what is
-   !> long enough
+   !> Maximum number of centrality corrections, their step increase, and a sufficient step
    integer, parameter :: max_centring = 3
    real(wp), parameter :: longer = 0.3_wp, long_enough = 0.9_wp
-   !> Steps that grow by less, both together, are not worth a further correction
+   !> Least increase of both steps for a further correction
    real(wp), parameter :: worthwhile = 0.03_wp
-   !> After steps shorter than this all products are drawn towards half their mean
+   !> Step below which all products move to half their mean
    real(wp), parameter :: short = 0.1_wp, half = 0.5_wp
    !> Parts of a correction that are tried
    integer, parameter :: n_share = 10
-   !> Products beyond these multiples of the one aimed at are corrected
+   !> Range of products, over their target, without correction
    real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
 
    !> What the products x*s at the end of a step are led to

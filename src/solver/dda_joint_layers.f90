@@ -1,4 +1,4 @@
-!> Joints that crush, as joints in layers that do not
+!> Crushing joints as layers of joints
 !>
 !> A joint whose strength is S carries a normal force N within a strip of the share N/S of its
 !> length: N**2/(2 S) <= N1 and N2. The edges of that are parabolas, and forces below a tangent of
@@ -27,10 +27,10 @@ module dda_joint_layers
       real(wp), allocatable :: share(:)
    end type joint_layers_t
 
-   !> Two tangents of a joint that touch nearer than this are one
+   !> Distance below which two tangents of a joint coincide
    real(wp), parameter :: same = 1.0e-10_wp
 
-   !> Compliance of a layer over that of its joint, and mass of its plate over the mean of blocks
+   !> Compliance of a layer over that of its joint, and mass of its plate over the mean
    real(wp), parameter :: stiff_share = 1.0e-3_wp, plate_mass = 1.0e-3_wp
 
 contains

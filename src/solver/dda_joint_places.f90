@@ -1,4 +1,4 @@
-!> The matrix that couples the blocks of the joints of a graph, and where each joint stands in it
+!> The matrix that couples the blocks of a joint graph, and the position of each joint in it
 module dda_joint_places
    use dda_block_factor, only : block_factor_t, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern

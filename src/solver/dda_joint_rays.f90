@@ -1,4 +1,4 @@
-!> What joints can carry as sums of rays: the columns of a linear programme
+!> Admissible joint forces as sums of rays: columns of a linear program
 !>
 !> The forces of a joint are sums of up to four rays with factors that are not negative; kinds that
 !> carry a force of either sign have free rays. Rays of one joint stand side by side, empty ones

@@ -1,4 +1,4 @@
-!> What forces and velocities prove, from these and the graph alone
+!> Certificates from forces and velocities of a graph
 !>
 !> Forces that balance a load and keep the law of every joint prove that it can be carried;
 !> velocities that no joint resists, on which the load has power, that it cannot. Moments are
@@ -15,8 +15,7 @@ module dda_limit_certificate
    public :: check_forces, check_velocities, carried_factor, stopping_factor
    public :: balance_margin, crushing_power, flow_margin
 
-   !> Fibres that close at less than this share of the fastest rate do so by rounding, which great
-   !> strengths must not multiply
+   !> Closing rate of fibres below which it is round-off, over the fastest rate
    real(wp), parameter :: still = 1.0e-12_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Whether an assembly can carry a load: forces that do, or a mechanism on which the load has power
+!> Decision of a load: forces that carry it, or a mechanism with power
 !>
 !> Forces well inside the cones of all joints carry some load. From that load a straight path leads
 !> to the one in question: it can be carried if and only if the path's largest factor is one or
@@ -55,19 +55,18 @@ module dda_limit_decision
       integer :: n_factorisation = 0
    end type load_decision_t
 
-   !> Rates below this share of the largest velocity are rounding
+   !> Rate below which it is round-off, over the largest velocity
    real(wp), parameter :: free = 1.0e-12_wp
-   !> Gap at which a decision that is not made ends
+   !> Gap at which an open decision ends
    real(wp), parameter :: resolution = 1.0e-12_wp
 
-   !> How far forces may lie beyond the parabola of a joint that crushes, over the largest force
+   !> Violation of the crushing parabola, over the largest force
    real(wp), parameter :: crush_tolerance = 1.0e-12_wp
 
-   !> Rounds of tangents
+   !> Maximum number of rounds of tangents
    integer, parameter :: most_rounds = 60
 
-   !> A mechanism whose power is less than this share of what the loads could do has none but by
-   !> rounded coordinates
+   !> Power of a mechanism below which it is round-off, over that of the loads
    real(wp), parameter :: rounding = 1.0e-13_wp
 
 contains

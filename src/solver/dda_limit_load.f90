@@ -1,4 +1,4 @@
-!> Limit analysis: the largest factor of a live load that an assembly carries beside a dead load
+!> Limit analysis: the largest factor of a live load beside a dead load
 !>
 !> Forces give a factor from below, a mechanism one from above; both are certificates that need no
 !> trust in the method that found them. The dead load is decided first.
@@ -72,11 +72,10 @@ module dda_limit_load
       integer :: n_factorisation = 0
    end type limit_load_t
 
-   !> A live load so many times as large as the dead load may have no limit, one so many times as
-   !> large has none
+   !> Ratios of live to dead load: possibly and certainly without limit
    real(wp), parameter :: many = 1.0e3_wp, beyond = 1.0e9_wp
 
-   !> Two factors of joints that crush that are farther apart than this do not agree
+   !> Largest difference of both factors of crushing joints
    real(wp), parameter :: widest = 1.0e-8_wp
 
    interface

@@ -1,5 +1,5 @@
-!> Motion of an assembly at a load that does not change, damped at its joints, from event to event:
-!> to a state in balance, or without end
+!> Damped motion of an assembly at constant load, from event to event, to equilibrium or without
+!> end
 !>
 !> Where a load has grown by a little and no state in balance is near, the blocks move until gaps
 !> close or joints stick, and forces balance again: a jump. If nothing stops them they fall.
@@ -45,41 +45,39 @@ module dda_load_jump
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
 
-   !> Blocks move where damping takes more than this share of the load
+   !> Share of the load in damping above which blocks move
    real(wp), parameter :: moves_unbalanced = 0.01_wp
-   !> So many times the motion under the dead load is far
+   !> Displacement that counts as far, over that under the dead loads
    real(wp), parameter :: far_factor = 1.0e4_wp
-   !> Motion that has not converged in a share of the steps is a fall if it has come so far, as a
-   !> share of what is far
+   !> Displacement of a collapse after a share of the steps, over the far one
    real(wp), parameter :: driven = 0.01_wp
-   !> That share is one over this
+   !> Inverse of that share
    integer, parameter :: brief = 10
-   !> Pivots after which rates are looked for with more damping
+   !> Pivots after which damping increases
    integer, parameter :: few_pivots = 16
-   !> An event no further off than this makes no way
+   !> Distance to an event below which it makes no progress
    real(wp), parameter :: no_way = 1.0e-13_wp
-   !> So many events without way lead nowhere
+   !> Maximum number of events without progress
    integer, parameter :: max_standstill = 60
-   !> Steps of a jump: at least so many, and so many more for each joint
+   !> Maximum number of steps of a jump, and per joint
    integer, parameter :: least_patience = 6000, patience = 10
-   !> Change of damping after a step that meets no event, and its inverse where there are no rates
+   !> Factor of damping after a step without event, and its inverse without rates
    real(wp), parameter :: calmer = 0.1_wp
-   !> Damping that is tried first where there are no rates along a path
+   !> First damping without rates along a path
    real(wp), parameter :: first_firm = 1.0e-3_wp
-   !> Damping that is none, and that with which there are always rates
+   !> Least and largest damping
    real(wp), parameter :: weakest = 1.0e-10_wp, strongest = 1.0e5_wp
-   !> A load is raised by this part of a block's weight at least to see how the blocks move
+   !> Least increase of a load that starts a motion, over the weight of a block
    real(wp), parameter :: nudge = 1.0e-6_wp
-   !> Where a motion does not converge the load is raised by so many times as much
+   !> Factor of the increase where a motion does not converge
    real(wp), parameter :: wider = 10.0_wp
-   !> What a motion may leave of a nudge
+   !> Residual of an increase after the motion
    real(wp), parameter :: nudge_left = 1.0e-6_wp
-   !> Share of what is left of the load that an event must lead beyond a joint's law to count, and
-   !> below which what is left at a block does not move it
+   !> Violation of an event, and residual at a block, over the remaining load
    real(wp), parameter :: minor_share = 1.0e-3_wp
-   !> Rounding of forces
+   !> Round-off of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
-   !> What need not be taken away of an imbalance
+   !> Residual of equilibrium that is not corrected
    real(wp), parameter :: exact = 1.0e-14_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Forces that are carried from load to load
+!> Forces carried from one load to another
 !>
 !> Of many loads most differ little from another one. Forces well inside the cones of all joints
 !> that carry one load carry those near it after one correction, the smallest in units of how far
@@ -18,13 +18,13 @@ submodule (dda_limit_load) dda_load_walk
    !> Steps that draw forces away from their bounds where a load is carried, and the longest of them
    integer, parameter :: n_centring = 2
    real(wp), parameter :: most_of_way = 0.9_wp
-   !> Stiffness of free rays over that of the others in the mean
+   !> Stiffness of free rays over the mean of the others
    real(wp), parameter :: stiffness_of_free = 1.0e8_wp
-   !> Gap at which a way to a load ends that neither reaches it nor shows that nothing does
+   !> Gap at which an open walk ends
    real(wp), parameter :: resolution = 1.0e-8_wp
-   !> Times that a correction is solved for, the later ones for what rounding has left of it
+   !> Maximum number of solutions per correction
    integer, parameter :: most_turns = 4
-   !> Imbalance of forces that carry a load, over its largest part
+   !> Residual of equilibrium over the largest load
    real(wp), parameter :: balanced = 1.0e-9_wp
 
 contains

@@ -1,4 +1,4 @@
-!> The loading path under Coulomb friction: what is dead at once, what is live from event to event,
+!> The loading path under Coulomb friction: dead loads at once, live loads from event to event,
 !> with slip remembered
 !>
 !>    call new_path(graph, load, path)
@@ -88,21 +88,21 @@ module dda_loading_path
       real(wp), allocatable :: mechanism(:, :)
    end type path_result_t
 
-   !> A nudge grows where jumps follow one another within so many times as much; its largest value
+   !> Factor of progress within which jumps increase the nudge
    real(wp), parameter :: slow_factor = 10.0_wp
-   !> Largest of them
+   !> Largest nudge
    real(wp), parameter :: largest_nudge = 1.0e-3_wp
-   !> Blocks rest where at most so much of a growing load is not balanced once damping is given back
+   !> Unbalanced share of the load at rest without damping
    real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
-   !> An event no further off than this makes no way
+   !> Distance to an event below which it makes no progress
    real(wp), parameter :: no_way = 1.0e-13_wp
-   !> So many events without way lead nowhere
+   !> Maximum number of events without progress
    integer, parameter :: max_standstill = 60
-   !> Events and jumps: at most so many, and so many more for each joint
+   !> Maximum number of events and jumps, and per joint
    integer, parameter :: least_patience = 2000, patience = 100
-   !> Jumps at most
+   !> Maximum number of jumps
    integer, parameter :: max_jump = 1000
-   !> Factorisations at most, and one more for each joint
+   !> Maximum number of factorisations, plus one per joint
    integer, parameter :: least_factorisations = 10000
 
    interface

@@ -1,5 +1,4 @@
-!> The next event on a path, at which a joint changes what it does: between two events everything
-!> changes in proportion
+!> The next event on a path, at which a joint changes its state
 module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength
@@ -49,9 +48,9 @@ module dda_path_event
       real(wp) :: minor = 0.0_wp    !! Force by which it must lead beyond zero at the longest
    end type least_t
 
-   !> A force that changes by less on the whole way, over a block's weight, does not change
+   !> Least change of a force on the path, over the weight of a block
    real(wp), parameter :: no_change = 1.0e-12_wp
-   !> Share of the way to an event at which it has not happened
+   !> Share of the distance to an event just before it
    real(wp), parameter :: before_event = 1.0_wp - 4.0_wp*epsilon(1.0_wp)
 
 contains

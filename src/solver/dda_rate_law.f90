@@ -1,4 +1,4 @@
-!> Coulomb's law for rates: how joints respond at a state
+!> Coulomb's law for rates: response of the joints at a state
 !>
 !> A corner that pushes stays closed, one with a gap stays open, a joint within Coulomb's limit
 !> sticks. A corner without force and without gap, and a joint at its limit, are weak: they follow

@@ -1,4 +1,4 @@
-!> The stiffness matrix of springs along the rays of all joints, and systems solved with it
+!> The barrier stiffness matrix along the rays of all joints, and its solutions
 !>
 !>    matrix = sum over rays of stiffness * arm * arm'
 !>

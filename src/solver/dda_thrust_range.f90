@@ -1,4 +1,4 @@
-!> The least and the greatest thrust that a joint can carry while an assembly carries its load
+!> The least and the greatest thrust of a joint under the load of the assembly
 !>
 !> The thrust is the horizontal force in the joint, positive where it presses. A block without
 !> weight is put between the joint and one of its blocks, tied to that block upright and against
@@ -8,9 +8,9 @@ submodule (dda_limit_load) dda_thrust_range
    use dda_joint_graph, only : joint_kind
    implicit none
 
-   !> Relative gap of the proofs of either end
+   !> Relative gap of the bounds of either end
    real(wp), parameter :: tolerance = 1.0e-10_wp
-   !> A joint whose normal is nearer to upright than this has no thrust
+   !> Least horizontal component of a joint normal with a thrust
    real(wp), parameter :: least_normal = 1.0e-6_wp
 
 contains

@@ -1,5 +1,4 @@
-!> Factor L D L' of the stiffness matrix of springs in numbers of more digits, for springs whose
-!> stiffness spreads over more decades than working precision has
+!> Factor L D L' of the barrier stiffness matrix in extended precision
 !>
 !> The plan is that of the factor in working precision. Few libraries have such numbers: the loops
 !> are plain.
@@ -11,7 +10,7 @@ module dda_wide_factor
 
    public :: rk, factorise_wide, substitute_wide
 
-   !> Kind of numbers with 30 digits or more; where there is none, with 18
+   !> Kind of numbers with 30 digits, or 18 if unavailable
    integer, parameter :: rk = merge(selected_real_kind(30), selected_real_kind(18), &
       & selected_real_kind(30) > 0)
 

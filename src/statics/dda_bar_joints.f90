@@ -1,4 +1,4 @@
-!> Bars as joints of a graph: what they can carry, and their forces from those of the joints
+!> Bars as joints of a graph: strengths and forces
 module dda_bar_joints
    use dda_bar, only : bar_condition
    use dda_bar_place, only : bar_rows
@@ -13,11 +13,11 @@ module dda_bar_joints
 
    !> Unknowns of a rigid block
    integer, parameter :: n_rigid = 3
-   !> Strength of a bar from which on it does not yield [N]
+   !> Strength from which a bar does not yield [N]
    real(wp), parameter :: unbounded = 1.0e29_wp
-   !> A bar whose force is its strength except for this share yields
+   !> Relative distance from its strength at which a bar yields
    real(wp), parameter :: near_strength = 1.0e-9_wp
-   !> Compliance of a bar's node over that of the bar
+   !> Compliance of the node of a bar over that of the bar
    real(wp), parameter :: stiff_share = 1.0e-3_wp
 
 contains

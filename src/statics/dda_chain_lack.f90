@@ -1,5 +1,4 @@
-!> What the forces of a chain lack to lie in their cones, and the power of the loads on a collapse
-!> of it: what a search over its shape goes by, found by statics alone
+!> Violation of the cones by the forces of a chain, and the power of the loads at collapse
 !>
 !> Sought is the least s for which forces in balance with the loads exist that keep
 !>
@@ -38,13 +37,13 @@ module dda_chain_lack
       logical :: known = .false.        !! Whether s was found
    end type lack_t
 
-   !> Most bounds that come in
+   !> Maximum number of exchanges
    integer, parameter :: max_exchanges = 40
-   !> Forces beyond their bounds by less than this share of the load do not count
+   !> Violation of bounds that is ignored, over the load
    real(wp), parameter :: little = 1.0e-12_wp
-   !> Multipliers below this are none
+   !> Least multiplier
    real(wp), parameter :: no_share = 1.0e-9_wp
-   !> How far from zero the unknowns may go, over the load
+   !> Largest magnitude of the unknowns over the load
    real(wp), parameter :: far = 1.0e3_wp
 
    !> The joints of a collapse that are not stuck, frozen

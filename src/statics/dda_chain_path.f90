@@ -1,4 +1,4 @@
-!> Whether a chain of elastic joints comes to its load without sliding
+!> Loading of a chain of elastic joints without sliding
 !>
 !> Where no joint slides, the joints' springs, which push and never pull, know of no history: the
 !> forces are those of least energy, a quadratic function of three unknowns, and corners that open
@@ -54,11 +54,11 @@ module dda_chain_path
       real(wp) :: squeeze = 0.0_wp
    end type chain_leg_t
 
-   !> Most events of a leg
+   !> Maximum number of events per leg
    integer, parameter :: max_events = 200
-   !> What rounding may leave of forces and gaps that are zero, over the largest ones
+   !> Round-off of zero forces and gaps, over the largest
    real(wp), parameter :: rounding = 1.0e-9_wp
-   !> Loads that lie flatter are not come to by way of upright ones
+   !> Least slope of loads that are reached by way of vertical ones
    real(wp), parameter :: flattest = 1.0e-3_wp
 
 contains

@@ -1,4 +1,4 @@
-!> The forces of a chain: those of all joints follow from three unknowns by equilibrium alone
+!> Joint forces of a chain from three unknowns by equilibrium
 !>
 !> Sought are the forces in balance with the loads that lie nearest to the friction cones,
 !>
@@ -32,19 +32,19 @@ module dda_chain_thrust
       integer :: passes = 0
    end type thrust_t
 
-   !> Share of the forces inside the cones; the smaller, the sharper is the answer
+   !> Share of the forces inside the cones; smaller is sharper
    real(wp), parameter :: share = 1.0e-8_wp
-   !> Most passes
+   !> Maximum number of iterations
    integer, parameter :: max_passes = 40
-   !> Share of the function below which it does not fall noticeably
+   !> Least relative decrease of the function
    real(wp), parameter :: little = 1.0e-9_wp
-   !> The same where the last digit counts
+   !> Least relative decrease where the last digit counts
    real(wp), parameter :: exactly = 1.0e-20_wp
-   !> Share of the springs' stiffness that keeps what nothing resists from moving far
+   !> Stiffness that limits unresisted motion, over the springs
    real(wp), parameter :: weak = 1.0e-12_wp
-   !> Chains of more joints are first looked at with about as many
+   !> Number of joints in the coarse chain
    integer, parameter :: coarse = 60
-   !> Most places tried along a direction
+   !> Maximum number of points along a direction
    integer, parameter :: max_tries = 20
 
 contains

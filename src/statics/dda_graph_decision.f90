@@ -1,4 +1,4 @@
-!> Verdict of rigid blocks that keep their places, with what proves it
+!> Verdict of rigid blocks in reference geometry, with its certificate
 !>
 !> What no forces can balance falls under every law of friction: limit analysis decides that first,
 !> by forces or by a mechanism. What remains is decided by the loading path under Coulomb friction:
@@ -27,12 +27,11 @@ module dda_graph_decision
    !> Why a path is undecided that limit analysis lets stand at its end
    character(len=*), parameter :: no_start = "no state under Coulomb friction is found under the " &
       & //"loads of the beginning"
-   !> Relative gap of the two proofs of a limit whose mechanism is asked for
+   !> Relative gap of both bounds of a limit with its mechanism
    real(wp), parameter :: limit_gap = 1.0e-9_wp
-   !> Factorisations that find how joints slide in a fall, and all that the fall of live loads takes
+   !> Factorisations for sliding at collapse, and for the whole collapse under live loads
    integer, parameter :: few = 5, most = 30
-   !> Factorisations after which it is not asked in which mechanism live loads let blocks fall
-   !> first; a turn may take three
+   !> Factorisations after which no first mechanism is sought
    integer, parameter :: enough = most - few - 2
 
 contains

@@ -1,4 +1,4 @@
-!> Blocks and contacts as a verdict of the joint graph has them
+!> Blocks and contacts of a verdict of the joint graph
 module dda_graph_report
    use dda_bar_joints, only : keep_bar_forces
    use dda_block_system, only : begin_motion, block_system_t
@@ -19,7 +19,7 @@ module dda_graph_report
 
    public :: show_mechanism, show_state, strain_blocks
 
-   !> Motions below this share of the largest are rounding
+   !> Motion below which it is round-off, over the largest
    real(wp), parameter :: still = 1.0e-6_wp
 
 contains

@@ -1,4 +1,4 @@
-!> The clock of what is live in a static run: loads, prescribed displacements and the ground
+!> Load clock of a static run: loads, prescribed displacements and ground motion
 !>
 !> A history is a path from its beginning to its end, whatever the lengths of the steps. The clock
 !> goes on when the blocks are at rest, stands still until they are again, and goes back to the last
@@ -30,9 +30,9 @@ module dda_load_clock
 
    !> Strides of the whole path, at the least
    real(wp), parameter :: n_strides = 16.0_wp
-   !> Shortest stride, over a leg of the path from bend to bend
+   !> Shortest increment over a leg of the path
    real(wp), parameter :: shortest = 2.0_wp**(-14)
-   !> A stride that is longer than the shortest by less is the shortest
+   !> Factor within which an increment is the shortest
    real(wp), parameter :: barely_longer = 1.001_wp
 
 contains

@@ -1,4 +1,4 @@
-!> The loading path of a static scene: its stations from nothing to the full load
+!> Stations of the loading path of a static scene, from zero to the full load
 !>
 !> Dead loads come first and at once: weight, upright, and forces on points as they are at the
 !> beginning. Then what is live comes from nothing to its value, one after the other: supports that
@@ -31,13 +31,11 @@ module dda_load_stations
       real(wp), allocatable :: time(:)  !! Time of the histories: (0:n_leg) [s]
    end type load_stations_t
 
-   !> Legs of gravity that tilts, whatever angle is asked for: a way ends on the chord on which a
-   !> longer one goes on, and gets the rest of its weight then. Chords are off by their square.
-   !> Where nothing but weight acts that is given back, beside other loads it is not [rad]
+   !> Legs of tilting gravity, for self-weight alone and beside other loads [rad]
    real(wp), parameter :: tilt_leg = 4.4e-3_wp, leg_beside = 8.0e-4_wp
-   !> What is left of an angle below this share of a leg is no leg
+   !> Shortest leg over the usual one
    real(wp), parameter :: shortest_leg = 1.0e-9_wp
-   !> Loads below this share of those that they are left of are rounding
+   !> Load below which a difference is round-off, over its parts
    real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
 contains

@@ -1,4 +1,4 @@
-!> The loading path of a scene under Coulomb friction, as a verdict with its proof
+!> Verdict of the loading path of a scene under Coulomb friction, with its certificate
 !>
 !> Where joints are crushed the path is followed with tangents of their parabolas as layers, which
 !> are added where the forces at its end lie beyond, until they do not: the hinge of a layer is a
@@ -20,10 +20,9 @@ module dda_path_verdict
 
    public :: follow_stations
 
-   !> How far forces on the path may lie beyond the parabola of a joint that crushes, over the
-   !> largest force
+   !> Violation of the crushing parabola, over the largest force
    real(wp), parameter :: beyond = 1.0e-9_wp
-   !> Paths that are followed before it is said that they do not converge, and factorisations of all
+   !> Maximum number of paths, and of their factorisations
    integer, parameter :: most_paths = 30, most_factorisations = 6000
 
 contains

@@ -1,4 +1,4 @@
-!> The joints of a scene whose blocks keep their places, as a graph of rigid blocks
+!> Joints of a scene in reference geometry as a graph of rigid blocks
 module dda_scene_graph
    use dda_bar_joints, only : add_bar_joints, add_nodes, n_bar_joints
    use dda_block_system, only : block_system_t
@@ -18,15 +18,15 @@ module dda_scene_graph
 
    public :: scene_graph, decides_as_graph, has_friction, has_limit_analysis, graph_verdict_t
 
-   !> Mass of such a node over that of a block
+   !> Mass of the node of a bounded force over that of a block
    real(wp), parameter :: node_mass = 1.0e-6_wp
    !> Unknowns of a rigid block
    integer, parameter :: n_rigid = 3
-   !> A block counts as no smaller at a joint than this share of the root of its area
+   !> Least size of a block at a joint, over the root of its area
    real(wp), parameter :: least_size = 0.1_wp
-   !> A held point is stiffer than the stiffest joint by this factor
+   !> Stiffness of a restraint over the stiffest joint
    real(wp), parameter :: pin_stiffness = 10.0_wp
-   !> A bounded force is softer than a held point by this factor
+   !> Stiffness of a restraint over that of a bounded force
    real(wp), parameter :: softness = 1.0e4_wp
 
    !> A verdict and its proof

@@ -1,4 +1,4 @@
-!> Newton's method on a convex function of three unknowns, quadratic from piece to piece
+!> Newton's method for a convex, piecewise quadratic function of three unknowns
 module dda_three_unknowns
    use dda_kinds, only : wp
    implicit none
@@ -13,11 +13,11 @@ module dda_three_unknowns
       real(wp) :: curvature(3, 3) = 0.0_wp  !! Second derivatives
    end type chain_energy_t
 
-   !> Share of the fall that a straight line promises which counts as a fall
+   !> Least decrease over the linear prediction
    real(wp), parameter :: barely = 1.0e-4_wp
-   !> How steep a shortened step may end, over how steep it begins
+   !> Largest final slope of a shortened step over its initial slope
    real(wp), parameter :: less_steep = 0.5_wp
-   !> Relative error that rounding makes of the function
+   !> Relative round-off of the function
    real(wp), parameter :: rounding = 1.0e-11_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Where a bar is, and how the unknowns of its two blocks see it
+!> Position of a bar, and its elongation by the unknowns of two blocks
 module dda_bar_place
    use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t

@@ -1,4 +1,4 @@
-!> Points of the blocks that are fixed or prescribed along a path: stiff springs (Shi: df12)
+!> Fixed points and prescribed displacements: stiff springs (Shi: df12)
 !>
 !> A spring pulls its point to where it ought to be at the end of the step, with the force that it
 !> had before; what it lacks is added until nothing changes, so that its stiffness leaves no trace.
@@ -15,13 +15,13 @@ module dda_fixed_points
    public :: fixed_points_t, new_fixed_points, follow_fixed_points, add_fixed_springs
    public :: correct_fixed_forces, turn_fixed_row, hold_rigidly
 
-   !> Stiffness of a spring over the inertia 2m/dt**2 of its block, at the least
+   !> Least stiffness of a restraint over the inertia 2m/dt**2 of its block
    real(wp), parameter :: over_inertia = 1.0e3_wp
 
-   !> Columns of which less than this share of the largest is left say nothing new
+   !> Remainder below which a column is dependent, over the largest
    real(wp), parameter :: negligible = 1.0e-10_wp
 
-   !> Relative error of a motion's sums
+   !> Relative round-off of the sums of a motion
    real(wp), parameter :: rounded = 16.0_wp*epsilon(1.0_wp)
 
    !> One spring for each direction in which a point of a movable block is held

@@ -1,5 +1,5 @@
-!> Loads from outside on all blocks at a time: weight, forces on points, a ground that shakes
-!> (Shi: df09, df15, df16)
+!> External loads on all blocks at a time: self-weight, point forces, ground motion (Shi: df09,
+!> df15, df16)
 module dda_outer_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : history_t, mean_over, value_at

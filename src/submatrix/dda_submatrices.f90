@@ -1,5 +1,5 @@
-!> Submatrices and loads of one block: mass (Shi: df11), stiffness and the load of its stress (df13,
-!> df14), body forces and forces at points (df15, df16), and faces that let waves out
+!> Submatrices and loads of one block: mass (Shi: df11), stiffness and stress (df13, df14), forces
+!> (df15, df16), absorbing boundaries
 !>
 !> A plane wave of speed c brings the stress density*c*v at a velocity v. A dashpot of that constant
 !> per length takes it up whole, if it comes straight (Lysmer and Kuhlemeyer 1969).

@@ -46,11 +46,11 @@ module couplet_heyman_critical
       1.0_wp, -1.0_wp/6.0_wp, 11.0_wp/1440.0_wp, -67.0_wp/60480.0_wp, 59.0_wp/537600.0_wp, &
       1.0_wp, -1.0_wp/6.0_wp, 11.0_wp/1440.0_wp, -67.0_wp/60480.0_wp, 89.0_wp/1209600.0_wp], [5, 3])
 
-   !> Half angle from which quantities are counted from the limit [rad]
+   !> Half angle from which quantities are relative to the limit [rad]
    real(wp), parameter :: near_the_limit = 2.2_wp
-   !> A relative step this short leaves an error far below the rounding: convergence is quadratic
+   !> Relative step at which quadratic convergence has reached round-off
    real(wp), parameter :: short_step = 1.0e-9_wp
-   !> Three steps are the rule
+   !> Maximum number of steps; three are usual
    integer, parameter :: most_steps = 30
    !> A quarter of a turn [rad]
    real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)

@@ -1,5 +1,5 @@
-!> Equilibrium curve eta(beta) at one half angle, eqs. (14) to (16), (19), (26), and the line of
-!> thrust, eq. (11)
+!> Equilibrium curve eta(beta) at one half angle, eqs. (14) to (16), (19), (26), and the thrust
+!> line, eq. (11)
 !>
 !> Eq. (14) divided by 12 is E = Q + eta (D - eta (P/4 - delta_M C eta/12)) = 0 with
 !>     Q = beta S - (1 - C) A = q (A(beta) - A),   D = C - A = a - 1 - q,   P = beta S + (1 + C) A.

@@ -1,4 +1,4 @@
-!> Ranges of validity of arguments, and the first element of an array that leaves them
+!> Ranges of validity of arguments, and the first array element outside them
 module couplet_heyman_domain
    use, intrinsic :: iso_fortran_env, only : wp => real64
    implicit none
@@ -6,7 +6,7 @@ module couplet_heyman_domain
 
    public :: blame, is_half_angle, is_thickness, is_joint, is_finite, is_facet
 
-   !> Shortest chord that is taken for one: finer ones change no digit [rad]
+   !> Shortest chord; shorter ones change no digit [rad]
    real(wp), parameter :: shortest_chord = 1.0e-7_wp
    !> Half a turn [rad]
    real(wp), parameter :: pi = acos(-1.0_wp)

@@ -1,5 +1,5 @@
-!> Equilibrium of a chunk of the arch and tangency of the thrust: eqs. (1) to (13) of the paper; and
-!> small functions of an angle that keep every digit where the textbook form cancels
+!> Equilibrium of a part of the arch and tangency of the thrust, eqs. (1) to (13), and functions of
+!> an angle without cancellation
 !>
 !> Lengths are over the mean radius r, forces over w r with w the weight per length of the centre
 !> line; beta is the angle from the crown, S = sin beta, C = cos beta, m = 1 + delta_M eta^2/12.
@@ -85,9 +85,9 @@ module couplet_heyman_equations
       1.122875901494054326467406441955843226411_wp, 0.3975610062458916058061058649064443943728_wp, &
       0.2777076435564898670072228711849933559703_wp)
 
-   !> Below this argument [rad] the power series are shorter and sharper than sine and cosine
+   !> Argument below which power series are faster and more accurate [rad]
    real(wp), parameter :: series_range = 1.5_wp
-   !> Terms that reach the last digit there
+   !> Terms of the power series up to the last digit
    integer, parameter :: terms = 11
 
 contains

@@ -1,5 +1,5 @@
-!> Joints of finite friction: from when on the arch collapses by rotation alone, and the thickness
-!> it needs below
+!> Joints of finite friction: the limit of collapse by rotation alone, and the required thickness
+!> below it
 !>
 !> The thrust at the joint beta leans by |atan(beta/h) - beta| from the joint's normal, at the
 !> springing by alpha - atan2(alpha, h), and most of all in between at beta_s = sqrt(h (1 - h)) by
@@ -21,9 +21,9 @@ module couplet_heyman_friction
 
    public :: friction_limits_t, friction_limits, friction_solution
 
-   !> Quadratic convergence takes 4 to 6
+   !> Maximum number of steps; 4 to 6 are usual
    integer, parameter :: most_steps = 40
-   !> A relative step this short leaves rounding alone
+   !> Relative step at which only round-off remains
    real(wp), parameter :: short_step = 1.0e-9_wp
 
    !> Least friction coefficients of an arch

@@ -1,4 +1,4 @@
-!> Eqs. (14) to (27) term by term as the paper prints them, and the critical solutions they give
+!> Eqs. (14) to (27) term by term as printed in the paper, and their critical solutions
 !>
 !> For comparison and for checks: shallow arches lose their digits here (docs/theory.md has the
 !> table), which couplet_heyman_curves and couplet_heyman_critical avoid. A is eq. (9), S = sin

@@ -1,5 +1,5 @@
-!> The ring of joints behind couplet_heyman_discrete: its shape, the thrusts that friction allows,
-!> the widest gap at one thickness, and the thickness at which that gap closes
+!> The ring of joints of couplet_heyman_discrete: shape, admissible thrusts, widest gap, and the
+!> thickness at which it closes
 !>
 !> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n
 !> - d cos t with n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only

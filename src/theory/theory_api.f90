@@ -1,4 +1,4 @@
-!> What Python sees of the three theories: the layer that f2py wraps
+!> Interface of the three theories for f2py
 !>
 !> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants
 !> them. Each takes n elements at once. `fault` tells the first value outside the range of validity:

@@ -1,4 +1,4 @@
-!> What Python sees of friction and of arches of voussoirs; conventions as in theory_api
+!> Interface of friction and arches of voussoirs for f2py; conventions as in theory_api
 module theory_discrete_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_critical, only : is_embraced

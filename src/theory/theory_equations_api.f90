@@ -1,4 +1,4 @@
-!> What Python sees of eqs. (6) to (12); conventions as in theory_api
+!> Interface of eqs. (6) to (12) for f2py; conventions as in theory_api
 module theory_equations_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_domain, only : blame, is_finite, is_half_angle, is_joint, is_thickness

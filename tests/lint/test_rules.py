@@ -189,4 +189,4 @@ def test_pages_of_the_sources_are_what_the_sources_say() -> None:
     for name, text in source_pages.pages().items():
         written = (REPOSITORY / "docs" / name).read_text(encoding="utf-8")
         assert written == text, f"{name}: expected what `python3 docs/site/source_pages.py` writes, got another page"
-    assert {folder.name for folder in (REPOSITORY / "src").iterdir() if folder.is_dir()} == set(source_pages.ROOMS)
+    assert {folder.name for folder in (REPOSITORY / "src").iterdir() if folder.is_dir()} == set(source_pages.PACKAGES)
