@@ -119,13 +119,14 @@ def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
     pairs = [(line, moved.get((line.scene.deck, line.check.what)) if plain else None) for line in plain or lines]
     columns = _columns(pairs, len(decks) > 1)
     cells = [[cell(*pair) for cell in columns.values()] for pair in pairs]
+    exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
     if len(decks) == 1:
-        about = [f"### {links[lines[0].scene.deck]}", "", f"{titles[lines[0].scene.deck]}."]
+        deck = lines[0].scene.deck
+        about = [f"### {titles[deck]}", "", f"Deck: {links[deck]}.", exact]
     else:
         family = _problem(lines[0].scene)[0].replace("_", " ").capitalize()
-        about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items())]
-    exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
-    return ["", *about, "", exact, "", *markdown(list(columns), "l" * len(columns), cells)]
+        about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items()), "", exact]
+    return ["", *about, "", *markdown(list(columns), "l" * len(columns), cells)]
 
 
 def _accepted(lines: Iterable[Line], moved: Iterable[Line]) -> str:
