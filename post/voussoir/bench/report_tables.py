@@ -23,7 +23,8 @@ def write_csv(file: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -
 def markdown(heads: Sequence[str], sides: str, rows: Iterable[Sequence[str]]) -> list[str]:
     """Lines of a table in Markdown; `sides` says by l or r how each column stands."""
     marks = [{"l": "---", "r": "---:"}[side] for side in sides]
-    return ["| " + " | ".join(cells) + " |" for cells in (heads, marks, *rows)]
+    head, *body = ["| " + " | ".join(cells) + " |" for cells in (heads, *rows)]
+    return [head, "|" + "|".join(marks) + "|", *body]
 
 
 def grouped(points: Iterable[Point], name: str) -> dict[str, list[Point]]:
