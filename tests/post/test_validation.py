@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-pytest.importorskip("numpy")
+np = pytest.importorskip("numpy")
 
 from voussoir.bench import validation_page  # noqa: E402
 from voussoir.bench.checks import Check  # noqa: E402
@@ -23,6 +23,7 @@ from voussoir.bench.validation_impact import next_amplitude, quarter_period  # n
 from voussoir.bench.validation_motion import stick_slip  # noqa: E402
 from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E402
 from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
+from voussoir.bench.validation_sketch import Shape, sketch  # noqa: E402
 from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.command.validation import titles_of  # noqa: E402
@@ -176,3 +177,37 @@ def test_entry_has_both_geometries_in_one_row() -> None:
 def test_every_deck_of_the_benchmarks_is_a_scene() -> None:
     assert {deck.stem for deck in DECKS.glob("*.nml")} == {scene.deck for scene in SCENES}
     assert find_input("benchmarks").name == DECKS.name
+
+
+def square(x: float, y: float, u: float = 0.0, *, is_fixed: bool = False) -> Shape:
+    """A unit square whose upper corners are displaced by u."""
+    corners = np.array([(x, y), (x + 1.0, y), (x + 1.0, y + 1.0), (x, y + 1.0)])
+    return Shape(corners, np.array([(0.0, 0.0), (0.0, 0.0), (u, 0.0), (u, 0.0)]), is_fixed)
+
+
+@pytest.mark.parametrize(("u", "moved"), [(0.0, 0), (1e-13, 0), (1e-9, 1), (1e-3, 1), (0.5, 0)])
+def test_sketch_enlarges_small_displacements_to_the_same_size(u: float, moved: int) -> None:
+    """Round-off and large displacements are not drawn."""
+    drawn = sketch([square(0.0, -1.0, is_fixed=True), square(0.0, 0.0, u)])
+    polygons = re.findall(r'<polygon points="([^"]*)" ([^/]*)/>', drawn)
+    assert len(polygons) == 2 + moved
+    assert ["stroke-dasharray" in style for _, style in polygons].count(True) == moved
+    if moved:
+        shift = [float(polygons[2][0].split()[2].split(",")[0]) - float(polygons[1][0].split()[2].split(",")[0])]
+        side = float(polygons[1][0].split()[1].split(",")[0]) - float(polygons[1][0].split()[0].split(",")[0])
+        assert shift[0] / side == pytest.approx(0.12, abs=0.002)
+
+
+def test_sketch_shows_a_support_that_is_far_below() -> None:
+    drawn = sketch([square(0.0, -9.0, is_fixed=True), square(0.0, 0.0)])
+    height = float(re.search(r'height="(\d+)" viewBox', drawn)[1])
+    (support, _), _ = re.findall(r'<polygon points="([^"]*)" ([^/]*)/>', drawn)
+    assert min(float(point.split(",")[1]) for point in support.split()) < height
+
+
+def test_every_entry_of_the_documents_has_its_sketch() -> None:
+    page = (REPOSITORY / "docs" / "validation.md").read_text()
+    named = re.findall(r"^!\[.+\]\((.*)\)$", page, re.M)
+    assert len(named) == page.count("\n### ")
+    assert {path.name for path in (REPOSITORY / "docs" / validation_page.SKETCHES).glob("*.svg")} == {
+        Path(name).name for name in named}

@@ -10,7 +10,10 @@ from pathlib import Path
 from voussoir.bench.report_tables import grouped, markdown, write_csv
 from voussoir.bench.scene import MOVED, Scene
 from voussoir.bench.validation_run import Line
+from voussoir.bench.validation_sketch import sketch
 
+#: Folder of the sketches beside the page
+SKETCHES = "images/verification"
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
 
 _HEAD = """# Verification manual
@@ -24,6 +27,7 @@ Problems with exact answers, one entry per problem: model, input, exact value an
 - **Accepted**: the largest accepted error. A larger one is marked **MISSED**.
 - **Rate**: order of convergence in the time step, from three runs with halved steps. A dash means a single run or
   errors below 1e-9.
+- **Sketch**: fixed blocks dark, movable blocks light, small displacements enlarged and dashed.
 - **Current**: the same deck with `--set analysis%geometry=current`, that is, large displacements and deformable
   blocks. Its error includes the elastic shift.
 """
@@ -89,6 +93,14 @@ def page(lines: Sequence[Line], titles: Mapping[str, str], version: str) -> str:
     return "\n".join(text) + "\n" + _TAIL
 
 
+def sketches(lines: Sequence[Line]) -> dict[str, str]:
+    """Sketches of the entries as SVG, by the names of their files."""
+    first: dict[tuple[str, str, str], Line] = {}
+    for line in lines:
+        first.setdefault((line.scene.group, *_problem(line.scene)), line)
+    return {f"{line.scene.deck}.svg": sketch(line.shapes) for line in first.values() if line.shapes}
+
+
 def told(line: Line) -> str:
     """One line for the terminal."""
     found = line.computed if isinstance(line.computed, str) else f"{line.computed:.8g}"
@@ -126,6 +138,8 @@ def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
     else:
         family = _problem(lines[0].scene)[0].replace("_", " ").capitalize()
         about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items()), "", exact]
+    if lines[0].shapes:
+        about += ["", f"![{lines[0].scene.deck}]({SKETCHES}/{lines[0].scene.deck}.svg)"]
     return ["", *about, "", *markdown(list(columns), "l" * len(columns), cells)]
 
 

@@ -14,6 +14,7 @@ from voussoir.bench import (
 from voussoir.bench.checks import Check, Outcome
 from voussoir.bench.deck_runs import run_deck
 from voussoir.bench.scene import Scene
+from voussoir.bench.validation_sketch import Shape, shapes_of
 from voussoir.dda_program import DdaError
 from voussoir.files import read_text
 
@@ -31,6 +32,7 @@ class Line:
     computed: float | str  #: What the deck as it stands gave
     errors: tuple[float, ...]  #: Errors with the deck's own step, half of it, and so on
     seconds: float  #: Wall time of the scene's run with the deck's own step
+    shapes: tuple[Shape, ...] = ()  #: Blocks of the first case that is compared
 
     @property
     def accepted(self) -> bool:
@@ -60,7 +62,7 @@ def all_scenes() -> tuple[Scene, ...]:
 def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
     """Run a scene, where it has a rate again in steps halved so often; DdaError has the program's own message."""
     deck, checks = decks / f"{scene.deck}.nml", scene.expectation.checks
-    columns, seconds = [], []
+    columns, seconds, shapes = [], [], ()
     for k in range(1 + (halvings if scene.rate else 0)):
         with tempfile.TemporaryDirectory() as folder:
             finished = run_deck(deck, Path(folder), settings=[*scene.settings, *_step(deck, k)])
@@ -69,8 +71,9 @@ def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
             outcomes = {case: Outcome(finished.folder, case) for case in {check.case for check in checks}}
             columns.append([check.measure(outcomes[check.case]) for check in checks])
             seconds.append(finished.seconds)
+            shapes = shapes or shapes_of(finished.folder / "blocks.csv", checks[0].case)
     return [
-        Line(scene, check, values[0], tuple(map(check.error, values)), seconds[0])
+        Line(scene, check, values[0], tuple(map(check.error, values)), seconds[0], shapes)
         for check, values in zip(checks, zip(*columns))
     ]
 

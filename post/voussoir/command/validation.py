@@ -6,7 +6,7 @@ import argparse
 import re
 from pathlib import Path
 
-from voussoir.bench.validation_page import page, told, write_lines
+from voussoir.bench.validation_page import SKETCHES, page, sketches, told, write_lines
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
@@ -30,8 +30,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the scenes and write the table: 1 if an error is larger than accepted."""
     decks = arguments.decks or find_input("benchmarks")
     lines = _lines(arguments, decks)
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    (arguments.out / SKETCHES).mkdir(parents=True, exist_ok=True)
     write_lines(lines, arguments.out / "validation.csv")
+    for name, text in sketches(lines).items():
+        write_text(arguments.out / SKETCHES / name, text)
     write_text(arguments.out / "validation.md", page(lines, titles_of(decks), version_of(find_dda())))
     return 0 if all(line.accepted for line in lines) else 1
 
