@@ -18,6 +18,7 @@ import tempfile
 from pathlib import Path
 
 from python_page import python_page
+import source_pages
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Pages in the order of the menu, by chapter; others of docs/ follow
@@ -178,9 +179,12 @@ def write_pages(docs: Path, dda: Path) -> None:
     contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").replace("](docs/", "](")
     contributing = contributing.replace("](README.md)", "](index.md)")
     (docs / "contributing.md").write_text(contributing, encoding="utf-8")
+    for name, text in source_pages.pages().items():
+        (docs / name).write_text(text, encoding="utf-8")
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8").replace("](../README.md)", "](index.md)")
         text = re.sub(r"\[([^\]]*)\]\(\.\./[^)]*\)", r"\1", text)
+        text = re.sub(r"`((?:modules|tolerances)\.md)`", r"[\1](\1)", text)
         text = re.sub(r"^```sh install$", "```text", text, flags=re.M)
         text = re.sub(r"^```(\w+) geometry$", r"```\1", text, flags=re.M)
         page.write_text(with_formulas(text), encoding="utf-8")

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Write docs/modules.md and docs/tolerances.md from the sources: `python3 docs/site/source_pages.py`."""
+"""Write the pages on modules and tolerances from the sources: `python3 docs/site/source_pages.py DIR`."""
 
 from __future__ import annotations
 
+import argparse
 import re
 from pathlib import Path
 
@@ -35,12 +36,12 @@ PACKAGES = {
 MODULES = """# Modules
 
 Every module of `src/` by package, from the lowest layer up, with the first sentence of its source.
-[architecture.md](architecture.md) describes the layers. `python3 docs/site/source_pages.py` writes this page.
+[architecture.md](architecture.md) describes the layers.
 """
 TOLERANCES = """# Tolerances
 
 Every threshold and limit of `src/` by package, with its module, constant, value and purpose. Relative thresholds name
-their reference quantity. The module has further reasons. `python3 docs/site/source_pages.py` writes this page.
+their reference quantity. The module has further reasons.
 """
 #: A named number at the beginning of a module, with the comment before it
 CONSTANT = re.compile(r"((?: *!> ?.*\n)+) {3}(?:real\(wp\)|integer), parameter :: (\w+) = (\S.*)\n")
@@ -49,9 +50,13 @@ NO_THRESHOLD = re.compile(r"^(n_\w+|pi|degree|quarter|wp|unit_angle\w*|heyman_li
 
 
 def main() -> None:
-    """Write the pages."""
+    """Write the pages into a folder."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the pages")
+    folder = parser.parse_args().folder
+    folder.mkdir(parents=True, exist_ok=True)
     for name, text in pages().items():
-        (ROOT / "docs" / name).write_text(text, encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 def pages() -> dict[str, str]:

@@ -55,7 +55,6 @@ ELSEWHERE = {
     "performance.md": "times of one machine; test_work_precision.py and test_stability.py run the fast scenes",
     "testing.md": "examples of faults, and times of one machine",
     "theory.md": "test_theory.py, test_theory_paper.py and test_theory_accuracy.py compare the solutions",
-    "tolerances.md": "constants; tests/lint compares the page with the source",
     "validation.md": "written by voussoir validation; test_validation.py compares its fast scenes",
 }
 #: Packages of blocks with a label of their own: where one is missing the block is left to test_import.py

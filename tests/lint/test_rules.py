@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -182,11 +183,18 @@ def test_keys_are_named_in_the_order_of_the_registry(names: str, registry: tuple
     assert named[1:] in ([], [[f"{group}_group" for group in groups]])
 
 
-def test_pages_of_the_sources_are_what_the_sources_say() -> None:
+def test_pages_of_the_sources_have_every_module_and_threshold(tmp_path: Path) -> None:
     sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
     import source_pages
 
-    for name, text in source_pages.pages().items():
-        written = (REPOSITORY / "docs" / name).read_text(encoding="utf-8")
-        assert written == text, f"{name}: expected what `python3 docs/site/source_pages.py` writes, got another page"
+    script = REPOSITORY / "docs" / "site" / "source_pages.py"
+    subprocess.run([sys.executable, script, tmp_path], check=True)
+    modules, tolerances = (source_pages.pages()[f"{name}.md"] for name in ("modules", "tolerances"))
+    assert (tmp_path / "modules.md").read_text(encoding="utf-8") == modules
+    assert (tmp_path / "tolerances.md").read_text(encoding="utf-8") == tolerances
+    files = [path.stem for path in (REPOSITORY / "src").glob("*/*.f90")]
+    assert sorted(re.findall(r"^\| `(\w+)` \|", modules, re.M)) == sorted(files)
+    assert re.search(r"^\| `dda_settings`: `contact_tolerance` \| 1e-4 \| .+ \|$", tolerances, re.M)
+    empty = [row for row in (modules + tolerances).splitlines() if re.search(r"\|\s*\|$", row)]
+    assert empty == []
     assert {folder.name for folder in (REPOSITORY / "src").iterdir() if folder.is_dir()} == set(source_pages.PACKAGES)

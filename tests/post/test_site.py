@@ -30,7 +30,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_every_page_is_there(site: Path) -> None:
-    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} | {"index", "keys", "python"}
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} | {"index", "keys", "python", "modules", "tolerances"}
     assert pages <= {path.stem for path in site.glob("*.html")}
 
 
