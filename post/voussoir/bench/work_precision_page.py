@@ -184,7 +184,7 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
         _note(axes, "rounding", ALL_DIGITS, -11, right=True)
     if panel.gap:
         axes.axhline(panel.gap, color=_QUIET, linewidth=0.9, linestyle=(0, (1, 2)))
-        _note(axes, f"the associated limit is {_share(panel.gap)} above\nwhat stands under Coulomb friction",
+        _note(axes, f"the associated limit is {_share(panel.gap)} above\nthe load under Coulomb friction",
               panel.gap, -24, right=True)
     return [entries[method] for method in sorted(entries, key=lambda method: _first_time(methods[method]))]
 

@@ -89,7 +89,7 @@ def moving_arch() -> SceneClass:
 
 
 def wall(courses: int = 8, bricks: int = 5) -> SceneClass:
-    """A wall of bricks, half a brick displaced: the horizontal force that fells it."""
+    """A wall of bricks, half a brick displaced: the horizontal load at collapse."""
     text = written_block(rectangle(-1.0, -0.5, bricks + 2.0, 0.5), "fixed")
     for course in range(courses):
         ends = list(range(bricks + 1)) if course % 2 == 0 else [0, *(brick + 0.5 for brick in range(bricks)), bricks]
@@ -99,7 +99,7 @@ def wall(courses: int = 8, bricks: int = 5) -> SceneClass:
     groups = _searched(kind, "horizontal_coefficient", 30.0)
     original = tuple({"search": {"low": 0.1, "high": 1.0, "tolerance": 10.0**-k}} for k in (1, 2))
     methods = {COULOMB: _FINE, ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")}
-    title = f"Wall of {courses} courses: the push that fells it"
+    title = f"Wall of {courses} courses: horizontal load at collapse"
     return SceneClass("wall", title, groups, methods, 30.0, {BLOCKS: text})
 
 
@@ -132,5 +132,5 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> SceneClass:
     methods = {
         COULOMB: _FINE[1:6:2], ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")
     }
-    title = "Three rings: load at the quarter point that fells them"
+    title = "Three rings: collapse load at the quarter point"
     return SceneClass("three rings", title, groups, methods, 35.0, {BLOCKS: text}, number, (x, y))
