@@ -1,4 +1,4 @@
-!> Model options of a scene: the parts of the method that its answer requires
+!> Model options of a scene: the parts of the method without which its answer would be another one
 !>
 !> Whether a structure stands is a matter of equilibrium alone as long as its shape stays. Strain
 !> matters where blocks move, where they keep their velocities, where joints break one after the
@@ -19,7 +19,8 @@ module dda_scene_plan
    !> Unknowns of a rigid block: u0, v0, r0
    integer, parameter :: n_rigid = 3
 
-   !> Half angle below which round-off moves the steps of a chain [deg]
+   !> Below this half angle the steps of a chain near critical are moved by rounding, which passes
+   !> for rest sooner or later [deg]
    real(wp), parameter :: shallow_deg = 3.0_wp
 
    !> Why blocks have strains or not

@@ -1,4 +1,5 @@
-!> Verdict of a chain by a certificate of forces or a mechanism; half models as whole ones
+!> Whether a chain is stable: joint forces within their cones that balance the loads prove that it
+!> is, a mechanism on which the loads do work that it is not; and a half model as the whole
 module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, cone_of, holds, influence, rounding_of_forces
@@ -14,9 +15,9 @@ module dda_chain_decision
 
    public :: decide_chain, doubtful, unfold
 
-   !> Violation over its round-off below which nothing is proven
+   !> Forces beyond the cones by less than so many times their rounding prove nothing
    real(wp), parameter :: doubtful = 4.0_wp
-   !> Relative difference within which failing joints are equal
+   !> Joints that fail as much as their neighbours except for this share do so by rounding
    real(wp), parameter :: tie = 1.0e-6_wp
 
 contains

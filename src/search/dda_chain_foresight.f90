@@ -1,4 +1,4 @@
-!> Predicted critical value of a chain
+!> Where the collapse of a chain stops, before anything is decided
 !>
 !> What the forces of a chain lack, over the parameter, is zero where it ceases to fall; the joints
 !> that break their bounds near there are its last mechanism. No proof rests on what is foreseen:
@@ -11,15 +11,15 @@ submodule (dda_bracket) dda_chain_foresight
    use dda_settings, only : flow_rule
    implicit none
 
-   !> Maximum number of values
+   !> Most values that are looked at
    integer, parameter :: max_values = 12
-   !> Relative distance of the second value
+   !> Share of the value by which the second one lies beyond the first
    real(wp), parameter :: first_step = 0.05_wp
-   !> Relative distance of a value to the zero of its mechanism
+   !> How near a value must lie to where its mechanism would stop, over that
    real(wp), parameter :: near = 0.01_wp
-   !> Largest ratio of consecutive values
+   !> Largest ratio of two values in a row
    real(wp), parameter :: largest_ratio = 3.0_wp
-   !> Least acceleration of a collapse over free fall
+   !> Least acceleration that what falls is taken to have, over that of free fall
    real(wp), parameter :: least_acceleration = 1.0e-3_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Trace of a collapse: its joints with fixed states, up to the value at which motion ends
+!> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
 module dda_collapse_trace
    use dda_assembly, only : new_equations, solve_faces
    use dda_block_factor, only : substitute
@@ -49,19 +49,20 @@ module dda_collapse_trace
       type(frozen_mechanism_t) :: blocks  !! The mechanism of any blocks
    end type frozen_t
 
-   !> First search distance for large displacements, over the value
+   !> Share of the value by which moving blocks are first looked for beyond frozen ones
    real(wp), parameter :: first_reach = 1.0e-3_wp
-   !> Least half bracket over its value
+   !> Half a bracket is no narrower than this share of its value
    real(wp), parameter :: least_share = 4.0e-12_wp
-   !> Increase of that share per joint
+   !> What each joint adds to that share
    real(wp), parameter :: share_of_joint = 2.0e-14_wp
-   !> Factor over the noise of three samples
+   !> Margin over the noise that three samples show
    real(wp), parameter :: noise_margin = 20.0_wp
    !> Roots whose mean is taken where rounding is more than the tolerance
    integer, parameter :: n_roots = 32
-   !> Error of a parabola over its correction and the relative width of its values
+   !> How much of what the parabola corrects it may leave itself, over the relative width of the
+   !> values that it goes through
    real(wp), parameter :: curving = 1.0e3_wp
-   !> Maximum number of secant iterations
+   !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
    real(wp), parameter :: free_fall = 1.0e6_wp

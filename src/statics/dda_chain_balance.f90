@@ -1,4 +1,4 @@
-!> Equilibrium of a chain: all joint forces from three unknowns
+!> Balance of the forces of a chain: those of all joints follow from three numbers at one of them
 module dda_chain_balance
    use dda_chain, only : chain_t
    use dda_friction_cone, only : cone_kind, cone_t
@@ -9,7 +9,7 @@ module dda_chain_balance
    public :: cone_of, sum_loads, joint_force, influence, holds, carry_forces, rounding_of_forces
    public :: add_reaction
 
-   !> Relative error of a force from joint to joint
+   !> Relative error of a force that is carried from joint to joint
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
 contains

@@ -1,4 +1,5 @@
-!> Violation of the cones by the forces of a chain, and the power of the loads at collapse
+!> What the forces of a chain lack to lie in their cones, and the power of the loads on a collapse
+!> of it: what a search over its shape goes by, found by statics alone
 !>
 !> Sought is the least s for which forces in balance with the loads exist that keep
 !>
@@ -37,13 +38,13 @@ module dda_chain_lack
       logical :: known = .false.        !! Whether s was found
    end type lack_t
 
-   !> Maximum number of exchanges
+   !> Most bounds that come in
    integer, parameter :: max_exchanges = 40
-   !> Violation of bounds that is ignored, over the load
+   !> Forces beyond their bounds by less than this share of the load do not count
    real(wp), parameter :: little = 1.0e-12_wp
-   !> Least multiplier
+   !> Multipliers below this are none
    real(wp), parameter :: no_share = 1.0e-9_wp
-   !> Largest magnitude of the unknowns over the load
+   !> How far from zero the unknowns may go, over the load
    real(wp), parameter :: far = 1.0e3_wp
 
    !> The joints of a collapse that are not stuck, frozen

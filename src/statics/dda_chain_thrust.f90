@@ -1,4 +1,4 @@
-!> Joint forces of a chain from three unknowns by equilibrium
+!> The forces of a chain: those of all joints follow from three unknowns by equilibrium alone
 !>
 !> Sought are the forces in balance with the loads that lie nearest to the friction cones,
 !>
@@ -32,19 +32,19 @@ module dda_chain_thrust
       integer :: passes = 0
    end type thrust_t
 
-   !> Share of the forces inside the cones; smaller is sharper
+   !> Share of the forces inside the cones; the smaller, the sharper is the answer
    real(wp), parameter :: share = 1.0e-8_wp
-   !> Maximum number of iterations
+   !> Most passes
    integer, parameter :: max_passes = 40
-   !> Least relative decrease of the function
+   !> Share of the function below which it does not fall noticeably
    real(wp), parameter :: little = 1.0e-9_wp
-   !> Least relative decrease where the last digit counts
+   !> The same where the last digit counts
    real(wp), parameter :: exactly = 1.0e-20_wp
-   !> Stiffness that limits unresisted motion, over the springs
+   !> Share of the springs' stiffness that keeps what nothing resists from moving far
    real(wp), parameter :: weak = 1.0e-12_wp
-   !> Number of joints in the coarse chain
+   !> Chains of more joints are first looked at with about as many
    integer, parameter :: coarse = 60
-   !> Maximum number of points along a direction
+   !> Most places tried along a direction
    integer, parameter :: max_tries = 20
 
 contains

@@ -1,4 +1,4 @@
-!> Newton's method for a convex, piecewise quadratic function of three unknowns
+!> Newton's method on a convex function of three unknowns, quadratic from piece to piece
 module dda_three_unknowns
    use dda_kinds, only : wp
    implicit none
@@ -13,11 +13,11 @@ module dda_three_unknowns
       real(wp) :: curvature(3, 3) = 0.0_wp  !! Second derivatives
    end type chain_energy_t
 
-   !> Least decrease over the linear prediction
+   !> Share of the fall that a straight line promises which counts as a fall
    real(wp), parameter :: barely = 1.0e-4_wp
-   !> Largest final slope of a shortened step over its initial slope
+   !> How steep a shortened step may end, over how steep it begins
    real(wp), parameter :: less_steep = 0.5_wp
-   !> Relative round-off of the function
+   !> Relative error that rounding makes of the function
    real(wp), parameter :: rounding = 1.0e-11_wp
 
 contains
