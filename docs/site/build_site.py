@@ -17,8 +17,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from python_page import python_page
 import source_pages
+from python_page import python_page
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Pages in the order of the menu, by chapter; others of docs/ follow
