@@ -118,7 +118,7 @@ def _problem(scene: Scene) -> tuple[str, str]:
 
 
 def _is_current(scene: Scene) -> bool:
-    """Whether a scene is its deck with large displacements."""
+    """Return true for a deck that is run with large displacements."""
     return scene.settings == MOVED
 
 
