@@ -74,14 +74,14 @@ def test_what_does_not_stand_is_reported(tmp_path: Path) -> None:
 
 
 def test_a_search_in_time_begins_in_balance(tmp_path: Path) -> None:
-    """A block 0.25 wide on a base that is jerked: it rocks over for pulses beyond b/h."""
+    """A rigid block 0.25 wide on a base that is jerked: it rocks over for pulses beyond b/h."""
     scene = block([(-5.0, -1.0), (5.0, -1.0), (5.0, 0.0), (-5.0, 0.0)], "fixed") + block(
         [(0.0, 0.0), (0.25, 0.0), (0.25, 1.0), (0.0, 1.0)]
     )
     keys = (
         "&joint friction_deg = 80 /\n&ground pulse = 'rectangular', duration = 5.0 /\n"
         "&analysis mode = 'dynamic', geometry = 'current', time_step = 5e-3, duration = 4.0, steps = 100000, "
-        "start = 'static' /\n&search parameter = 'amplitude', low = 1.0, high = 5.0, tolerance = 1e-5 /\n"
+        "unknowns = 3, start = 'static' /\n&search parameter = 'amplitude', low = 1.0, high = 5.0, tolerance = 1e-5 /\n"
     )
     row = run_blocks(tmp_path, scene, keys)
     assert row["verdict"] == "found"
