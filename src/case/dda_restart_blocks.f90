@@ -37,6 +37,7 @@ contains
          fault = "that of other blocks"
       else if (any(abs(state%motion(1:2, :)) > far*size_of_all) &
          & .or. any(abs(state%motion(3:, :)) > far) .or. any(abs(state%velocity) > beyond_all) &
+         & .or. any(abs(state%strain_rate) > beyond_all) &
          & .or. any(abs(state%stress) > beyond_all)) then
          fault = "motions that no block has"
       end if
@@ -55,6 +56,7 @@ contains
       call begin_motion(system)
       system%motion = state%motion
       system%velocity = state%velocity
+      system%strain_rate = state%strain_rate
       system%stress = state%stress
       if (.not. settings%current) return
       call displace_blocks(settings, no_motion, system)

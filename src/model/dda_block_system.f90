@@ -48,6 +48,8 @@ module dda_block_system
       real(wp), allocatable :: motion(:, :)
       !> Rates of the unknowns: (n_unknown, n_block) [1/s of the above]
       real(wp), allocatable :: velocity(:, :)
+      !> Mean strain rate over the last step in time: (3, n_block) [1/s]
+      real(wp), allocatable :: strain_rate(:, :)
       !> Stress sx, sy, txy: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
       !> Stress that the blocks have without strain, in the frame that turns with the block:
@@ -102,7 +104,8 @@ contains
       n = size(system%area)
       allocate (system%moved, source=system%vertex)
       allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), source=0.0_wp)
-      allocate (system%stress(3, n), system%initial_stress(3, n), source=0.0_wp)
+      allocate (system%stress(3, n), system%initial_stress(3, n), system%strain_rate(3, n), &
+         & source=0.0_wp)
    end subroutine begin_motion
 
    !> Take from blocks that begin at rest and free of stress what motion changes
@@ -111,7 +114,7 @@ contains
 
       if (any(abs(system%velocity) > 0.0_wp) .or. any(abs(system%stress) > 0.0_wp)) return
       deallocate (system%moved, system%motion, system%velocity, system%stress, &
-         & system%initial_stress)
+         & system%initial_stress, system%strain_rate)
    end subroutine forget_rest
 
    !> Hand blocks over without a copy of what is large
@@ -135,6 +138,7 @@ contains
       call move_alloc(from%second, to%second)
       call move_alloc(from%motion, to%motion)
       call move_alloc(from%velocity, to%velocity)
+      call move_alloc(from%strain_rate, to%strain_rate)
       call move_alloc(from%stress, to%stress)
       call move_alloc(from%initial_stress, to%initial_stress)
    end subroutine move_large

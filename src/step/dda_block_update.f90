@@ -53,6 +53,7 @@ contains
          if (settings%current) then
             system%velocity(:settings%n_dof, b) = step%velocity(:, e)
             system%velocity(4:6, b) = turned_tensor(system%velocity(4:6, b), -motion(3), 2.0_wp)
+            system%strain_rate(:, b) = turned_tensor(motion(4:6)/step%dt, -motion(3), 2.0_wp)
             cycle
          end if
          if (settings%dynamic) system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)

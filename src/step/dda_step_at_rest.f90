@@ -43,6 +43,7 @@ contains
       end associate
       if (.not. still) return
       call begin_step(run)
+      run%system%strain_rate = 0.0_wp
       associate (step => run%step)
          run%contacts%increment = 0.0_wp
          step%dt = run%march%dt

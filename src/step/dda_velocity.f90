@@ -58,8 +58,10 @@ module dda_velocity
       real(wp), allocatable :: force_before(:, :)
       !> Velocities by constant acceleration: (n_dof, n_equation)
       real(wp), allocatable :: steady(:, :)
-      !> Blocks without strain rates: (n_block)
+      !> Blocks whose strain follows its load: (n_block)
       logical, allocatable :: follows(:)
+      !> Rates at which their strain opens the contacts and lets them slip: (3, n_joint) [m/s]
+      real(wp), allocatable :: strain_opening(:, :)
    end type impact_t
 
 contains
@@ -139,6 +141,7 @@ contains
       end do
       call place_rows(run%system, run%step%after%motion, joint, place, impact%springs%row)
       impact%follows = strain_follows(run%system, run%step%longest)
+      impact%strain_opening = strain_opening(run, impact%follows, impact%springs)
       meets = meeting_contacts(run)
       at_end = meets_at_end(run, meets)
       associate (start => packed_velocity(run%system, size(run%step%state%motion, 1)))
@@ -156,6 +159,33 @@ contains
       impact%force_before = run%step%state%force - masked_force(run, meets)
       if (.not. (at_end .and. any(meets))) impact%force_before = 0.0_wp
    end subroutine see_impacts
+
+   !> Rates at the end of a step at which strain that follows its load opens contacts. They are
+   !> extrapolated from the mean rates of this step and the one before, which is exact to the second
+   !> order and damps what steps do not resolve (BDF2: Gear 1971), by at most half of the mean
+   !> rate
+   pure function strain_opening(run, follows, springs) result(opening)
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: follows(:)                !! Blocks of such strain: (n_block)
+      type(joint_springs_t), intent(in) :: springs     !! Where the joints are after the step
+      real(wp) :: opening(3, size(springs%stiffness))  !! Rates: (3, n_joint) [m/s]
+      real(wp), dimension(size(run%step%state%motion, 1), size(run%step%state%motion, 2)) :: &
+         & mean, before
+      integer :: b, e
+
+      mean = 0.0_wp
+      before = 0.0_wp
+      do b = 1, merge(size(follows), 0, size(mean, 1) == 6)
+         e = run%system%equation(b)
+         if (e == 0 .or. .not. follows(b)) cycle
+         mean(4:, e) = run%step%state%motion(4:, e)/run%step%dt
+         before(4:, e) = run%system%strain_rate(:, b)
+      end do
+      opening = relative_displacement(springs, mean)
+      associate (change => opening - relative_displacement(springs, before))
+         opening = opening + sign(min(abs(change), abs(opening)), change)/2.0_wp
+      end associate
+   end function strain_opening
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine solve_rates(run, impact, restitution)
@@ -236,6 +266,8 @@ contains
       real(wp), intent(in) :: restitution
       type(joint_springs_t), intent(out) :: springs
       type(step_state_t), intent(out) :: state
+      real(wp) :: part(3)
+      logical :: bears(2)
       integer :: j
 
       springs = impact%springs
@@ -247,8 +279,11 @@ contains
             springs%stiffness(j) = over_inertia*joint_mass(run%system, pair)/run%step%dt**2
             call keep_closed(impact%closed(:, j), impact%follows(pair), j, springs, state)
          end associate
-         state%trial(1:2, j) = state%trial(1:2, j) &
-            & + springs%stiffness(j)*run%step%dt*restitution*impact%part(:, j)
+         part = [restitution*impact%part(:, j), 0.0_wp]
+         ! strain pushes no contacts apart that bore nothing before the step
+         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp
+         where ([bears, any(bears)]) part = part - impact%strain_opening(:, j)
+         state%trial(:, j) = state%trial(:, j) + springs%stiffness(j)*run%step%dt*part
       end do
    end subroutine begin_rates
 

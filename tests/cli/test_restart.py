@@ -104,8 +104,8 @@ def test_another_geometry_is_refused(tmp_path: Path) -> None:
 
 
 #: Numbers of 2 blocks with 8 corners and one joint of two contacts: 9 counts and 10 of the joint;
-#: 16 of the corners, 12 of motions, 12 of velocities, 6 of stresses, 2 reaches, 12 of the march, 24
-#: of the joint
+#: 16 of the corners, 12 of motions, 12 of velocities, 6 of strain rates, 6 of stresses, 2 reaches,
+#: 12 of the march, 24 of the joint
 MADE_UP = {
     "another number of joints": (lambda whole, number: whole.__setitem__(5, 2), "counts"),
     "joints below zero": (lambda whole, number: whole.__setitem__(5, -1), "counts"),
@@ -119,8 +119,8 @@ MADE_UP = {
     "edge of its own block": (lambda whole, number: whole.__setitem__(15, whole[13]), "joints"),
     "neither open nor closed": (lambda whole, number: whole.__setitem__(17, 2), "joints"),
     "slides sideways": (lambda whole, number: whole.__setitem__(19, 7), "joints"),
-    "weaker than nothing": (lambda whole, number: number.__setitem__(82, -1e-3), "joints"),
-    "stronger than whole": (lambda whole, number: number.__setitem__(83, 1.5), "joints"),
+    "weaker than nothing": (lambda whole, number: number.__setitem__(88, -1e-3), "joints"),
+    "stronger than whole": (lambda whole, number: number.__setitem__(89, 1.5), "joints"),
     "other corners": (lambda whole, number: number.__setitem__(3, 0.5), "other blocks"),
     "a fixed block that moves": (lambda whole, number: number.__setitem__(16, 1.0), "fixed blocks"),
     "no number": (lambda whole, number: number.__setitem__(22, float("nan")), "none"),
@@ -130,15 +130,16 @@ MADE_UP = {
     "no area": (lambda whole, number: number.__setitem__(26, -1.0), "strains"),
     "sheared to nothing": (lambda whole, number: number.__setitem__(27, 2.0), "strains"),
     "faster than all": (lambda whole, number: number.__setitem__(34, 1e200), "motions"),
-    "reach below zero": (lambda whole, number: number.__setitem__(47, -1.0), "search distances"),
-    "endless reach": (lambda whole, number: number.__setitem__(47, 1e9), "search distances"),
-    "time below zero": (lambda whole, number: number.__setitem__(48, -0.1), "time"),
-    "two times": (lambda whole, number: number.__setitem__(50, 0.5), "time"),
-    "no step": (lambda whole, number: number.__setitem__(49, 0.0), "step"),
-    "endless energy": (lambda whole, number: number.__setitem__(52, 1e300), "energies"),
-    "length below zero": (lambda whole, number: number.__setitem__(60, -1.0), "joints"),
-    "shares of more than all": (lambda whole, number: number.__setitem__(63, 2.0), "joints"),
-    "endless force": (lambda whole, number: number.__setitem__(73, 1e200), "joints"),
+    "strains faster than all": (lambda whole, number: number.__setitem__(43, 1e200), "motions"),
+    "reach below zero": (lambda whole, number: number.__setitem__(53, -1.0), "search distances"),
+    "endless reach": (lambda whole, number: number.__setitem__(53, 1e9), "search distances"),
+    "time below zero": (lambda whole, number: number.__setitem__(54, -0.1), "time"),
+    "two times": (lambda whole, number: number.__setitem__(56, 0.5), "time"),
+    "no step": (lambda whole, number: number.__setitem__(55, 0.0), "step"),
+    "endless energy": (lambda whole, number: number.__setitem__(58, 1e300), "energies"),
+    "length below zero": (lambda whole, number: number.__setitem__(66, -1.0), "joints"),
+    "shares of more than all": (lambda whole, number: number.__setitem__(69, 2.0), "joints"),
+    "endless force": (lambda whole, number: number.__setitem__(79, 1e200), "joints"),
 }
 
 
@@ -164,7 +165,7 @@ def test_numbers_that_are_not_changed_are_taken(tmp_path: Path) -> None:
     assert (tmp_path / "first" / "case_1.restart").read_bytes() == before
     assert go_on(tmp_path).returncode == 0
     whole, number = numbers_of(before)
-    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 20, 84)
+    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 20, 90)
 
 
 def test_a_case_of_many_that_cannot_go_on_says_why(tmp_path: Path) -> None:
