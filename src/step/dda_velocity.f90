@@ -52,7 +52,8 @@ module dda_velocity
       type(joint_springs_t) :: springs
       !> Contacts that are closed there: (2, n_joint)
       logical, allocatable :: closed(:, :)
-      !> Speeds at which they must part: (2, n_joint) [m/s]
+      !> Speeds at which they must part; negative where they part before an impact and may meet
+      !> after it (Moreau 1988): (2, n_joint) [m/s]
       real(wp), allocatable :: part(:, :)
       !> Forces up to an impact that ends the step; none where there is none: (3, n_joint) [N/m]
       real(wp), allocatable :: force_before(:, :)
@@ -127,7 +128,7 @@ contains
       type(joint_t) :: joint(size(run%contacts%joint))
       type(joint_place_t) :: place(size(run%contacts%joint))
       real(wp) :: gap(3)
-      integer :: j
+      integer :: j, side
 
       impact%closed = closed_contacts(run)
       impact%springs = run%contacts%springs
@@ -142,6 +143,11 @@ contains
       call place_rows(run%system, run%step%after%motion, joint, place, impact%springs%row)
       impact%follows = strain_follows(run%system, run%step%longest)
       impact%strain_opening = strain_opening(run, impact%follows, impact%springs)
+      do j = 1, size(joint)
+         do side = 1, 2
+            if (impact%follows(joint(j)%block(side))) impact%springs%row(4:, :, side, j) = 0.0_wp
+         end do
+      end do
       meets = meeting_contacts(run)
       at_end = meets_at_end(run, meets)
       associate (start => packed_velocity(run%system, size(run%step%state%motion, 1)))
@@ -156,6 +162,9 @@ contains
       end associate
       impact%part = merge(-run%settings%restitution*before(1:2, :), 0.0_wp, &
          & meets .and. -before(1:2, :) > run%step%slowest_impact)
+      ! others part already: stopped on their way by an impact they would bring in energy
+      if (any(impact%part > 0.0_wp)) where (before(1:2, :) > run%step%slowest_impact) &
+         & impact%part = -run%settings%restitution*before(1:2, :)
       impact%force_before = run%step%state%force - masked_force(run, meets)
       if (.not. (at_end .and. any(meets))) impact%force_before = 0.0_wp
    end subroutine see_impacts
@@ -273,12 +282,13 @@ contains
       springs = impact%springs
       state = run%step%state
       state%rates = .true.
+      ! speeds are found to the same digits in short steps
+      state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%step%longest)
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
-         associate (pair => run%contacts%joint(j)%block)
-            springs%stiffness(j) = over_inertia*joint_mass(run%system, pair)/run%step%dt**2
-            call keep_closed(impact%closed(:, j), impact%follows(pair), j, springs, state)
-         end associate
+         springs%stiffness(j) = over_inertia*joint_mass(run%system, run%contacts%joint(j)%block) &
+            & /run%step%dt**2
+         call keep_closed(impact%closed(:, j), j, springs, state)
          part = [restitution*impact%part(:, j), 0.0_wp]
          ! strain pushes no contacts apart that bore nothing before the step
          bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp
@@ -287,19 +297,16 @@ contains
       end do
    end subroutine begin_rates
 
-   !> Springs of one joint that only its closed contacts feel, and only motions without strain where
-   !> strain has no rate
-   pure subroutine keep_closed(closed, follows, j, springs, state)
+   !> Springs of one joint that act at its closed contacts alone
+   pure subroutine keep_closed(closed, j, springs, state)
       !> Contacts that are closed: (2)
       logical, intent(in) :: closed(2)
-      !> Blocks without strain rates: (2)
-      logical, intent(in) :: follows(2)
       !> Number of the joint
       integer, intent(in) :: j
       type(joint_springs_t), intent(inout) :: springs
       !> The state that the search for the velocities begins with
       type(step_state_t), intent(inout) :: state
-      integer :: k, side
+      integer :: k
 
       state%trial(:, j) = state%force(:, j)
       do k = 1, 2
@@ -315,9 +322,6 @@ contains
          state%force(3, j) = 0.0_wp
          state%trial(3, j) = 0.0_wp
       end if
-      do side = 1, 2
-         if (follows(side)) springs%row(4:, :, side, j) = 0.0_wp
-      end do
    end subroutine keep_closed
 
    !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
