@@ -5,12 +5,14 @@ module dda_balance
    use dda_contact_types, only : joint_springs_t
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
-   use dda_step_context, only : step_context_t
+   use dda_step_context, only : run_t, step_context_t
    use dda_step_state, only : equations_t
+   use dda_vector, only : cross
    implicit none
    private
 
-   public :: free_acceleration, gyration, is_drowned, measure_balance, measure_way_to_rest
+   public :: free_acceleration, gyration, is_drowned, keep_moment, measure_balance
+   public :: measure_way_to_rest
 
    !> A block that bears less than this share of the mean load, or of the mean mass, is light
    real(wp), parameter :: light = 1.0e-2_wp
@@ -200,4 +202,49 @@ contains
          end do
       end associate
    end function forces_around
+
+   !> Keep the angular momentum of each pair of blocks: the rows of a joint between turned edges
+   !> may lie off one line. The two blocks give back what that brings in by one change of spin
+   pure subroutine keep_moment(run, after)
+      !> The run, with the springs that half of the forces have acted by; spins are changed
+      type(run_t), intent(inout) :: run
+      !> The springs after the step, which the other half acts by
+      type(joint_springs_t), intent(in) :: after
+      real(wp) :: change(size(run%step%velocity, 2)), half_way(6, size(run%system%area)), moment
+      integer :: j, pair(2)
+
+      change = 0.0_wp
+      associate (step => run%step)
+         half_way = (run%system%motion + step%after%motion)/2.0_wp
+         do j = 1, size(run%contacts%joint)
+            pair = after%equation(:, j)
+            if (any(pair == 0)) cycle
+            moment = step%dt/sum(run%equations%mass(3, 3, pair)) &
+               & *(excess(run, run%contacts%springs, j, step%state%force(:, j), half_way) &
+               & + excess(run, after, j, step%mean_force(:, j) - step%state%force(:, j), &
+               & step%after%motion))
+            change(pair) = change(pair) - moment
+         end do
+         step%velocity(3, :) = step%velocity(3, :) + change
+      end associate
+   end subroutine keep_moment
+
+   !> Moment of the forces of a joint on both its blocks
+   pure real(wp) function excess(run, springs, j, force, motion)
+      type(run_t), intent(in) :: run
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: j              !! Number of the joint
+      real(wp), intent(in) :: force(3)      !! Its forces: (3) [N/m]
+      real(wp), intent(in) :: motion(:, :)  !! How the blocks have moved: (6, n_block)
+      real(wp) :: turn(3)
+      integer :: b, side
+
+      excess = 0.0_wp
+      do side = 1, 2
+         b = run%contacts%joint(j)%block(side)
+         turn = matmul(springs%row(1:3, :, side, j), force)
+         excess = excess + turn(3) + cross(run%system%centroid(:, b) + motion(1:2, b), turn(1:2))
+      end do
+   end function excess
+
 end module dda_balance

@@ -6,7 +6,7 @@ module dda_block_inertia
    use dda_deformation, only : turned_tensor
    use dda_step_state, only : equations_t
    use dda_submatrices, only : mass_matrix, stress_load
-   use dda_fixed_points, only : add_fixed_springs, follow_fixed_points
+   use dda_fixed_points, only : add_fixed_springs, follow_fixed_points, hold_rigidly
    use dda_kinds, only : wp
    use dda_outer_loads, only : outer_loads
    use dda_material, only : elasticity_matrix
@@ -14,8 +14,8 @@ module dda_block_inertia
    implicit none
    private
 
-   public :: assemble_blocks, damping_rate, turn_masses, hold_energy, kinetic_energy
-   public :: packed_velocity, strain_follows
+   public :: assemble_blocks, damping_rate, drop_strain_rates, hold_energy, kinetic_energy
+   public :: packed_velocity, strain_follows, turn_masses
 
    !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
    !> rate: its strain follows its load
@@ -182,4 +182,22 @@ contains
          end associate
       end do
    end function strain_follows
+
+   !> No rates of strains that follow their load
+   pure subroutine drop_strain_rates(equation, follows, equations)
+      integer, intent(in) :: equation(:)  !! Equation of each block, 0 for a fixed one: (n_block)
+      logical, intent(in) :: follows(:)   !! Blocks without strain rates: (n_block)
+      type(equations_t), intent(inout) :: equations
+      integer :: b, e
+
+      if (size(equations%load, 1) < 6) return
+      do b = 1, size(follows)
+         e = equation(b)
+         if (e == 0 .or. .not. follows(b)) cycle
+         equations%base(4:, :3, e) = 0.0_wp
+         equations%base(:3, 4:, e) = 0.0_wp
+         call hold_rigidly(e, equations%fixed)
+         equations%load(4:, e) = 0.0_wp
+      end do
+   end subroutine drop_strain_rates
 end module dda_block_inertia

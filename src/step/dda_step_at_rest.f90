@@ -3,11 +3,11 @@ submodule (dda_step) dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_update, only : displace_blocks
+   use dda_inertia_springs, only : stiffen_contacts
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : add_forces
    use dda_step_context, only : run_state_t
    use dda_step_motion, only : begin_step
-   use dda_velocity, only : stiffen_contacts
    implicit none
 
    !> Slow blocks are tried for rest after so many steps, after twice as many, and so on until every

@@ -5,13 +5,13 @@ module dda_step_motion
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : same_joint
    use dda_contacts, only : contacts_t, follow_contacts
+   use dda_inertia_springs, only : stiffen_contacts
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : relative_displacement
    use dda_step_context, only : in_time, run_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, reach_like_neighbours, travel_of
-   use dda_velocity, only : stiffen_contacts
    implicit none
    private
 

@@ -12,29 +12,29 @@
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
 module dda_velocity
+   use dda_balance, only : keep_moment
    use dda_bar_springs, only : couple_bars
-   use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
-      & strain_follows
-   use dda_block_system, only : block_system_t
+   use dda_block_inertia, only : damping_rate, drop_strain_rates, hold_energy, kinetic_energy, &
+      & packed_velocity, strain_follows
    use dda_contact_types, only : joint_place_t, joint_springs_t, joint_t, place_joint, place_rows
    use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
       & parting_acceleration
-   use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
+   use dda_fixed_points, only : add_fixed_springs, turn_fixed_row
+   use dda_inertia_springs, only : inertia_stiffness
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
    use dda_step_context, only : run_t
-   use dda_step_state, only : equations_t, step_state_t
-   use dda_vector, only : cross
+   use dda_step_state, only : step_state_t
    implicit none
    private
 
-   public :: solve_impacts, stiffen_contacts
+   public :: solve_impacts
 
-   !> Stiffness of the springs that stand for impulses, over the inertia m/dt**2
-   real(wp), parameter :: over_inertia = 1.0e3_wp
    !> Most tries with less restitution; the last one has none
    integer, parameter :: max_tries = 10
+   !> Most impacts of one moment, each by what the one before has left
+   integer, parameter :: max_impacts = 10
    !> Share of the velocities before that may be mixed in to keep the energy instead of a smaller
    !> restitution, and most that one try reduces the restitution by
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
@@ -67,15 +67,15 @@ module dda_velocity
 
 contains
 
-   !> Velocities of the blocks at the end of a settled step, if they settle. Newton's restitution
-   !> may bring in energy where there is friction, or where blocks are hit in several places; then
-   !> it is reduced. What contacts have done to the energy of the motion is no part of what is
-   !> allowed; without contacts only held points change it, which turn with their blocks
+   !> Velocities of the blocks at the end of a step, if they are found. What contacts have done to
+   !> the energy of the motion is no part of what is allowed; without contacts only held points
+   !> change it, which turn with their blocks
    pure subroutine solve_impacts(run)
       type(run_t), intent(inout) :: run
       type(impact_t) :: impact
       real(wp) :: allowed, before, share
-      integer :: try
+      integer :: impacts
+      logical :: meets
 
       call see_impacts(run, impact)
       associate (step => run%step, equations => run%equations)
@@ -85,16 +85,14 @@ contains
          step%fastest_impact = 0
          if (any(impact%part > 0.0_wp)) &
             & step%fastest_impact = maxloc(maxval(impact%part, dim=1), dim=1)
-         do try = 0, max_tries
-            if (try == max_tries) step%restitution = 0.0_wp
-            call solve_rates(run, impact, step%restitution)
+         call solve_impact(run, impact, allowed, share)
+         do impacts = 2, max_impacts
             if (.not. step%has_velocity) return
-            share = 0.0_wp
-            if (any(impact%closed)) &
-               & call hold_energy(equations, impact%steady, allowed, step%velocity, share)
-            if (share <= least_less .or. .not. any(step%restitution*impact%part > 0.0_wp)) exit
-            step%restitution = (1.0_wp - min(largest_less, 2.0_wp*share))*step%restitution
+            call see_next_impact(run, impact, meets)
+            if (.not. meets) exit
+            call add_impact(run, impact, allowed, share)
          end do
+         if (.not. step%has_velocity) return
          ! points that are led bring in energy of their own, and what contacts leave ends no run
          if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
             & .or. step%dt <= shortest*step%longest .or. &
@@ -106,6 +104,67 @@ contains
             & - sum(step%state%force(1:2, :)*step%state%increment(1:2, :))
       end associate
    end subroutine solve_impacts
+
+   !> Solve one impact. Newton's restitution may bring in energy where there is friction, or where
+   !> blocks are hit in several places; then it is reduced
+   pure subroutine solve_impact(run, impact, allowed, share)
+      type(run_t), intent(inout) :: run
+      type(impact_t), intent(in) :: impact
+      real(wp), intent(in) :: allowed  !! Energy of motion that it may leave [J/m]
+      !> Share of the velocities before that is mixed in to keep that energy
+      real(wp), intent(out) :: share
+      integer :: try
+
+      share = 0.0_wp
+      associate (step => run%step)
+         do try = 0, max_tries
+            if (try == max_tries) step%restitution = 0.0_wp
+            call solve_rates(run, impact, step%restitution)
+            if (.not. step%has_velocity) return
+            share = 0.0_wp
+            if (any(impact%closed)) call hold_energy(run%equations, impact%steady, allowed, &
+               & step%velocity, share)
+            if (share <= least_less .or. .not. any(step%restitution*impact%part > 0.0_wp)) exit
+            step%restitution = (1.0_wp - min(largest_less, 2.0_wp*share))*step%restitution
+         end do
+      end associate
+   end subroutine solve_impact
+
+   !> Solve an impact that follows another one at the same moment: their impulses add up
+   pure subroutine add_impact(run, impact, allowed, share)
+      type(run_t), intent(inout) :: run
+      type(impact_t), intent(in) :: impact
+      real(wp), intent(in) :: allowed
+      real(wp), intent(out) :: share
+      real(wp) :: force(3, size(run%contacts%joint)), held(2, size(run%equations%fixed%force))
+
+      force = run%step%mean_force - run%step%state%force
+      held(1, :) = run%equations%fixed%force
+      held(2, :) = run%step%held_mean_force
+      run%equations%fixed%force = 0.0_wp
+      call solve_impact(run, impact, allowed, share)
+      run%equations%fixed%force = held(1, :)
+      run%step%mean_force = run%step%mean_force + force
+      run%step%held_mean_force = run%step%held_mean_force + held(2, :)
+   end subroutine add_impact
+
+   !> See whether contacts that parted before an impact meet by it, which is the next impact
+   pure subroutine see_next_impact(run, impact, meets)
+      type(run_t), intent(in) :: run
+      type(impact_t), intent(inout) :: impact  !! The impact before in, the next one out
+      logical, intent(out) :: meets            !! Whether there is one
+      real(wp) :: before(3, size(run%contacts%joint))
+
+      meets = any(impact%part < 0.0_wp)
+      if (.not. meets) return
+      before = relative_displacement(impact%springs, run%step%velocity)
+      meets = any(impact%part < 0.0_wp .and. -before(1:2, :) > run%step%slowest_impact)
+      if (.not. meets) return
+      impact%steady = run%step%velocity
+      impact%force_before = run%step%state%force
+      impact%part = merge(-run%settings%restitution*before(1:2, :), 0.0_wp, &
+         & impact%closed .and. abs(before(1:2, :)) > run%step%slowest_impact)
+   end subroutine see_next_impact
 
    !> Energy that contacts may add in a step [J/m]
    pure real(wp) function allowed_gain(run, kinetic)
@@ -250,24 +309,6 @@ contains
       end associate
    end subroutine assemble_rates
 
-   !> No rates of strains that follow their load
-   pure subroutine drop_strain_rates(equation, follows, equations)
-      integer, intent(in) :: equation(:)  !! Equation of each block, 0 for a fixed one: (n_block)
-      logical, intent(in) :: follows(:)   !! Blocks without strain rates: (n_block)
-      type(equations_t), intent(inout) :: equations
-      integer :: b, e
-
-      if (size(equations%load, 1) < 6) return
-      do b = 1, size(follows)
-         e = equation(b)
-         if (e == 0 .or. .not. follows(b)) cycle
-         equations%base(4:, :3, e) = 0.0_wp
-         equations%base(:3, 4:, e) = 0.0_wp
-         call hold_rigidly(e, equations%fixed)
-         equations%load(4:, e) = 0.0_wp
-      end do
-   end subroutine drop_strain_rates
-
    !> Springs and forces that the search for velocities begins with
    pure subroutine begin_rates(run, impact, restitution, springs, state)
       type(run_t), intent(in) :: run
@@ -286,8 +327,8 @@ contains
       state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%step%longest)
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
-         springs%stiffness(j) = over_inertia*joint_mass(run%system, run%contacts%joint(j)%block) &
-            & /run%step%dt**2
+         springs%stiffness(j) = inertia_stiffness(run%system, run%contacts%joint(j)%block, &
+            & run%step%dt)
          call keep_closed(impact%closed(:, j), j, springs, state)
          part = [restitution*impact%part(:, j), 0.0_wp]
          ! strain pushes no contacts apart that bore nothing before the step
@@ -323,75 +364,5 @@ contains
          state%trial(3, j) = 0.0_wp
       end if
    end subroutine keep_closed
-
-   !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
-   !> may lie off one line. The two blocks give back what that brings in by one change of spin
-   pure subroutine keep_moment(run, after)
-      !> The run, with the springs that half of the forces have acted by; spins are changed
-      type(run_t), intent(inout) :: run
-      !> The springs after the step, which the other half acts by
-      type(joint_springs_t), intent(in) :: after
-      real(wp) :: change(size(run%step%velocity, 2)), half_way(6, size(run%system%area)), moment
-      integer :: j, pair(2)
-
-      change = 0.0_wp
-      associate (step => run%step)
-         half_way = (run%system%motion + step%after%motion)/2.0_wp
-         do j = 1, size(run%contacts%joint)
-            pair = after%equation(:, j)
-            if (any(pair == 0)) cycle
-            moment = step%dt/sum(run%equations%mass(3, 3, pair)) &
-               & *(excess(run, run%contacts%springs, j, step%state%force(:, j), half_way) &
-               & + excess(run, after, j, step%mean_force(:, j) - step%state%force(:, j), &
-               & step%after%motion))
-            change(pair) = change(pair) - moment
-         end do
-         step%velocity(3, :) = step%velocity(3, :) + change
-      end associate
-   end subroutine keep_moment
-
-   !> Moment of the forces of a joint on both its blocks
-   pure real(wp) function excess(run, springs, j, force, motion)
-      type(run_t), intent(in) :: run
-      type(joint_springs_t), intent(in) :: springs
-      integer, intent(in) :: j
-      real(wp), intent(in) :: force(3)      !! Its forces: (3) [N/m]
-      real(wp), intent(in) :: motion(:, :)  !! How the blocks have moved: (6, n_block)
-      real(wp) :: turn(3)
-      integer :: b, side
-
-      excess = 0.0_wp
-      do side = 1, 2
-         b = run%contacts%joint(j)%block(side)
-         turn = matmul(springs%row(1:3, :, side, j), force)
-         excess = excess + turn(3) + cross(run%system%centroid(:, b) + motion(1:2, b), turn(1:2))
-      end do
-   end function excess
-
-   !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the
-   !> step, and without memory of slip, which would bring in work. What sticks has no speed to
-   !> slip with
-   pure subroutine stiffen_contacts(run)
-      type(run_t), intent(inout) :: run
-      integer :: j
-
-      associate (contacts => run%contacts)
-         do j = 1, size(contacts%joint)
-            contacts%springs%stiffness(j) = max(contacts%springs%stiffness(j), &
-               & over_inertia*joint_mass(run%system, contacts%joint(j)%block)/run%step%dt**2)
-            contacts%trial(:, j) = contacts%force(:, j) &
-               & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
-         end do
-      end associate
-      run%equations%new_numbers = .true.
-   end subroutine stiffen_contacts
-
-   !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
-   pure real(wp) function joint_mass(system, pair)
-      type(block_system_t), intent(in) :: system
-      integer, intent(in) :: pair(2)  !! The two blocks: (2)
-
-      joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)
-   end function joint_mass
 
 end module dda_velocity
