@@ -246,11 +246,10 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         corners.setdefault(int(row["block"]), []).append([float(row["x"]), float(row["y"])])
         fixed[int(row["block"])] = row["state"] == "fixed"
     blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
-    joints = find_joints(blocks, deck.number("scene%contact_tolerance"))
     for block in blocks:
         if not 0.0 < block.size < math.inf:
             raise VerifyError(f"blocks.csv: block {block.number} has no area")
-    joints = find_joints(blocks)
+    joints = find_joints(blocks, deck.number("scene%contact_tolerance"))
     source = Source()
     if deck.text("scene%kind") == "blocks":
         source = read_blocks(*_files_of(deck, places), deck)

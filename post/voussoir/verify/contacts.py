@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ JOINED, WIDEST = 10.0, 1e-3
 
 #: Edges that overlap by less than this share of the shorter one meet at corners only
 OVERLAP = 1e-6
+
+#: Edges lie together if their directions differ by no more than this sine
+PARALLEL = 0.1
 
 #: A corner that bends inwards by a larger sine is a notch
 FLAT = 1e-9
@@ -37,22 +40,47 @@ class Block:
 
 @dataclass
 class Joint:
-    """Where two blocks touch: its ends, the normal from the first to the second, one corner or two."""
+    """Where two blocks touch: a corner of the one on an edge of the other at each end, the same twice for a corner."""
 
     first: int
     second: int
+    #: The corners: (2, 2)
     ends: np.ndarray
-    normal: np.ndarray
+    #: Both corners of the edge at each end, in the order in which it runs along the first block: (2, 2, 2)
+    edges: np.ndarray
     single: bool
-    #: The edge that the normal stands on, that of the first block
-    edge: np.ndarray
-    #: Gaps at its ends, at the corner for a single one [m]
-    gaps: np.ndarray
+    #: The two contacts: block 0 or 1 that has the edge, number of the edge and of the other block's corner
+    contacts: tuple[tuple[int, int, int], ...]
+    #: Unit normals of the edges, from the first block to the second: (2, 2)
+    across: np.ndarray = field(init=False)
+    #: Gaps at both ends [m]
+    gaps: np.ndarray = field(init=False)
+    #: Unit normal of the joint: that of its edges, or halfway between theirs
+    normal: np.ndarray = field(init=False)
+    #: Middle of the feet of the corners on their edges, where the shear force acts
+    middle: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        along = self.edges[:, 1] - self.edges[:, 0]
+        along = along / np.linalg.norm(along, axis=1)[:, None]
+        self.across = np.array([[way[1], -way[0]] for way in along])
+        # an edge of the second block has the first block's corner on its other side
+        sides = np.array([1.0 if contact[0] == 0 else -1.0 for contact in self.contacts])
+        off = ((self.ends - self.edges[:, 0]) * self.across).sum(axis=1)
+        self.gaps = off * sides
+        self.middle = (self.ends - off[:, None] * self.across).mean(axis=0)
+        normal = self.across.mean(axis=0)
+        self.normal = normal / np.linalg.norm(normal)
 
     @property
     def tangent(self) -> np.ndarray:
         """Unit vector to the left of the normal."""
         return np.array([-self.normal[1], self.normal[0]])
+
+    def forces(self, force: np.ndarray, way: float = 1.0) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Vectors and places of two normal forces and a shear force on the second block; of the first by way -1."""
+        normals = [(way * value * across, end) for value, across, end in zip(force, self.across, self.ends)]
+        return [*normals, (way * force[2] * self.tangent, self.middle)]
 
 
 def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
@@ -72,19 +100,32 @@ def find_joints(blocks: list[Block], tolerance: float = TOUCH) -> list[Joint]:
     Near misses are joined, too: edges that have no joint, and the nearest corner of blocks that have none at all.
     """
     blocks = [_without_straight_corners(block) for block in blocks]
-    wide = max(tolerance, min(JOINED * tolerance, WIDEST))
     low = np.array([block.corners.min(axis=0) for block in blocks])
     high = np.array([block.corners.max(axis=0) for block in blocks])
-    size = np.array([block.size for block in blocks])
+    shares = [tolerance] if tolerance >= WIDEST else [tolerance, WIDEST]
+    reaches = [_reaches(blocks, low, high, share) for share in shares]
     joints = []
     for i, first in enumerate(blocks):
-        reach = wide * np.minimum(size[i], size[i + 1:])[:, None]
-        near = np.all((low[i + 1:] <= high[i] + reach) & (high[i + 1:] >= low[i] - reach), axis=1)
-        for k in np.flatnonzero(near):
-            second = blocks[i + 1 + int(k)]
-            if not (first.fixed and second.fixed):
-                joints += _joined(first, second, tolerance, wide)
+        reach, beside = (row[:, None] for row in reaches[-1])
+        far = np.minimum(reach[i], reach[i + 1:])
+        near = np.all((low[i + 1:] <= high[i] + far) & (high[i + 1:] >= low[i] - far), axis=1)
+        for k in i + 1 + np.flatnonzero(near):
+            if first.fixed and blocks[k].fixed:
+                continue
+            # blocks beside both bound the reach: a sheet between two blocks is thicker than its own reach
+            bounds = [float(min(own[i], own[k], max(least[i], least[k]))) for own, least in reaches]
+            joints += _joined(first, blocks[k], bounds, shares)
     return joints
+
+
+def _reaches(blocks: list[Block], low: np.ndarray, high: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """A share of the size of each block, at most half its thickness; and the least of the blocks that it meets [m]."""
+    around = [float(np.linalg.norm(np.roll(block.corners, -1, axis=0) - block.corners, axis=1).sum())
+              for block in blocks]
+    reach = np.array([min(share * block.size, block.area / length) for block, length in zip(blocks, around)])
+    low, high = low - reach[:, None], high + reach[:, None]
+    beside = [float(reach[((low <= top) & (high >= foot)).all(axis=1)].min()) for foot, top in zip(low, high)]
+    return reach, np.array(beside)
 
 
 def _without_straight_corners(block: Block) -> Block:
@@ -93,50 +134,52 @@ def _without_straight_corners(block: Block) -> Block:
     return replace(block, corners=block.corners[turns]) if turns.sum() >= 3 else block
 
 
-def _joined(first: Block, second: Block, tolerance: float, wide: float) -> list[Joint]:
-    """Joints between two blocks, with those of their near misses."""
-    size = min(first.size, second.size)
-    joints = _joints_of(first, second, tolerance * size, tolerance * size)
-    if wide <= tolerance:
+def _joined(first: Block, second: Block, reaches: list[float], shares: list[float]) -> list[Joint]:
+    """Joints between two blocks, with those of their near misses, by the reach at the tolerance and at the widest."""
+    joints = _joints_of(first, second, reaches[0], reaches[0])
+    if len(shares) == 1:
         return joints
-    found = _joints_of(first, second, wide * size, tolerance * size)
-    edges = [joint for joint in found if not joint.single and _is_near_miss(joint, size)
-             and not any(not other.single and (other.ends == joint.ends).all() for other in joints)]
-    joints = [joint for joint in joints if not joint.single or not any(
-        np.linalg.norm(edge.ends - joint.ends[0], axis=1).min() == 0.0 for edge in edges)] + edges
-    corners = [joint for joint in found if joint.single]
-    return joints or sorted(corners, key=lambda joint: abs(float(joint.gaps[0])))[:1]
+    size = reaches[1] / shares[1]
+    known = {joint.contacts for joint in joints}
+    misses = [joint for joint in _joints_of(first, second, reaches[1], shares[0] * size) if joint.contacts not in known]
+    edges = [joint for joint in misses if not joint.single and _is_misfit(joint, size)]
+    corners = [joint for joint in misses if joint.single and not joints and not edges]
+    nearest = sorted(corners, key=lambda joint: abs(float(joint.gaps[0])))[:1]
+    most = max(shares[0], min(JOINED * shares[0], WIDEST)) * size
+    edges, nearest = ([miss for miss in rows if float(np.abs(miss.gaps).max()) <= most] for rows in (edges, nearest))
+    # a corner that touches is part of the joint of its edge
+    parts = {contact for edge in edges for contact in edge.contacts}
+    return [joint for joint in joints if not (joint.single and joint.contacts[0] in parts)] + edges + nearest
 
 
-def _is_near_miss(joint: Joint, size: float) -> bool:
+def _is_misfit(joint: Joint, size: float) -> bool:
     """Whether edges are meant to lie together: they overlap by more than a corner, and are nearly parallel."""
-    length = float(np.linalg.norm(joint.ends[1] - joint.ends[0]))
+    length = float(abs((joint.ends[1] - joint.ends[0]) @ joint.tangent))
     return length > WIDEST * size and abs(float(joint.gaps[1] - joint.gaps[0])) <= WIDEST * length
 
 
 def _joints_of(first: Block, second: Block, reach: float, at_end: float) -> list[Joint]:
     """Joints between two blocks with gaps within reach; corners so near to the end of an edge have met it."""
-    joints = []
-    taken: list[tuple[int, int, np.ndarray]] = []
+    both, joints = (first, second), []
     for a, b in _near_edges(first, second, reach):
-        joint = _edges_together(first, a, second, b, reach)
+        joint = _edges_together(first, int(a), second, int(b), reach)
         if joint is not None:
             joints.append(joint)
-            taken += [(side, edge, end) for side, edge in ((0, int(a)), (1, int(b))) for end in joint.ends]
-    for side, (owner, other) in enumerate(((first, second), (second, first))):
-        for a, k, in_notch in _near_corners(owner, other, reach, at_end):
-            corner = other.corners[k]
-            if any(
-                np.linalg.norm(corner - end) <= at_end and (not in_notch or (side, a) == (of, edge))
-                for of, edge, end in taken
-            ):
-                continue
-            start, direction, _ = _edge(owner, a)
-            normal = np.array([direction[1], -direction[0]])
-            ends = np.array([corner, corner])
-            gaps = np.array([(corner - start) @ normal] * 2)
-            joints.append(Joint(owner.number, other.number, ends, normal, True, _corners_of(owner, a), gaps))
+    taken = {contact for joint in joints for contact in joint.contacts}
+    for side in (0, 1):
+        for edge, corner in _near_corners(both[side], both[1 - side], reach, at_end):
+            if (side, edge, corner) not in taken:
+                joints.append(_joint(first, second, [(side, edge, corner)]))
     return joints
+
+
+def _joint(first: Block, second: Block, contacts: list[tuple[int, int, int]]) -> Joint:
+    """The joint of one contact or two."""
+    both = (first, second)
+    twice = (contacts * 2)[:2]
+    ends = np.array([both[1 - side].corners[corner] for side, _, corner in twice])
+    edges = np.array([_corners_of(both[side], edge)[::1 - 2 * side] for side, edge, _ in twice])
+    return Joint(first.number, second.number, ends, edges, len(contacts) == 1, tuple(contacts * 2)[:2])
 
 
 def _near_edges(first: Block, second: Block, reach: float) -> np.ndarray:
@@ -150,8 +193,8 @@ def _near_edges(first: Block, second: Block, reach: float) -> np.ndarray:
     return np.argwhere(meets.all(axis=2))
 
 
-def _near_corners(owner: Block, other: Block, reach: float, at_end: float) -> list[tuple[int, int, bool]]:
-    """Edges of one block with corners of another that lie on them, off their ends, or in notches that both meet."""
+def _near_corners(owner: Block, other: Block, reach: float, at_end: float) -> list[tuple[int, int]]:
+    """Edges of one block, and corners of another that point to them: off their ends, or in notches that both meet."""
     start = owner.corners
     along = np.roll(start, -1, axis=0) - start
     length = np.linalg.norm(along, axis=1)[:, None]
@@ -159,12 +202,11 @@ def _near_corners(owner: Block, other: Block, reach: float, at_end: float) -> li
     away = other.corners[None] - start[:, None]
     place = (away * unit[:, None]).sum(axis=2)
     off = away[:, :, 0] * unit[:, None, 1] - away[:, :, 1] * unit[:, None, 0]
-    near = np.abs(off) <= reach
-    inside = near & (place > at_end) & (place < length - at_end)
-    notch = (_bend(owner) < -FLAT)[:, None]
-    in_notch = near & (notch & (np.abs(place) <= at_end) | np.roll(notch, -1) & (np.abs(place - length) <= at_end))
-    in_notch &= (_bend(other) > -FLAT)[None] & _faces(other, unit)
-    return [(int(a), int(k), bool(in_notch[a, k])) for a, k in np.argwhere(inside | in_notch)]
+    # in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
+    zone = np.where(_bend(owner) <= -FLAT, -at_end, at_end)[:, None]
+    near = (np.abs(off) <= reach) & (place >= zone) & (place <= length - np.roll(zone, -1))
+    near &= (_bend(other) > -FLAT)[None] & _faces(other, unit)
+    return [(int(edge), int(corner)) for edge, corner in np.argwhere(near)]
 
 
 def _bend(block: Block) -> np.ndarray:
@@ -196,29 +238,26 @@ def _corners_of(block: Block, number: int) -> np.ndarray:
 
 
 def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -> Joint | None:
-    """The joint of two edges that lie together, if they do."""
+    """The joint of two edges that lie together, if they do: each end is the inner one of two corners."""
     start, direction, length = _edge(first, a)
     other, opposite, other_length = _edge(second, b)
-    if direction @ opposite > -0.9:
+    sine = direction[0] * opposite[1] - direction[1] * opposite[0]
+    if direction @ opposite > 0.0 or abs(sine) > PARALLEL:
         return None
-    normal = np.array([direction[1], -direction[0]])
-    tail = other + other_length * opposite
-    low = max(0.0, min((other - start) @ direction, (tail - start) @ direction))
-    high = min(length, max((other - start) @ direction, (tail - start) @ direction))
-    if high - low <= OVERLAP * min(length, other_length):
+    way = direction - opposite
+    way = way / np.linalg.norm(way)
+    stop, tail = start + length * direction, other + other_length * opposite
+    own = [0.0, float(way @ (stop - start))]
+    its = [float(way @ (tail - start)), float(way @ (other - start))]
+    if not min(own[1], its[1]) - max(own[0], its[0]) > OVERLAP * min(own[1] - own[0], its[1] - its[0]):
         return None
-    ends, gaps = [], []
-    for place in (low, high):
-        on_first = start + place * direction
-        share = (on_first - other) @ opposite
-        on_second = other + min(max(share, 0.0), other_length) * opposite
-        gaps.append((on_second - on_first) @ normal)
-        if abs(gaps[-1]) > reach:
-            return None
-        # the corner that makes the end, of whichever block
-        corners = [*first.corners, *second.corners]
-        ends.append(min(corners, key=lambda corner: float(np.linalg.norm(corner - on_first))))
-    return Joint(first.number, second.number, np.array(ends), normal, False, _corners_of(first, a), np.array(gaps))
+    contacts = []
+    for mine, theirs, ahead in ((a, b + 1, own[0] - its[0]), (a + 1, b, its[1] - own[1])):
+        mine, theirs = mine % len(first.corners), theirs % len(second.corners)
+        is_mine = ahead >= 0.0 and _bend(first)[mine] > -FLAT
+        contacts.append((1, b, mine) if is_mine else (0, a, theirs))
+    joint = _joint(first, second, contacts)
+    return joint if float(np.abs(joint.gaps).max()) <= reach else None
 
 
 def depth(block: Block, point: np.ndarray) -> float:

@@ -86,17 +86,7 @@ def _columns(exact: ExactScene, nudge: Fraction, number: dict[int, int], origin:
     """What a unit of each force at the joints and held points does to the blocks."""
     scene, columns = exact.scene, []
     for joint in scene.joints:
-        ends, edge = [exact.at(end) for end in joint.ends], [exact.at(end) for end in joint.edge]
-        tangent = edge[1] - edge[0]
-        normal = np.array([tangent[1], -tangent[0]])
-        friction = scene.friction(joint)
-        for end in ends[:1] if joint.single else ends:
-            if isinstance(friction, Fraction):
-                vectors = [normal + way * friction * (1 + nudge) * tangent for way in (1, -1)]
-            else:
-                vectors = [normal, tangent, -tangent] if end is ends[0] else [normal]
-            for vector in vectors:
-                columns.append(_effect(vector, end - origin, joint, number))
+        columns += _columns_of(exact, joint, scene.friction(joint), nudge, number, origin)
     for block in scene.blocks:
         for point, along in [] if block.fixed else held_points(scene, block):
             for k in range(2):
@@ -118,6 +108,39 @@ def _columns(exact: ExactScene, nudge: Fraction, number: dict[int, int], origin:
             row += 1
         columns.append(column)
     return columns
+
+
+def _columns_of(
+    exact: ExactScene, joint: Joint, friction: Fraction | float, nudge: Fraction, number: dict[int, int],
+    origin: np.ndarray,
+) -> list[Column]:
+    """What a unit of each force of a joint does: a normal one at each end, with friction either way."""
+    ends, edges = [exact.at(end) for end in joint.ends], [[exact.at(at) for at in edge] for edge in joint.edges]
+    along = [edge[1] - edge[0] for edge in edges]
+    feet = [edge[0] + way * ((end - edge[0]) @ way / (way @ way)) for end, edge, way in zip(ends, edges, along)]
+    middle, columns = (feet[0] + feet[1]) / 2 - origin, []
+    for k in range(1 if joint.single else 2):
+        press = _effect(np.array([along[k][1], -along[k][0]]), ends[k] - origin, joint, number)
+        slide = _effect(_tangent(along, k), middle, joint, number)
+        if isinstance(friction, Fraction):
+            columns += [_sum(press, slide, way * friction * (1 + nudge)) for way in (1, -1)]
+        else:
+            columns += [press, slide, _sum({}, slide, Fraction(-1))]
+    return columns
+
+
+def _tangent(along: list[np.ndarray], k: int) -> np.ndarray:
+    """The direction of a joint of two edges, as long as the one at its end k: that between theirs."""
+    if along[0][0] * along[1][1] == along[0][1] * along[1][0]:
+        return along[k]
+    lengths = [square_root(way @ way) for way in along]
+    between = along[0] / lengths[0] + along[1] / lengths[1]
+    return between * (lengths[k] / square_root(between @ between))
+
+
+def _sum(column: Column, other: Column, share: Fraction) -> Column:
+    """A column and a share of another."""
+    return {i: value for i in column | other if (value := column.get(i, Fraction(0)) + share * other.get(i, 0))}
 
 
 def _bounds(exact: ExactScene, nudge: Fraction) -> list[Fraction]:

@@ -168,7 +168,7 @@ def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> fl
     """Coefficient of friction of a joint or springing joint; infinite where it cannot slide."""
     law = Law(*(deck.number(f"joint%{name}") for name in ("friction_deg", "cohesion", "tension")))
     if source.lines:
-        listed = min(source.lines, key=lambda line: _distance(line[0], joint.edge))[1]
+        listed = min(source.lines, key=lambda line: _distance(line[0], joint.edges[0]))[1]
         law = Law(*(getattr(law if deck.gives(f"joint%{name}") else listed, name)
                     for name in ("friction_deg", "cohesion", "tension")))
     if max(law.cohesion, law.tension) > 0:

@@ -112,7 +112,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
             _check_pull(scene, row, points, spent, left, largest, finding)
             continue
         pair = int(row["block_1"]), int(row["block_2"])
-        joint, ends = _match(pairs.get((min(pair), max(pair)), []), points, scene.blocks[pair[0] - 1])
+        joint, order = _match(pairs.get((min(pair), max(pair)), []), points, scene.blocks[pair[0] - 1])
         if joint is None or id(joint) in used:
             if np.abs(force).max() > 0.0:
                 finding.faults.append(f"blocks {pair[0]} and {pair[1]} have no joint at {tuple(points[0])}")
@@ -120,8 +120,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
         used.add(id(joint))
         way = 1.0 if joint.first == pair[0] else -1.0
         _law(force, joint, scene, largest, finding)
-        for vector, at in ((force[0] * way * joint.normal, ends[0]), (force[1] * way * joint.normal, ends[1]),
-                           (force[2] * way * joint.tangent, ends.mean(axis=0))):
+        for vector, at in joint.forces(force[order], way):
             push(left, scene.blocks[pair[1] - 1], at, vector)
             push(left, scene.blocks[pair[0] - 1], at, -vector)
             for number in pair:
@@ -189,13 +188,13 @@ def _law(force: np.ndarray, joint: Joint, scene: Scene, largest: float, finding:
     finding.keep("law of forces", beyond / largest)
 
 
-def _match(joints: list[Joint], points: np.ndarray, block: Block) -> tuple[Joint | None, np.ndarray]:
-    """The joint with two ends, and its own ends in their order."""
+def _match(joints: list[Joint], points: np.ndarray, block: Block) -> tuple[Joint | None, list[int]]:
+    """The joint with two ends, and where its two normal forces and its shear force stand in those of the points."""
     for joint in joints:
-        for ends in (joint.ends, joint.ends[::-1]):
-            if np.abs(ends - points).max() <= TOUCH * block.size:
-                return joint, ends
-    return None, points
+        for order in ([0, 1, 2], [1, 0, 2]):
+            if np.abs(joint.ends[order[:2]] - points).max() <= TOUCH * block.size:
+                return joint, order
+    return None, [0, 1, 2]
 
 
 def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> None:
@@ -235,8 +234,9 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding, apart: float =
     for joint in scene.joints:
         apart = [velocity_at(scene, velocity, joint.second, end) - velocity_at(scene, velocity, joint.first, end)
                  for end in joint.ends]
-        friction, slip = scene.friction(joint), abs(float((apart[0] + apart[1]) @ joint.tangent)) / 2.0
-        opens = [float(rate @ joint.normal) for rate in apart]
+        slides = [velocity_at(scene, velocity, number, joint.middle) for number in (joint.first, joint.second)]
+        friction, slip = scene.friction(joint), abs(float((slides[1] - slides[0]) @ joint.tangent))
+        opens = [float(rate @ across) for rate, across in zip(apart, joint.across)]
         opening, crush = min(opens), scene.crush(joint)
         beyond = max(-opening, slip)
         if math.isfinite(crush):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from voussoir.verify.contacts import WIDEST, Block, Joint, numbers_of
+from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import loads_on, sizes_on
 from voussoir.verify.proofs import TOLERANCE, Finding, Scene, digits_of, largest_of, push, reach_of, rounding_of
@@ -50,7 +50,7 @@ def check_joints(
     for row in rows:
         number, first, second = (int(row[name]) for name in ("joint", "block_1", "block_2"))
         ends = np.array([[float(row[f"{axis}_{side}"]) for axis in "xy"] for side in ("intrados", "extrados")])
-        joint = _near(pairs.get((min(first, second), max(first, second)), []), ends, scene, first)
+        joint, order = _near(pairs.get((min(first, second), max(first, second)), []), ends, scene, first)
         vector = np.array([float(row["force_x"]), float(row["force_y"])])
         at = np.array([float(row["x"]), float(row["y"])])
         if joint is None:
@@ -68,9 +68,9 @@ def check_joints(
         if math.isfinite(friction):
             beyond = max(beyond, (abs(shear) - friction * normal) / max(1.0, friction))
         finding.keep("law of told forces", beyond / largest, TOLD if bars is not None else FALLING)
-        # the shear force acts halfway, where its moment is that of anywhere along the joint
-        push(left, scene.blocks[second - 1], at, vector)
-        push(left, scene.blocks[first - 1], at, -vector)
+        for force, place in _forces(row, joint, order, way, at, vector):
+            push(left, scene.blocks[second - 1], place, force)
+            push(left, scene.blocks[first - 1], place, -force)
         for number in (first, second):
             allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding[number - 1]
     if bars is None:
@@ -107,15 +107,23 @@ def _is_held(scene: Scene, number: int) -> bool:
     return any(held.block in (0, number) for held in scene.source.held)
 
 
-def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> Joint | None:
-    """The joint with two ends."""
-    def apart(joint: Joint) -> float:
-        """Largest distance of an end."""
-        return float(min(np.abs(joint.ends - ends).max(), np.abs(joint.ends[::-1] - ends).max()))
+def _forces(
+    row: Row, joint: Joint, order: list[int], way: float, at: np.ndarray, vector: np.ndarray
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Told forces on the second block, and where they act: each contact's along the normal of its own edge."""
+    normal, shear = float(row["normal_force"]), float(row["shear_force"])
+    if joint.single or not row["eccentricity_ratio"]:
+        return joint.forces(np.array([normal, 0.0, shear]), way) if joint.single else [(vector, at)]
+    uneven = float(row["eccentricity_ratio"]) * normal
+    return joint.forces(np.array([(normal + uneven) / 2.0, (normal - uneven) / 2.0, shear])[order], way)
 
-    nearest = min(joints, key=apart, default=None)
-    # ends are corners of the one or the other block, which near misses hold apart
-    return nearest if nearest and apart(nearest) <= WIDEST * scene.blocks[first - 1].size else None
+
+def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> tuple[Joint | None, list[int]]:
+    """The joint with two ends, and where its two normal forces and its shear force stand in those of the ends."""
+    ways = [(float(np.abs(joint.ends[order[:2]] - ends).max()), k, order)
+            for k, joint in enumerate(joints) for order in ([0, 1, 2], [1, 0, 2])]
+    apart, k, order = min(ways, default=(math.inf, 0, [0, 1, 2]))
+    return joints[k] if apart <= TOUCH * scene.blocks[first - 1].size else None, order
 
 
 def _check_place(
@@ -125,12 +133,14 @@ def _check_place(
 
     Corners are off by `rounding` [m].
     """
-    middle, length = joint.ends.mean(axis=0), float(np.linalg.norm(joint.ends[1] - joint.ends[0]))
+    middle, along = joint.ends.mean(axis=0), joint.ends[1] - joint.ends[0]
+    length = float(np.linalg.norm(along))
     if joint.single or not normal > 0.0:
         return
     beyond, digits = float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5, rounding / length
     finding.keep("place of a force", max(0.0, beyond), TOLD + digits)
-    finding.keep("place off its joint", abs(float((at - middle) @ joint.normal)) / length, TOLERANCE + digits)
+    aside = along[0] * (at - middle)[1] - along[1] * (at - middle)[0]
+    finding.keep("place off its joint", abs(float(aside)) / length**2, TOLERANCE + digits)
     if row["eccentricity_ratio"]:
         told = abs(float(row["eccentricity_ratio"]))
         finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - told), SAME + digits)
