@@ -188,10 +188,40 @@ contains
 
       half = 0.5_wp*vehicle%length
       if (.not. vehicle%spread > 0.0_wp) return
-      call find_top(road, min(max(x, road%reach(1)), road%reach(2)), edge, top)
+      if (x > road%reach(1) .and. x < road%reach(2)) then
+         call find_top(road, x, edge, top)
+      else
+         edge = end_edge(road, x)
+      end if
       if (edge > 0) top = min(road%left(2, edge), road%right(2, edge))
       half = half + vehicle%spread*max(0.0_wp, vehicle%surface - origin(2) - top)
    end function half_length
+
+   !> The upper edge at the nearest end of the blocks that move; a fixed one that meets it there is
+   !> none, by whatever rounding it may be the higher one
+   pure integer function end_edge(road, x)
+      type(road_t), intent(in) :: road
+      real(wp), intent(in) :: x  !! Where the axle is, beside them all [m]
+      real(wp) :: top, y
+      logical :: ends
+      integer :: k
+
+      end_edge = 0
+      top = -huge(top)
+      do k = 1, size(road%block)
+         if (.not. road%moves(k)) cycle
+         if (x <= road%reach(1)) then
+            ends = .not. road%left(1, k) > road%reach(1)
+            y = road%left(2, k)
+         else
+            ends = .not. road%right(1, k) < road%reach(2)
+            y = road%right(2, k)
+         end if
+         if (.not. (ends .and. y > top)) cycle
+         top = y
+         end_edge = k
+      end do
+   end function end_edge
 
    !> Positions between which the loads of all axles change smoothly: where an end of one passes a
    !> corner of an upper face, or its middle, where what it is spread over is another length beyond

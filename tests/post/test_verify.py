@@ -135,6 +135,11 @@ DECKS = {
     "a vehicle that a flat arch carries at any factor": "&arch shape = 'flat', span = 3.483, voussoirs = 18, "
         "half_angle_deg = 24.64, thickness = 0.7518, spans = 2, pier_width = 0.9679, pier_height = 1.42 /\n"
         "&joint friction_deg = 37.15 /\n&vehicle axles = 19330, length = 0, worst = .true. /\n" + SEARCH,
+    # the end of the last voussoir and that of its abutment are one but for their last digit
+    "an axle beside an arch in fill": "&arch shape = 'parabolic', span = 14.61, voussoirs = 16, rise = 7.028, "
+        "right_rise = 7.301, crown_thickness = 1.472, springing_thickness = 2.321 /\n"
+        "&joint friction_deg = 28.28 /\n&fill height = 0.8984, unit_weight = 17480 /\n"
+        "&vehicle axles = 112700, 97230, spacings = 7.559, position = 3.039 /\n" + SEARCH,
     "an arch as thin as 2e-6 of its radius": "&arch half_angle_deg = 5.7, voussoirs = 30 /\n&search /\n",
     "a thin segment by its thickness": "&arch shape = 'segmental', span = 10, rise = 0.158, thickness = 0.001, "
         "voussoirs = 57 /\n&search parameter = 'thickness', low = 1e-6, high = 1 /\n",

@@ -183,7 +183,9 @@ def _crown(chords: list[Chord]) -> float:
 def lowest_below(blocks: list[Block], x: float) -> float:
     """Height of the lower end of the upper edge below an axle; beside all that can move, of the nearest end."""
     free = np.concatenate([block.corners[:, 0] for block in blocks if not block.fixed])
-    x = min(max(x, free.min()), free.max())
+    if not free.min() < x < free.max():
+        # what is fixed meets the nearest end there
+        x, blocks = min(max(x, free.min()), free.max()), [block for block in blocks if not block.fixed]
     best: tuple[float, float] | None = None
     for block in blocks:
         for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
