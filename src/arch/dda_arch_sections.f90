@@ -36,46 +36,58 @@ contains
       type(curve_t), intent(in) :: curve
       real(wp), allocatable, intent(out) :: at(:)       !! The lengths, rising: (n) [m]
       logical, allocatable, intent(out) :: is_joint(:)  !! Which of them are joints: (n)
+      real(wp), allocatable :: row(:, :)
       real(wp) :: from, to, whole
-      integer :: i
+      integer :: i, n
 
       whole = curve_length(curve)
-      allocate (at(1), source=0.0_wp)
+      allocate (row(1, 1), source=0.0_wp)
       allocate (is_joint(1), source=.true.)
+      n = 1
       do i = 1, form%voussoirs
-         from = at(size(at))
+         from = row(1, n)
          to = whole*real(i, wp)/real(form%voussoirs, wp)
          if (curve%pointed .and. abs(to - curve%crown) <= same*whole) to = curve%crown
          if (curve%pointed .and. from < curve%crown .and. to > curve%crown) then
-            call add_chords(form, curve, from, curve%crown, at, is_joint)
-            is_joint(size(at)) = .false.
+            call add_chords(form, curve, from, curve%crown, n, row, is_joint)
+            is_joint(n) = .false.
             from = curve%crown
          end if
-         call add_chords(form, curve, from, to, at, is_joint)
+         call add_chords(form, curve, from, to, n, row, is_joint)
       end do
+      at = row(1, :n)
+      is_joint = is_joint(:n)
    end subroutine place_sections
 
    !> Add sections up to a joint, so many that no chord spans too large an angle
-   pure subroutine add_chords(form, curve, from, to, length, is_joint)
+   pure subroutine add_chords(form, curve, from, to, n, row, is_joint)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
       !> Length where they begin, a section already [m]
       real(wp), intent(in) :: from
-      real(wp), intent(in) :: to                          !! Length of the joint [m]
-      real(wp), allocatable, intent(inout) :: length(:)   !! Receives their lengths: (n) [m]
+      real(wp), intent(in) :: to       !! Length of the joint [m]
+      integer, intent(inout) :: n      !! Number of sections
+      !> Receives their lengths, with room for more: (1, n) [m]
+      real(wp), allocatable, intent(inout) :: row(:, :)
       logical, allocatable, intent(inout) :: is_joint(:)  !! Receives that the last is a joint: (n)
       type(station_t) :: first, last
-      integer :: i, n
+      integer :: i, n_chord
 
-      n = 1
+      n_chord = 1
       if (form%facet_deg > 0.0_wp) then
          first = station_at(curve, from, .true.)
          last = station_at(curve, to, .false.)
-         n = max(1, ceiling(abs(atan2(cross(first%along, last%along), &
+         n_chord = max(1, ceiling(abs(atan2(cross(first%along, last%along), &
             & dot_product(first%along, last%along)))/(degree*form%facet_deg) - same))
       end if
-      length = [length, (from + (to - from)*real(i, wp)/real(n, wp), i=1, n - 1), to]
-      is_joint = [is_joint, (.false., i=1, n - 1), .true.]
+      call make_room(row, n + n_chord)
+      call make_room(is_joint, n + n_chord)
+      do i = 1, n_chord
+         row(1, n + i) = from + (to - from)*real(i, wp)/real(n_chord, wp)
+         is_joint(n + i) = i == n_chord
+      end do
+      n = n + n_chord
+      row(1, n) = to
    end subroutine add_chords
 
    !> Ends of a section

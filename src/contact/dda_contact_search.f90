@@ -21,7 +21,7 @@ module dda_contact_search
    private
 
    public :: find_edge_pairs, new_joint_search, look_around, law_between, touching_joints
-   public :: near_joints
+   public :: near_joints, remember_drawn
 
    !> Least and largest margin over the block size
    real(wp), parameter :: least = 0.05_wp, most = 0.5_wp
@@ -33,7 +33,7 @@ module dda_contact_search
 contains
 
    !> Edges of different blocks whose boxes overlap, in the order of their blocks
-   pure subroutine find_edge_pairs(search, equation, vertex, reach, pair)
+   pure subroutine find_edge_pairs(search, equation, vertex, reach, pair, near_alone)
       !> How the corners follow one another, and what is remembered
       type(joint_search_t), intent(in) :: search
       !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
@@ -44,12 +44,21 @@ contains
       real(wp), intent(in) :: reach(:)
       !> The pairs, of two fixed blocks none: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
+      !> Whether edges are left out that are themselves beyond reach: those of thin blocks that lean
+      !> have boxes that overlap by the hundred
+      logical, intent(in), optional :: near_alone
       real(wp) :: low(2, size(vertex, 2)), high(2, size(vertex, 2))
       integer, allocatable :: near(:, :)
       integer :: i, n
 
       call edge_boxes(search%outline, vertex, reach, low, high)
       if (.not. covers(search, vertex, reach)) then
+         if (present(near_alone)) then
+            if (near_alone) then
+               call search_pairs(search%outline, equation, low, high, pair, vertex, reach)
+               return
+            end if
+         end if
          call search_pairs(search%outline, equation, low, high, pair)
          return
       end if
@@ -121,19 +130,29 @@ contains
    end subroutine edge_boxes
 
    !> Edges of different blocks whose boxes overlap, by a tree of all boxes
-   pure subroutine search_pairs(outline, equation, low, high, pair)
+   pure subroutine search_pairs(outline, equation, low, high, pair, vertex, reach)
       type(outline_t), intent(in) :: outline
       integer, intent(in) :: equation(:)
       real(wp), intent(in) :: low(:, :), high(:, :)
       !> The pairs in the order of their blocks: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
+      !> Where the corners are, and how far each block can reach, to leave out edges beyond it
+      real(wp), intent(in), optional :: vertex(:, :), reach(:)
       integer :: group(size(outline%block))
+      real(wp), allocatable :: segment(:, :)
       integer(int64), allocatable :: key(:)
       integer, allocatable :: found(:, :)
       integer :: i
 
       group = merge(outline%block, 0, equation(outline%block) > 0)
-      call box_pairs(low, high, group, found)
+      if (present(vertex)) then
+         allocate (segment(4, size(vertex, 2)))
+         segment(1:2, :) = vertex
+         segment(3:4, :) = vertex(:, outline%next)
+         call box_pairs(low, high, group, found, segment, reach(outline%block))
+      else
+         call box_pairs(low, high, group, found)
+      end if
       if (.not. all(outline%turns)) found = found(:, pack([(i, i=1, size(found, 2))], &
          & outline%turns(found(1, :)) .and. outline%turns(found(2, :))))
       associate (block => outline%block, n => size(equation) + 1)
@@ -189,6 +208,22 @@ contains
       if (present(size_of)) size_of = [(least_reach(reach, beside, joint(j)%block)/share, &
          & j=1, size(joint))]
    end subroutine touching_joints
+
+   !> Remember the edges that are near one another in the reference shape, for searches by this
+   !> share and smaller ones
+   pure subroutine remember_drawn(search, system, share)
+      type(joint_search_t), intent(inout) :: search
+      type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: share
+      integer, allocatable :: pair(:, :)
+      real(wp) :: reach(size(system%area))
+
+      reach = drawn_reach(system, share)
+      call find_edge_pairs(search, system%equation, system%vertex, reach, pair, .true.)
+      search%near%vertex = system%vertex
+      search%near%reach = reach
+      call move_alloc(pair, search%near%pair)
+   end subroutine remember_drawn
 
    !> A share of the size of each block, at most half its thickness: blocks on both sides of a sheet
    !> do not touch
@@ -284,7 +319,7 @@ contains
       near%outline = search%outline
       call measure_edges(near%vertex, near%outline)
       near%first_vertex = system%first_vertex
-      call find_edge_pairs(search, system%equation, near%vertex, reach, pair)
+      call find_edge_pairs(search, system%equation, near%vertex, reach, pair, near%beginning)
       associate (owner => near%outline%block)
          if (allocated(search%absent)) pair = pair(:, pack([(j, j=1, size(pair, 2))], &
             & .not. (search%absent(owner(pair(1, :))) .or. search%absent(owner(pair(2, :))))))

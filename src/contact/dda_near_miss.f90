@@ -6,7 +6,7 @@
 module dda_near_miss
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_search, only : touching_joints
+   use dda_contact_search, only : remember_drawn, touching_joints
    use dda_contact_types, only : joint_place_t, joint_t, place_joint, same_joint
    use dda_contacts, only : joint_search_t
    use dda_kinds, only : wp
@@ -43,13 +43,16 @@ contains
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(near_miss_t), allocatable :: miss(:)
       type(joint_t), allocatable :: whole(:)
+      type(joint_search_t) :: both
       integer(int64), allocatable :: key(:)
       logical, allocatable :: kept(:)
       integer :: i, j
 
-      call touching_joints(search, system, search%tolerance, joint)
+      both = search
+      if (closes_gaps .and. search%tolerance < widest) call remember_drawn(both, system, widest)
+      call touching_joints(both, system, search%tolerance, joint)
       if (.not. closes_gaps) return
-      call add_misses(search, system, joint, miss)
+      call add_misses(both, system, joint, miss)
       miss = pack(miss, miss%is_joined)
       if (size(miss) == 0) return
       ! a corner that touches is part of the joint of its edge
@@ -72,9 +75,12 @@ contains
       !> The near misses, in the order of their blocks: (n)
       type(near_miss_t), allocatable, intent(out) :: miss(:)
       type(joint_t), allocatable :: joint(:)
+      type(joint_search_t) :: both
 
-      call touching_joints(search, system, search%tolerance, joint)
-      call add_misses(search, system, joint, miss)
+      both = search
+      if (search%tolerance < widest) call remember_drawn(both, system, widest)
+      call touching_joints(both, system, search%tolerance, joint)
+      call add_misses(both, system, joint, miss)
    end subroutine find_near_misses
 
    !> Near misses beside joints: pairs of edges that have none, and the nearest corner of blocks

@@ -21,20 +21,28 @@ module dda_box_tree
       real(wp), allocatable :: low(:, :)  !! Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
       !> Upper right corners: (2, 2*n_leaf - 1) [m]
       real(wp), allocatable :: high(:, :)
+      !> Unit normal across the segments below each node, where it has slabs: (2, 2*n_leaf - 1)
+      real(wp), allocatable :: normal(:, :)
+      !> Heights along it between which they lie: (2, 2*n_leaf - 1) [m]
+      real(wp), allocatable :: slab(:, :)
    end type box_tree_t
 
 contains
 
    !> Pairs of boxes of different groups that overlap or touch, sorted. Group 0 may be large, and
-   !> its boxes may lie upon one another
-   pure subroutine box_pairs(low, high, group, pair)
+   !> its boxes may lie upon one another. Boxes of given segments are left out where the segments
+   !> are farther apart than their margins: boxes of long edges that lean overlap in great numbers
+   pure subroutine box_pairs(low, high, group, pair, segment, margin)
       real(wp), intent(in) :: low(:, :)   !! Lower left corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)  !! Upper right corners: (2, n) [m]
       integer, intent(in) :: group(:)     !! Boxes of one group are not compared: (n)
       !> The pairs, the first smaller than the second: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
+      real(wp), intent(in), optional :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]
+      !> By how much each box is wider than its segment: (n) [m]
+      real(wp), intent(in), optional :: margin(:)
       type(box_tree_t) :: tree
-      integer, allocatable :: found(:, :), wider(:, :), near(:), other_last(:)
+      integer, allocatable :: found(:, :), wider(:, :), near(:), other_last(:), wanted_last(:, :)
       integer :: i, k, n, n_near
 
       allocate (found(2, 8*size(group) + 8))
@@ -42,13 +50,18 @@ contains
       if (size(group) > 1) then
          call new_box_tree(low, high, tree)
          call last_numbers(tree, group /= 0, other_last)
+         wanted_last = reshape([other_last, tree%last], [size(tree%last), 2])
+         if (present(segment)) call add_slabs(segment, margin, tree)
       end if
       do i = 1, merge(size(group), 0, size(group) > 1)
-         if (group(i) == 0) then
-            call find_boxes(tree, low(:, i), high(:, i), near, n_near, i, other_last)
-         else
-            call find_boxes(tree, low(:, i), high(:, i), near, n_near, i)
-         end if
+         associate (last => wanted_last(:, merge(1, 2, group(i) == 0)))
+            if (present(segment)) then
+               call find_boxes(tree, low(:, i), high(:, i), near, n_near, i, last, &
+                  & segment(:, i), margin(i))
+            else
+               call find_boxes(tree, low(:, i), high(:, i), near, n_near, i, last)
+            end if
+         end associate
          call sort_numbers(near(:n_near))
          if (n + n_near > size(found, 2)) then
             allocate (wider(2, 2*n + n_near))
@@ -100,8 +113,11 @@ contains
          if (tree%low(1, node) > high(1) .or. tree%low(2, node) > high(2)) cycle
          if (tree%high(1, node) < low(1) .or. tree%high(2, node) < low(2)) cycle
          if (present(segment)) then
-            if (.not. meets_line(tree%low(:, node) - wide, tree%high(:, node) + wide, segment)) &
-               & cycle
+            if (allocated(tree%slab)) then
+               if (.not. meets_slab(tree, node, segment, wide)) cycle
+            end if
+            if (.not. meets_line(tree%low(1:2, node) - wide, tree%high(1:2, node) + wide, &
+               & segment)) cycle
          end if
          if (node < tree%n_leaf) then
             stack(top + 1:top + 2) = [2*node + 1, 2*node]
@@ -192,6 +208,61 @@ contains
       room = room + 64.0_wp*epsilon(room)*(abs(along(1)*arm(2)) + abs(along(2)*arm(1)))
       meets_line = abs(along(1)*arm(2) - along(2)*arm(1)) <= room
    end function meets_line
+
+   !> Whether a segment comes as near to the slab of a node as a margin, or rounding, allows
+   pure logical function meets_slab(tree, node, segment, margin)
+      type(box_tree_t), intent(in) :: tree
+      integer, intent(in) :: node
+      real(wp), intent(in) :: segment(4), margin
+      real(wp) :: height(2), room
+
+      associate (normal => tree%normal(:, node), slab => tree%slab(:, node))
+         height = [dot_product(normal, segment(1:2)), dot_product(normal, segment(3:4))]
+         room = margin + 64.0_wp*epsilon(room)*(abs(slab(1)) + abs(slab(2)) + sum(abs(segment)))
+         meets_slab = minval(height) <= slab(2) + room .and. maxval(height) >= slab(1) - room
+      end associate
+   end function meets_slab
+
+   !> Slabs around the segments below each node, across their mean direction
+   pure subroutine add_slabs(segment, margin, tree)
+      real(wp), intent(in) :: segment(:, :), margin(:)
+      type(box_tree_t), intent(inout) :: tree
+      real(wp) :: along(2, 2*tree%n_leaf - 1), height(2), length
+      integer :: i, leaf, node
+
+      along = 0.0_wp
+      do i = 1, tree%n_leaf
+         if (tree%box(i) == 0) cycle
+         along(:, tree%n_leaf - 1 + i) = segment(3:4, tree%box(i)) - segment(1:2, tree%box(i))
+      end do
+      do node = tree%n_leaf - 1, 1, -1
+         ! segments have no sense of direction
+         associate (first => along(:, 2*node), second => along(:, 2*node + 1))
+            along(:, node) = first + sign(1.0_wp, dot_product(first, second))*second
+         end associate
+      end do
+      allocate (tree%normal(2, 2*tree%n_leaf - 1), source=0.0_wp)
+      allocate (tree%slab(2, 2*tree%n_leaf - 1), source=0.0_wp)
+      tree%slab(1, :) = huge(1.0_wp)
+      tree%slab(2, :) = -huge(1.0_wp)
+      do node = 1, 2*tree%n_leaf - 1
+         length = norm2(along(:, node))
+         if (length > 0.0_wp) tree%normal(:, node) = [along(2, node), -along(1, node)]/length
+      end do
+      do leaf = 1, tree%n_leaf
+         if (tree%box(leaf) == 0) cycle
+         node = tree%n_leaf - 1 + leaf
+         do while (node > 0)
+            associate (item => tree%box(leaf), normal => tree%normal(:, node))
+               height = [dot_product(normal, segment(1:2, item)), &
+                  & dot_product(normal, segment(3:4, item))]
+               tree%slab(1, node) = min(tree%slab(1, node), minval(height) - margin(item))
+               tree%slab(2, node) = max(tree%slab(2, node), maxval(height) + margin(item))
+            end associate
+            node = node/2
+         end do
+      end do
+   end subroutine add_slabs
 
    !> A tree of segments, each in the box around it
    pure subroutine segment_tree(segment, tree)
