@@ -12,6 +12,8 @@ import math
 import os
 import random
 import re
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,6 +22,8 @@ from pathlib import Path
 
 #: Fixed positions of each direction
 POSITIONS = 61
+#: Processor time that the program may take for a deck [s]
+MOST_SECONDS = 120
 #: Share of the reported factor by which that of a fixed position may be smaller
 SMALLER = 1e-6
 SHAPES = ("segmental", "segmental", "circular", "circular", "pointed", "elliptic", "basket", "parabolic", "catenary",
@@ -165,12 +169,20 @@ def random_study(seed: int | str) -> str:
     return deck
 
 
+def limit_time() -> None:
+    """Let the process end after its processor time."""
+    resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS + 1))
+
+
 def run(dda: str, folder: Path, name: str, deck: str) -> list[dict[str, str]]:
     """Rows of the results of a deck; none if it is refused."""
     (folder / f"{name}.nml").write_text(deck)
-    done = subprocess.run([dda, "run", f"{name}.nml", "--quiet"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([dda, "run", f"{name}.nml", "--quiet"], cwd=folder, capture_output=True, text=True,
+                          preexec_fn=limit_time)
     if done.returncode == 2:
         return []
+    if done.returncode == -signal.SIGXCPU:
+        raise TimeoutError(f"more than {MOST_SECONDS} s of processor time")
     if done.returncode not in (0, 3):
         raise RuntimeError(f"status {done.returncode} of\n{deck}{done.stderr}")
     with (folder / name / "results.csv").open(newline="") as lines:
@@ -257,7 +269,10 @@ def main() -> int:
     for seed in range(arguments.seed, arguments.seed + arguments.count):
         with tempfile.TemporaryDirectory() as folder:
             bridge = random_bridge(seed)
-            verdict, faults = check(arguments.dda, Path(folder), bridge)
+            try:
+                verdict, faults = check(arguments.dda, Path(folder), bridge)
+            except TimeoutError as problem:
+                verdict, faults = "slow", [str(problem)]
         verdicts[verdict or "refused"] = verdicts.get(verdict or "refused", 0) + 1
         if faults:
             wrong += 1

@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 
 from live_assemblies import random_assembly  # noqa: E402
-from random_bridges import random_study  # noqa: E402
+from random_bridges import limit_time, random_study  # noqa: E402
 
 from voussoir.command.main import main as voussoir_main  # noqa: E402
 
@@ -50,7 +50,8 @@ def write_assembly(folder: Path, off: float, seed: int) -> None:
 
 def check(folder: Path, dda: str) -> str:
     """What verify says of the folder of a deck; empty if it accepts it, 'refused' if the program refuses the deck."""
-    done = subprocess.run([dda, "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([dda, "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True,
+                          preexec_fn=limit_time)
     if done.returncode == 2:
         return "refused"
     if done.returncode not in (0, 3):
