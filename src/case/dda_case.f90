@@ -41,6 +41,8 @@ module dda_case
       type(album_t) :: album               !! Pictures of the collapse, or of the way to rest
       !> Whether the vehicle was put where the least load factor is carried
       logical :: has_worst = .false.
+      !> Whether the least load factor was not found
+      logical :: misses_worst = .false.
       !> Whether it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
       type(proof_t) :: proof            !! What proves the verdict, where tables are told

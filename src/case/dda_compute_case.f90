@@ -37,6 +37,8 @@ module dda_compute_case
       logical :: backward = .false.  !! Whether the vehicle drives the other way there
       !> Whether the loading path there has an end; else the factor is how far it came
       logical :: decided = .true.
+      !> Whether no load is left whose limit may be less and was not found
+      logical :: is_known = .true.
    end type least_factor_t
 
    interface
@@ -129,6 +131,11 @@ contains
 
       if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this)
       call find_critical(this%family, this%search, this%critical)
+      if (this%misses_worst .and. this%critical%verdict /= verdict%undecided) then
+         this%critical%verdict = verdict%undecided
+         this%critical%undecided_at = this%critical%stop
+         this%critical%reason = "the least load factor of all positions is not found"
+      end if
       if (allocated(this%critical%scene)) call move_scene(this%critical%scene, this%scene)
       if (allocated(this%critical%fallen)) &
          & call see_collapse(this, this%critical%falls, this%critical%fallen)

@@ -16,7 +16,10 @@ submodule (dda_compute_case) dda_worst_load
       type(joint_graph_t) :: graph         !! The joints
       real(wp), allocatable :: dead(:, :)  !! Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
       logical :: stands = .false.          !! Whether they are carried
+      integer :: missed = 0                !! Loads without a limit, before one was found
       real(wp) :: near = 0.0_wp            !! Arcs shorter than this are not halved [m]
+      !> Whether each load is carried at the least factor so far, or has its own limit found
+      logical :: is_last = .false.
       type(load_walk_t) :: walk            !! Forces that go from load to load
    end type chase_t
 
@@ -26,6 +29,8 @@ submodule (dda_compute_case) dda_worst_load
    real(wp), parameter :: smaller = 1.0e-7_wp
    !> Difference below which loads are equal, over the largest
    real(wp), parameter :: same = 1.0e-7_wp
+   !> So many loads without a limit, and none with one, are undecided
+   integer, parameter :: most_missed = 8
 
 contains
 
@@ -49,18 +54,19 @@ contains
       end if
       chase%near = near
       stride = size(arc)
-      do while (least%factor >= no_limit .and. stride > 0)
+      do while (least%factor >= no_limit .and. stride > 0 .and. least%is_known)
          stride = stride/2
          do k = max(1, stride), size(arc), 2*max(1, stride)
             call descend(arc, k, 0.5_wp, chase, least)
-            if (least%factor < no_limit) exit
+            if (least%factor < no_limit .or. .not. least%is_known) exit
          end do
       end do
       do k = 1, size(arc)
          call find_bounded(arc, k, 0.0_wp, 1.0_wp, chase, least)
       end do
-      if (least%factor >= no_limit) return
+      if (least%factor >= no_limit .or. .not. least%is_known) return
       call begin_walk(graph, dead, chase%walk)
+      chase%is_last = .true.
       do k = 1, size(arc)
          if (.not. goes_on(arc, k)) call pass(arc, k, 0.0_wp, chase, least)
          call pass(arc, k, 1.0_wp, chase, least)
@@ -94,13 +100,14 @@ contains
       type(load_arc_t), intent(in) :: arc(:)
       integer, intent(in) :: k
       real(wp), intent(in) :: from, to  !! Shares of the way along it
-      type(chase_t), intent(in) :: chase
+      type(chase_t), intent(inout) :: chase
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
       real(wp) :: live(3, size(chase%dead, 2)), middle
 
       if (size(arc(k)%block) == 0) return
       middle = 0.5_wp*(from + to)
+      if (.not. least%is_known) return
       if (least%factor >= no_limit) call descend(arc, k, from, chase, least)
       if (least%factor >= no_limit) call descend(arc, k, to, chase, least)
       if (least%factor >= no_limit) call descend(arc, k, middle, chase, least)
@@ -108,6 +115,7 @@ contains
       live = 0.0_wp
       call add_live(2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), arc(k), live)
       call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+      if (limit%state == limit_state%not_converged) least%is_known = .false.
       if (limit%state /= limit_state%found) return
       call find_bounded(arc, k, from, middle, chase, least)
       call find_bounded(arc, k, middle, to, chase, least)
@@ -122,6 +130,7 @@ contains
       type(least_factor_t), intent(inout) :: least
       logical :: carried
 
+      if (.not. least%is_known) return
       call carry(arc(k), weights(share), least%factor, chase, carried)
       if (.not. carried) call descend(arc, k, share, chase, least)
    end subroutine pass
@@ -136,6 +145,7 @@ contains
       real(wp) :: middle
       logical :: carried
 
+      if (.not. least%is_known) return
       middle = 0.5_wp*(from + to)
       call carry(arc(k), 2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), &
          & least%factor, chase, carried)
@@ -172,7 +182,7 @@ contains
       type(load_arc_t), intent(in) :: arc(:)
       integer, intent(in) :: k
       real(wp), intent(in) :: share
-      type(chase_t), intent(in) :: chase
+      type(chase_t), intent(inout) :: chase
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
       real(wp) :: live(3, size(chase%dead, 2)), at, power
@@ -185,6 +195,12 @@ contains
          call add_live(weights(at), arc(i), live)
          if (.not. maxval(abs(live)) > 0.0_wp) return
          call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+         if (limit%state == limit_state%not_converged) then
+            ! where no limit is found at so many places none will be; at the end each one matters
+            if (least%factor >= no_limit) chase%missed = chase%missed + 1
+            least%is_known = chase%missed < most_missed .and. .not. (chase%is_last &
+               & .and. limit%lower < (1.0_wp - smaller)*least%factor)
+         end if
          if (limit%state /= limit_state%found) return
          if (0.5_wp*(limit%lower + limit%upper) < least%factor) then
             least%factor = 0.5_wp*(limit%lower + limit%upper)

@@ -82,7 +82,10 @@ contains
          call take_bridge(deck, scene, bridge)
          ways = merge(2, 1, deck%value(vehicle_both_directions)%flag .and. .not. is_symmetric(deck))
          call drive(this, bridge, ways, .false., least)
-         if (.not. least%factor > 0.0_wp) then
+         this%misses_worst = .not. least%is_known
+         if (this%misses_worst) then
+            least%factor = no_limit
+         else if (.not. least%factor > 0.0_wp) then
             ! dead loads that fall do so under either rule; the associated one knows no order of
             ! loads and would go on to live loads that prop them
             deck%value(analysis_flow)%text = "coulomb"
@@ -129,7 +132,7 @@ contains
          before = least%factor
          if (by_path) then
             call follow_road(this, bridge, least)
-         else
+         else if (least%is_known) then
             call seek_along_road(bridge, least)
          end if
          if (least%factor < before) least%backward = way == 2
@@ -160,7 +163,7 @@ contains
 
       call part_road(bridge, stretch)
       first = 1
-      do while (first <= size(stretch) .and. least%factor > 0.0_wp)
+      do while (first <= size(stretch) .and. least%factor > 0.0_wp .and. least%is_known)
          last = last_of_side(stretch, first)
          call seek_on_side(bridge, stretch(first:last), least)
          first = last + 1

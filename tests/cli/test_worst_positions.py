@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from dda_command import run_dda
-from random_bridges import Bridge, check, random_bridge
+from random_bridges import Bridge, check, random_bridge, run
 
 DDA = os.environ["DDA"]
 #: An arch that is higher on its right: the heavier axle stands worst on one side
@@ -82,6 +82,14 @@ def test_a_first_collapse_that_is_least_beside_the_least_limit_is_found(tmp_path
     verdict, faults = check(DDA, tmp_path, SLIDING)
     assert (verdict, faults) == ("found", [])
     assert float(row_of(tmp_path, SLIDING.deck("worst = .true."))["critical"]) < 9.1
+
+
+def test_a_bridge_whose_limits_are_not_found_is_undecided_at_once(tmp_path: Path) -> None:
+    """Three spans on piers that crush: where no position has a limit, the road was halved for ever."""
+    bridge = random_bridge(70016)
+    (row,) = run(DDA, tmp_path, "worst", bridge.deck("worst = .true."))
+    (fixed,) = run(DDA, tmp_path, "fixed", bridge.deck("position = 0"))
+    assert row["verdict"] == fixed["verdict"]
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 9, 11, 12])
