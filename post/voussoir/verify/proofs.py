@@ -112,8 +112,9 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
             _check_pull(scene, row, points, spent, left, largest, finding)
             continue
         pair = int(row["block_1"]), int(row["block_2"])
-        joint, order = _match(pairs.get((min(pair), max(pair)), []), points, scene.blocks[pair[0] - 1])
-        if joint is None or id(joint) in used:
+        unused = [joint for joint in pairs.get((min(pair), max(pair)), []) if id(joint) not in used]
+        joint, order = match_joint(unused, points, scene.blocks[pair[0] - 1].size)
+        if joint is None:
             if np.abs(force).max() > 0.0:
                 finding.faults.append(f"blocks {pair[0]} and {pair[1]} have no joint at {tuple(points[0])}")
             continue
@@ -188,13 +189,15 @@ def _law(force: np.ndarray, joint: Joint, scene: Scene, largest: float, finding:
     finding.keep("law of forces", beyond / largest)
 
 
-def _match(joints: list[Joint], points: np.ndarray, block: Block) -> tuple[Joint | None, list[int]]:
-    """The joint with two ends, and where its two normal forces and its shear force stand in those of the points."""
-    for joint in joints:
-        for order in ([0, 1, 2], [1, 0, 2]):
-            if np.abs(joint.ends[order[:2]] - points).max() <= TOUCH * block.size:
-                return joint, order
-    return None, [0, 1, 2]
+def match_joint(joints: list[Joint], ends: np.ndarray, size: float) -> tuple[Joint | None, list[int]]:
+    """The joint with two ends, and where its two normal forces and its shear force stand in those of the ends.
+
+    Of joints between the same corners it is the one with the same order of ends.
+    """
+    ways = [(float(np.abs(joint.ends[order[:2]] - ends).max()), order, k)
+            for k, joint in enumerate(joints) for order in ([0, 1, 2], [1, 0, 2])]
+    apart, order, k = min(ways, default=(math.inf, [0, 1, 2], 0))
+    return joints[k] if apart <= TOUCH * size else None, order
 
 
 def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> None:

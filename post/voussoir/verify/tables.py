@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
-from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify.contacts import Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import loads_on, sizes_on
-from voussoir.verify.proofs import TOLERANCE, Finding, Scene, digits_of, largest_of, push, reach_of, rounding_of
+from voussoir.verify.proofs import (
+    TOLERANCE, Finding, Scene, digits_of, largest_of, match_joint, push, reach_of, rounding_of)
 from voussoir.verify.read import Row
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
@@ -50,7 +51,8 @@ def check_joints(
     for row in rows:
         number, first, second = (int(row[name]) for name in ("joint", "block_1", "block_2"))
         ends = np.array([[float(row[f"{axis}_{side}"]) for axis in "xy"] for side in ("intrados", "extrados")])
-        joint, order = _near(pairs.get((min(first, second), max(first, second)), []), ends, scene, first)
+        between = pairs.get((min(first, second), max(first, second)), [])
+        joint, order = match_joint(between, ends, scene.blocks[first - 1].size)
         vector = np.array([float(row["force_x"]), float(row["force_y"])])
         at = np.array([float(row["x"]), float(row["y"])])
         if joint is None:
@@ -116,14 +118,6 @@ def _forces(
         return joint.forces(np.array([normal, 0.0, shear]), way) if joint.single else [(vector, at)]
     uneven = float(row["eccentricity_ratio"]) * normal
     return joint.forces(np.array([(normal + uneven) / 2.0, (normal - uneven) / 2.0, shear])[order], way)
-
-
-def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> tuple[Joint | None, list[int]]:
-    """The joint with two ends, and where its two normal forces and its shear force stand in those of the ends."""
-    ways = [(float(np.abs(joint.ends[order[:2]] - ends).max()), k, order)
-            for k, joint in enumerate(joints) for order in ([0, 1, 2], [1, 0, 2])]
-    apart, k, order = min(ways, default=(math.inf, 0, [0, 1, 2]))
-    return joints[k] if apart <= TOUCH * scene.blocks[first - 1].size else None, order
 
 
 def _check_place(
