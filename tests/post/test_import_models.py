@@ -25,10 +25,10 @@ def read(file: Path, *words: str) -> tuple[int, Path]:
 
 
 @pytest.mark.parametrize(("name", "text", "words"), [
-    ("a.json", "null", "got a JSON NoneType"),
-    ("a.json", '"word"', "got a JSON str"),
-    ("a.json", "[]", "got a JSON list"),
-    ("a.json", '{"blocks": {}}', "got a JSON dict"),
+    ("a.json", "null", "got a JSON null"),
+    ("a.json", '"word"', "got a JSON string"),
+    ("a.json", "[]", "got a JSON array"),
+    ("a.json", '{"blocks": {}}', "got a JSON object"),
     ("a.json", '{"type": "Topology", "objects": {}, "arcs": []}', "convert TopoJSON to GeoJSON"),
     ("a.geojson", '{"type": "FeatureCollection", "features": 7}', "expected a list of features"),
     ("a.geojson", '{"type": "FeatureCollection", "features": [3]}', "feature 1: expected an object"),

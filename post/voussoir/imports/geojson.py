@@ -48,7 +48,7 @@ def read_json(file: Path, plane_name: str, plane: Plane, tolerance: float, has_u
         return
     if not isinstance(content, dict) or content.get("type") not in _TYPES:
         kind = content.get("type") if isinstance(content, dict) else None
-        got = f"the type {str(kind)[:40]!r}" if kind is not None else f"a JSON {type(content).__name__}"
+        got = f"the type {str(kind)[:40]!r}" if kind is not None else f"a JSON {_json_word(content)}"
         hint = "; convert TopoJSON to GeoJSON" if kind == "Topology" else ""
         raise ValueError(
             f"expected GeoJSON, with a type such as FeatureCollection, or a file of COMPAS, got {got}{hint}")
@@ -70,6 +70,12 @@ def read_json(file: Path, plane_name: str, plane: Plane, tolerance: float, has_u
     if not has_unit:
         _check_is_length([geometry for _, geometry, _ in found if geometry is not None])
     yield from found
+
+
+def _json_word(content: object) -> str:
+    """The kind of a JSON value, in JSON's own words."""
+    words = {dict: "object", list: "array", str: "string", bool: "boolean", type(None): "null"}
+    return words.get(type(content), "number")
 
 
 def _geometry(shape: Any, plane: Plane, words: str) -> Any:
