@@ -130,11 +130,8 @@ contains
 
       do way = 1, ways
          before = least%factor
-         if (by_path) then
-            call follow_road(this, bridge, least)
-         else if (least%is_known) then
-            call seek_along_road(bridge, least)
-         end if
+         if (by_path) call follow_road(this, bridge, least)
+         if (least%is_known .and. .not. by_path) call seek_along_road(bridge, least)
          if (least%factor < before) least%backward = way == 2
          if (ways == 1) return
          call turn_round(this%family%deck)
