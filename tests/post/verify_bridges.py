@@ -14,6 +14,7 @@ import io
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -22,7 +23,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 
 from live_assemblies import random_assembly  # noqa: E402
-from random_bridges import limit_time, random_study  # noqa: E402
+from random_bridges import MOST_SECONDS, limit_time, random_study  # noqa: E402
 
 from voussoir.command.main import main as voussoir_main  # noqa: E402
 
@@ -54,6 +55,8 @@ def check(folder: Path, dda: str) -> str:
                           preexec_fn=limit_time)
     if done.returncode == 2:
         return "refused"
+    if done.returncode == -signal.SIGXCPU:
+        return f"dda takes more than {MOST_SECONDS} s of processor time"
     if done.returncode not in (0, 3):
         return f"dda ended with status {done.returncode}: {done.stderr}"
     said = io.StringIO()
