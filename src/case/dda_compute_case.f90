@@ -135,6 +135,8 @@ contains
          this%critical%verdict = verdict%undecided
          this%critical%undecided_at = this%critical%stop
          this%critical%reason = "the least load factor of all positions is not found"
+         ! bounds at this position are none of the least factor
+         this%critical%limit%known = .false.
       end if
       if (allocated(this%critical%scene)) call move_scene(this%critical%scene, this%scene)
       if (allocated(this%critical%fallen)) &

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from dda_command import run_dda
-from random_bridges import Bridge, check, random_bridge, run
+from random_bridges import Bridge, check, random_bridge, random_study, run
 
 DDA = os.environ["DDA"]
 #: An arch that is higher on its right: the heavier axle stands worst on one side
@@ -90,6 +90,14 @@ def test_a_bridge_whose_limits_are_not_found_is_undecided_at_once(tmp_path: Path
     (row,) = run(DDA, tmp_path, "worst", bridge.deck("worst = .true."))
     (fixed,) = run(DDA, tmp_path, "fixed", bridge.deck("position = 0"))
     assert row["verdict"] == fixed["verdict"]
+
+
+def test_bounds_of_another_position_are_none_of_the_least_factor(tmp_path: Path) -> None:
+    """A bridge that cannot slide, whose limits do not meet beside its worst position."""
+    deck = random_study(70098).split("&sweep")[0].replace("40.31", "90")
+    assert "friction_deg = 90 " in deck and "worst = .true." in deck
+    (row,) = run(DDA, tmp_path, "x", deck)
+    assert row["verdict"] == "found" or (row["exact_low"], row["exact_high"]) == ("", "")
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 9, 11, 12])
