@@ -1,4 +1,4 @@
-!> The equations of one step: blocks first, then the springs of the joints (Shi: df10 to df18)
+!> Equations of one step: blocks, then springs of the joints (Shi: df10 to df18)
 !>
 !> Equation (M3) of docs/method.md
 module dda_assembly

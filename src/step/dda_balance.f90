@@ -1,5 +1,4 @@
-!> How far the blocks are from balance in a step: the inertia of its motion, which is what no force
-!> balances, in translation and rotation and in strain, each against the load that it is part of
+!> Residual of equilibrium of the blocks in a step, in translation, rotation and strain
 module dda_balance
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_springs_t
@@ -14,14 +13,14 @@ module dda_balance
    public :: free_acceleration, gyration, is_drowned, keep_moment, measure_balance
    public :: measure_way_to_rest
 
-   !> A block that bears less than this share of the mean load, or of the mean mass, is light
+   !> Load or mass of a light block over the mean
    real(wp), parameter :: light = 1.0e-2_wp
-   !> Share of forces to which joint forces are balanced, with a margin of ten
+   !> Residual of the joint forces over the loads, with a margin of ten
    real(wp), parameter :: left_over = 1.0e-12_wp
-   !> What is left over of the whole load may be this share of a light block's own
+   !> Residual of the whole load over the load of a light block
    real(wp), parameter :: felt_share = 1.0e-3_wp
 
-   !> Where rounding presses a block with this multiple of its load, it is noise that moves it
+   !> Round-off force over the load of a block above which motion is noise
    real(wp), parameter :: noise = 10.0_wp
 
 contains

@@ -1,5 +1,4 @@
-!> Bars where blocks move in time: each is a joint of the contact springs, with one force along it
-!> and one across it that follow what it gives
+!> Bars in time: joints of the contact problem with axial and transverse forces
 !>
 !> The mean force of an elastic bar over a step is A0 + share*k*e. Bounded above and below it is
 !> like a shear force that has no friction, else like a normal force.

@@ -1,5 +1,4 @@
-!> The part of the equations that blocks have without contacts: inertia, elasticity, loads
-!> (Shi: df11 to df16)
+!> Equations of the blocks without contacts: inertia, elasticity, loads (Shi: df11 to df16)
 module dda_block_inertia
    use dda_bar_springs, only : add_bars, couple_bars, follow_bars
    use dda_block_system, only : block_system_t
@@ -17,8 +16,7 @@ module dda_block_inertia
    public :: assemble_blocks, damping_rate, drop_strain_rates, hold_energy, kinetic_energy
    public :: packed_velocity, strain_follows, turn_masses
 
-   !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
-   !> rate: its strain follows its load
+   !> Angle of strain oscillation per longest step above which strain follows its load [rad]
    real(wp), parameter :: resolved = 1.0_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Contact forces of joints that keep to their faces: open, sliding or stuck, each a linear law
+!> Contact forces with fixed states: open, sliding or locked
 !>
 !> With the faces known, forces and motion are one solution of linear equations. Near the answer,
 !> as where a structure goes on standing or moving as it did, that ends after one factorisation or a
@@ -16,9 +16,9 @@ module dda_contact_faces
 
    public :: settle_faces
 
-   !> Compliance of the springs over that of the blocks
+   !> Compliance of the regularisation over that of the blocks
    real(wp), parameter :: compliance = 1.0e-4_wp
-   !> Most solutions, most of them with other faces than before
+   !> Maximum number of solutions, and of those with changed states
    integer, parameter :: max_turns = 24, max_passes = 8
 
 contains

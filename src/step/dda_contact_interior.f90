@@ -1,5 +1,4 @@
-!> Contact forces of one group by an interior point: where many blocks meet, sweeps hand a force on
-!> by one block in each, but a factor reaches all at once
+!> Contact forces of one group by an interior-point method
 !>
 !>    A d = load + R f,   gap + R' d + C (f - f0) = F_flow' z,   b = F f >= 0, z >= 0, b z = 0
 !>
@@ -30,24 +29,23 @@ module dda_contact_interior
 
    public :: solve_convex, solve_interior
 
-   !> Compliance of the springs over what the blocks give
+   !> Compliance of the regularisation over that of the blocks
    real(wp), parameter :: compliance = 1.0e-6_wp
-   !> Most turns
+   !> Maximum number of iterations
    integer, parameter :: most_turns = 30
    !> Maximum number of iterations of the convex problem
    integer, parameter :: max_convex_iterations = 60
-   !> Turns without progress that end the search
+   !> Iterations without progress before termination
    integer, parameter :: patience = 5
-   !> Forces begin so far off their bounds at the least, over the size of a force: near where it is
-   !> known, afar where that leads nowhere
+   !> Least initial distance from the bounds over a force, for known and unknown solutions
    real(wp), parameter :: near = 1.0e-2_wp, afar = 2.0e-1_wp
-   !> The same for the convex problem, which converges from any start far from its bounds
+   !> Initial distance from the bounds for the convex problem
    real(wp), parameter :: convex_lift = 0.3_wp
-   !> The most by which near forces are lifted, over the same
+   !> Largest initial distance for known solutions
    real(wp), parameter :: highest = 1.0e-1_wp
-   !> A step shorter than this is stuck at a bound
+   !> Step below which the iteration is blocked by a bound
    real(wp), parameter :: stuck = 0.2_wp
-   !> Way to the first bound that a step goes
+   !> Step over the distance to the first bound
    real(wp), parameter :: share = 0.995_wp
 
 contains

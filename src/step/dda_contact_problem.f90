@@ -1,4 +1,4 @@
-!> The contact forces of one group of blocks that move in time: what is asked
+!> The contact problem of one group of moving blocks
 !>
 !>    A d = load + R f,   u = gap + R' d + C (f - f0),   n = f + tension
 !>
@@ -56,7 +56,7 @@ module dda_contact_problem
       real(wp) :: energy = 0.0_wp
    end type residual_t
 
-   !> Share of what rounding makes of gaps that it can make of speeds, times the length of the step
+   !> Round-off of speeds over that of gaps, times the step
    real(wp), parameter :: of_speeds = 1.0e-2_wp
 
 contains

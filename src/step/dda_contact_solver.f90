@@ -1,5 +1,4 @@
-!> Contact forces of blocks that move in time: forces within their bounds for every group of joints,
-!> and by how much what they leave is against the law of contact
+!> Contact forces of moving blocks within their bounds, and their residual
 !>
 !> Blocks that no contact joins know nothing of one another: each group is a problem of its own. The
 !> forces of the step before are looked at; sweeps, faces, and an interior point whose offset moves
@@ -33,11 +32,11 @@ module dda_contact_solver
    real(wp), parameter :: motion_tolerance = 1.0e-9_wp
    !> Tolerance of the interior point over the fastest motion of the group
    real(wp), parameter :: interior_tolerance = 1.0e-5_wp
-   !> Groups of so many joints are solved to rounding, so that blocks at rest do not creep
+   !> Joints up to which a group is solved to round-off
    integer, parameter :: small_group_joints = 100
    !> Gap tolerance of small groups over that of large ones
    real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
-   !> Sweeps before a factor is tried, and after it
+   !> Sweeps before the first factorisation, and after it
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
    !> Relative distance from its bound at which a shear force counts as sliding
    real(wp), parameter :: bound_tolerance = 1.0e-9_wp

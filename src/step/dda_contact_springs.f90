@@ -1,5 +1,5 @@
-!> Springs in the place of contact forces: the matrix of the blocks of a group with them, and what
-!> it answers. A factor hands a force on through all blocks at once
+!> Springs in place of contact forces: the matrix of a group and its solutions. A factor hands a
+!> force on through all blocks at once
 !>
 !>    f = f0 - S R' d,   A d = load + R f:   (A + R S R') d = load + R f0
 module dda_contact_springs

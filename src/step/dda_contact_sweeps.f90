@@ -1,6 +1,5 @@
-!> Contact forces joint by joint (Gauss and Seidel): each in turn takes the forces that the law of
-!> contact asks of it while all others stay, and the directions of the sweeps are followed as
-!> conjugate gradients do (Silcowitz, Niebe, Erleben 2010)
+!> Contact forces joint by joint (Gauss-Seidel), accelerated by conjugate gradients (Silcowitz,
+!> Niebe, Erleben 2010)
 !>
 !> That ends at the forces of Coulomb's law without a factorisation: soon where the forces of the
 !> step before are a good beginning or blocks are few, slowly in tall stacks.
@@ -14,7 +13,7 @@ module dda_contact_sweeps
 
    public :: sweep_joints
 
-   !> Sweeps after which it is seen what is left
+   !> Sweeps between two residuals
    integer, parameter :: round = 8
 
    !> What sweeps work on

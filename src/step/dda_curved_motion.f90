@@ -1,4 +1,4 @@
-!> Rows of the contacts for a step that turns the blocks: ways of corners are not straight
+!> Contact rows of a step with rotation
 !>
 !> With normals, corners and centres half way between the beginning and the end of a step, and
 !> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
@@ -10,7 +10,7 @@ submodule (dda_step_motion) dda_curved_motion
    use dda_multipliers, only : settle_in_time
    implicit none
 
-   !> Most passes of the correction
+   !> Maximum number of corrections
    integer, parameter :: max_passes = 8
    !> Gap at a closed contact, or depth at an open one, that is left, over the size of the smallest
    !> block

@@ -1,4 +1,4 @@
-!> Pictures of a run: corners, stresses, joint forces and states at chosen steps
+!> Frames of a run: corners, stresses, joint forces and states at selected steps
 module dda_frames
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
@@ -68,7 +68,7 @@ module dda_frames
       real(wp), allocatable :: reaction(:, :, :)  !! Those of all steps: (3, n, :)
    end type album_t
 
-   !> What is so near to being due is: sums of steps are rounded
+   !> Relative tolerance of the time of a frame
    real(wp), parameter :: almost = 1.0_wp - 1.0e-9_wp
 
 contains

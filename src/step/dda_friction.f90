@@ -1,5 +1,4 @@
-!> Coulomb friction without dilatancy: the shear force is bounded by friction times a normal force
-!> that has converged, never by one that has not
+!> Coulomb friction without dilatancy: shear bounds from converged normal forces
 !>
 !> Equation (M4) of docs/method.md
 submodule (dda_multipliers) dda_friction
@@ -8,14 +7,13 @@ submodule (dda_multipliers) dda_friction
    use dda_step_state, only : force_noise
    implicit none
 
-   !> Most corrections of the bounds in one step
+   !> Maximum number of corrections per step
    integer, parameter :: max_corrections = 200
-   !> Corrections without a smaller change than before after which the bounds will hardly settle: a
-   !> shorter step is cheaper
+   !> Corrections without progress after which a shorter step is cheaper
    integer, parameter :: max_stale = 25
-   !> Corrections remembered by the acceleration
+   !> Number of corrections in the acceleration
    integer, parameter :: memory = 6
-   !> Remembered changes that differ by less than this share of the largest difference say nothing
+   !> Difference below which changes are dependent, over the largest
    real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains

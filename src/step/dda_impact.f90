@@ -1,4 +1,4 @@
-!> Impacts of a step in time: which contacts meet in it, how fast, and when
+!> Impacts of a step: contacts, speeds, and times
 !>
 !> A contact meets if it is closed at the end of a step, was open before or closed in faster than
 !> what rests, and is hit faster than gravity makes resting contacts meet. Its gap and its speed are
@@ -19,13 +19,11 @@ module dda_impact
    public :: check_impact, closed_contacts, foresee_event, masked_force, meeting_contacts
    public :: meets_at_end, parting_acceleration
 
-   !> Without restitution only impacts end a step that carry this share of the energy of motion, and
-   !> of what the longest step of free fall adds to it, times the square of the number of blocks, or
-   !> the most, and only slips that turn and whose friction takes as much. What two blocks leave of
-   !> their speeds, 2e-3, is late by a step; in a pile no impact ends a step, and steps stay long
+   !> Least and largest energy of an impact that ends a step, over that of motion and of a fall of
+   !> the longest step, per squared number of blocks
    real(wp), parameter :: min_event_energy = 1.0e-6_wp, max_event_energy = 1.0e-2_wp
 
-   !> Slip of this share of the slowest impact, or of what it changes by in the step, has turned
+   !> Slip of a reversal over the slowest impact
    real(wp), parameter :: at_once = 1.0e-3_wp
 
 contains

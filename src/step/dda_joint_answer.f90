@@ -1,5 +1,5 @@
-!> The forces of one joint, exactly, while all others stay: Coulomb's law for two normal forces and
-!> one shear force
+!> Exact forces of one joint with fixed others: Coulomb's law for two normal forces and one shear
+!> force
 !>
 !>    u = q + W (n, T),   0 <= n, 0 <= u_n, n u_n = 0,   |T| <= limit + friction (n1 + n2)
 !>
@@ -25,7 +25,7 @@ module dda_joint_answer
       logical :: sticks = .false.
    end type joint_view_t
 
-   !> Determinant that counts as none, over the product of the diagonal
+   !> Determinant of a singular joint over the product of the diagonal
    real(wp), parameter :: singular = 1.0e-14_wp
 
 contains

@@ -1,5 +1,4 @@
-!> Forces of the joints as multipliers (augmented Lagrangian): those of the springs are added until
-!> the springs carry nothing, so that the penalty leaves no trace
+!> Joint forces as multipliers (augmented Lagrangian), without penalty error
 !>
 !> In time contact forces that obey Coulomb's law as it is are found group by group
 !> (`dda_contact_solver`), and around them the forces of held points and bars.
@@ -80,16 +79,16 @@ module dda_multipliers
 
    end interface
 
-   !> Most passes in which forces become multipliers, for given bounds
+   !> Maximum number of multiplier iterations
    integer, parameter :: max_passes = 100
-   !> Change of a force that counts as none, over the sum of all that bear on the blocks
+   !> Change of a converged force over the sum of forces
    real(wp), parameter :: fine = 1.0e-10_wp
-   !> Change of a force that a step may end with
+   !> Change of a force that a step accepts
    real(wp), parameter :: coarse = 1.0e-7_wp
-   !> Passes in which the forces of held points do not change noticeably less end the search
+   !> Least reduction of the change of restraint forces per iteration
    real(wp), parameter :: falling = 0.9_wp
    integer, parameter :: patience = 5
-   !> Most changes of the conditions of bars in one step; after the few only the worst bar changes
+   !> Maximum number of changes of bar states, and number with simultaneous changes
    integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
 
 contains

@@ -1,5 +1,4 @@
-!> Newton's method on the energy of a step, with an exact line search: the energy is convex and
-!> piecewise quadratic, so that it must end
+!> Newton's method on the energy of a step with an exact line search
 !>
 !> Equation (M1) of docs/method.md
 !>
@@ -26,14 +25,14 @@ module dda_open_close
 
    public :: iterate_open_close, change_faces
 
-   !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
+   !> Maximum number of Newton iterations; beyond, a shorter step is cheaper
    integer, parameter :: max_newton = 80
 
-   !> Joints that disagree as much as the worst except for rounding change with it: mirror images do
+   !> Relative difference within which violations are equal
    real(wp), parameter :: tie = 1.0e-9_wp
-   !> Joints whose disagreement is below this share of the largest wait for their turn
+   !> Least violation of a changing joint over the largest
    real(wp), parameter :: notable = 0.1_wp
-   !> Changes of faces before Newton's method takes over where blocks make no chain
+   !> Changes before Newton's method for assemblies other than chains
    integer, parameter :: few_changes = 1
 
    !> A line of motions

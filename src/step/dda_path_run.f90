@@ -1,4 +1,4 @@
-!> A static run along the path of its histories: its clock strides from rest to rest
+!> Static run along its time histories, from rest to rest
 submodule (dda_forward) dda_path_run
    use dda_assembly, only : renew_springs
    use dda_boundary, only : led_displacement
@@ -6,12 +6,11 @@ submodule (dda_forward) dda_path_run
    use dda_step_interval, only : longest_motion
    implicit none
 
-   !> Free fall in a step with prescribed displacements, over these displacements: their inertia
-   !> must not throw the blocks about
+   !> Free fall per step over prescribed displacements
    real(wp), parameter :: led_fall = 1.0e4_wp
-   !> Motions in one stride are smooth below this multiple of what the last stride lets expect
+   !> Largest motion over the expected one in a smooth increment
    real(wp), parameter :: smooth = 2.0_wp
-   !> And below this share of what a step may move
+   !> Motion of a smooth increment over the permitted one
    real(wp), parameter :: small = 0.2_wp
 
 contains

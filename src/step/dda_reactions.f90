@@ -1,4 +1,4 @@
-!> What supports put on the blocks: blocks that are fixed, and held points
+!> Reactions of fixed blocks and restraints
 module dda_reactions
    use dda_block_system, only : block_system_t
    use dda_boundary, only : boundary_t

@@ -1,4 +1,4 @@
-!> How a run begins and ends, and what its outcome says
+!> Start and end of a run, and its outcome
 submodule (dda_forward) dda_run_end
    use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned

@@ -1,5 +1,4 @@
-!> Products with the rows of the springs: stiffness and load of a joint on its face, openings and
-!> slips by a motion (Shi: df18)
+!> Products with spring rows: stiffness, load, openings and slips (Shi: df18)
 module dda_spring_products
    use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t

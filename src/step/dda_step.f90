@@ -55,23 +55,22 @@ module dda_step
 
    end interface
 
-   !> Most cuts of one step's length
+   !> Maximum number of reductions of a step
    integer, parameter :: max_retries = 40
-   !> Time hardly goes on by a step that is shorter than this share of the one that speeds allow; so
-   !> many of them in a row end a run, for as many again would not lead on by a step either
+   !> Step over the permitted one below which a run makes no progress
    real(wp), parameter :: hardly = 1.0e-6_wp
-   !> The same of runs with prescribed displacements: what contacts leave cuts no step as short
+   !> The same for runs with prescribed displacements
    real(wp), parameter :: led = 1.0e-3_wp
    integer, parameter :: most_stuck = 100
 
    !> Why contacts find no forces where points are led
    character(len=*), parameter :: jam = "contacts lock against a prescribed displacement"
 
-   !> Openings and slips against the law of contact matter beyond this share of the fastest speed
+   !> Residual over the fastest speed above which it is reported
    real(wp), parameter :: rough = 1.0e-4_wp
-   !> Smallest reduction of restitution that is reported
+   !> Smallest reported reduction of restitution
    real(wp), parameter :: small_reduction = 1.0e-3_wp
-   !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
+   !> Shortest step in time, below which stiffness overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Steps in which blocks come to rest, or go on standing
+!> Steps of blocks that come to rest or stay at rest
 submodule (dda_step) dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
@@ -10,21 +10,20 @@ submodule (dda_step) dda_step_at_rest
    use dda_step_motion, only : begin_step
    implicit none
 
-   !> Slow blocks are tried for rest after so many steps, after twice as many, and so on until every
-   !> so many
+   !> Steps before the first and between later tests of rest
    integer, parameter :: first_try = 16, every_try = 128
 
-   !> Steps by which such a try must have taken all speed, and solutions by which forces balance
+   !> Maximum number of steps and solutions of a test of rest
    integer, parameter :: most_steps = 4, most_solutions = 16
 
-   !> How much smaller than usual the gaps are that a try leaves
+   !> Gap tolerance of a test of rest over the usual one
    real(wp), parameter :: of_try = 1.0e-6_wp
 
-   !> Speed that may be noise of contact forces, over what free fall makes in a step
+   !> Speed of a slow block over that of free fall per step
    real(wp), parameter :: slow = 1.0e-3_wp
-   !> Speed that finer contact forces leave of it, over the same
+   !> Speed at rest over that of free fall per step
    real(wp), parameter :: no_speed = 1.0e-7_wp
-   !> Acceleration that a block in balance has left, over that of free fall
+   !> Acceleration at rest over that of free fall
    real(wp), parameter :: balanced = 1.0e-9_wp
 
 contains

@@ -1,4 +1,4 @@
-!> Whether a try of a step counts, and what the next try changes if it does not
+!> Acceptance of a step, and changes for its repetition
 submodule (dda_step) dda_step_check
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
@@ -10,13 +10,13 @@ submodule (dda_step) dda_step_check
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
    implicit none
 
-   !> Gap or depth that is no matter, over the size of the smaller block
+   !> Negligible gap or depth over the size of the smaller block
    real(wp), parameter :: no_matter = 1.0e-6_wp
-   !> Choices of the lines by the way the blocks have taken
+   !> Maximum number of selections of separating axes per step
    integer, parameter :: max_choices = 2
-   !> Steps shorter than this share of the longest one are not cut further
+   !> Shortest reduced step over the longest one
    real(wp), parameter :: shortest = 1.0e-3_wp
-   !> Depth that counts as entered, over the size of the smaller block
+   !> Permitted penetration over the size of the smaller block
    real(wp), parameter :: deep = 2.0e-4_wp
 
 contains

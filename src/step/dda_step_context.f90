@@ -1,5 +1,4 @@
-!> What a run holds: blocks, contacts and equations, what it carries from step to step, and what one
-!> step finds out
+!> State of a run: blocks, contacts, equations, history, and results of one step
 module dda_step_context
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_place_t
@@ -14,9 +13,7 @@ module dda_step_context
    public :: energy_t, march_t, contact_note_t, run_state_t, run_t, step_context_t, step_outcome_t
    public :: in_time, most_spare_cuts, near_gap
 
-   !> Most steps to spare for events. Each step adds one, and each that is cut to end at an event
-   !> takes three: hundreds of impacts of few blocks are found to the instant, and those of a pile
-   !> that bounces everywhere add half to its steps at the most
+   !> Maximum number of spare cuts; each step adds one, each cut costs three
    integer, parameter :: most_spare_cuts = 1000
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
@@ -236,8 +233,7 @@ module dda_step_context
       real(wp), allocatable :: onset_motion(:, :)  !! Motion of that step: (n_dof, n_equation)
    end type run_t
 
-   !> A contact is closed if its gap is below this share of the smaller block: no less than what the
-   !> solution of a step leaves of a gap (`left_over`), or the corners of one face meet in turn
+   !> Gap of a closed contact over the size of the smaller block
    real(wp), parameter :: near = 1.0e-8_wp
 
 contains

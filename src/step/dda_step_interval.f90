@@ -22,36 +22,31 @@ module dda_step_interval
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
-   !> A step whose acceleration is this share of that of the step before comes to rest at the same
-   !> length; a longer one would only let rounding move what nothing holds
+   !> Acceleration over the previous one below which a step keeps its length
    real(wp), parameter :: settling = 1.0e-3_wp
    !> Growth of the static step
    real(wp), parameter :: growth = 10.0_wp
-   !> Steps whose motions point as far against one another as this cosine rattle
+   !> Cosine between successive motions below which steps oscillate
    real(wp), parameter :: rattling = -0.3_wp
-   !> Growth of the step after one that was cut: by no more than one cut takes back, so that the
-   !> next one does not fail twice; and where blocks move, less than the cut after rattling, so that
-   !> this bears fruit
+   !> Growth of the step after a reduction
    real(wp), parameter :: calm_growth = 3.0_wp
-   !> Rattling below this share of the displacement, or within rounding, is ignored
+   !> Oscillation that is ignored, over the displacement
    real(wp), parameter :: rattle_share = 1.0e-4_wp
-   !> By what a step that did not settle is cut
+   !> Factor of a step without convergence
    real(wp), parameter :: cut = 0.3_wp
-   !> Depth that contact forces may leave, over the size of the smallest block
+   !> Penetration by residual forces over the size of the smallest block
    real(wp), parameter :: deepest = 1.0e-4_wp
-   !> Steps shorter than this share of the longest one are not cut for what contact forces leave
+   !> Shortest step reduced for residual forces over the longest one
    real(wp), parameter :: shortest = 1.0e-3_wp
-   !> A step that moves farther than this multiple of what is allowed is rejected
+   !> Motion over the permitted one above which a step is rejected
    real(wp), parameter :: too_far = 2.0_wp
-   !> On a path of loads a step moves no farther than this multiple: the corners of a hinge must not
-   !> part by the error of a straight motion, which grows with its square
+   !> The same on a loading path
    real(wp), parameter :: on_path = 0.5_wp
-   !> Most that free fall from rest may go in a step, over the size of the smallest block
+   !> Free fall per step over the size of the smallest block
    real(wp), parameter :: longest_fall = 0.25_wp
-   !> The elastic motion is this share of what strain makes of a block at the least: one that is
-   !> held at its centre does not move otherwise
+   !> Least elastic motion over that of the strain
    real(wp), parameter :: least_of_strain = 0.1_wp
-   !> Least ratio of the inertia 2 m/dt**2 to the penalty stiffness: beyond, rounding takes over
+   !> Least inertia 2 m/dt**2 over the penalty stiffness
    real(wp), parameter :: least_inertia = 1.0e-13_wp
 
 contains

@@ -1,4 +1,4 @@
-!> How blocks would move in a try of a step: contacts placed, equations assembled, joints settled
+!> Trial motion of a step: contacts, equations, joint states
 module dda_step_motion
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses

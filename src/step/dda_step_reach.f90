@@ -1,4 +1,4 @@
-!> How far corners move in a step, so that nothing is met that was not looked for
+!> Motion of corners in a step, and the reach of the contact search
 module dda_step_reach
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_t
@@ -13,11 +13,11 @@ module dda_step_reach
    public :: check_margins, first_reach, next_reach, reach_like_neighbours, travel_by, travel_of
    public :: widen_margins
 
-   !> Least reach of a block over its size: contacts nearer than this are always looked at
+   !> Least reach over the block size
    real(wp), parameter :: least_reach = 1.0e-3_wp
-   !> Reach over the motion that it is meant for
+   !> Reach over the expected motion
    real(wp), parameter :: margin = 1.5_wp
-   !> A corner may move this multiple of what a step is meant to move it
+   !> Motion over the expected one that the search covers
    real(wp), parameter :: too_far = 2.0_wp
 
 contains

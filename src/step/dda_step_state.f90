@@ -1,4 +1,4 @@
-!> What one step works on: the motion of the blocks, and the joints at its end
+!> State of one step: block motion and joints at its end
 module dda_step_state
    use dda_bar_springs, only : bar_springs_t
    use dda_block_factor, only : block_factor_t

@@ -1,4 +1,4 @@
-!> Velocities at the end of a dynamic step where blocks move: the law of impact, equation (M5)
+!> Velocities at the end of a dynamic step: the law of impact, equation (M5)
 !>
 !> The motion D of the step says which contacts are closed, and what v = 2 D/dt - v0 they would have
 !> by constant acceleration. Its forces f have acted half way; where the contacts are at the end,
@@ -31,19 +31,17 @@ module dda_velocity
 
    public :: solve_impacts
 
-   !> Most tries with less restitution; the last one has none
+   !> Maximum number of reductions of restitution
    integer, parameter :: max_tries = 10
    !> Most impacts of one moment, each by what the one before has left
    integer, parameter :: max_impacts = 10
-   !> Share of the velocities before that may be mixed in to keep the energy instead of a smaller
-   !> restitution, and most that one try reduces the restitution by
+   !> Share of mixed velocities, and largest reduction of restitution
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
-   !> Energy that counts as rounding, over that of motion
+   !> Round-off of energy over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
-   !> Steps shorter than this share of the longest one are not cut for what contacts leave
+   !> Shortest step reduced for residual forces over the longest one
    real(wp), parameter :: shortest = 1.0e-3_wp
-   !> Energy that contacts may add, over that of motion, of strain, of the fall in the longest step,
-   !> and the work of loads
+   !> Energy gain of contacts over that of motion, strain, fall and loads
    real(wp), parameter :: max_energy_gain = 1.0e-6_wp
 
    !> What the end of a step asks of velocities

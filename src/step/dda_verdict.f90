@@ -1,4 +1,4 @@
-!> Whether a block has collapsed: it has turned over, or has left its support by its own size
+!> Verdict of a run: fallen blocks, collapse in time, termination criteria
 !>
 !> What comes to rest after that is another structure than the one in question. A block may go far
 !> and not have fallen: with others that settle under it, or with what is led.
@@ -24,33 +24,29 @@ module dda_verdict
    public :: has_fallen, has_collapsed, still_moves_away, tests_collapse
    public :: measure_step, judge_verdict, largest_displacement, outcome_t, is_full, points_to_rest
 
-   !> A block that has turned by this angle has fallen [rad]
+   !> Rotation of a fallen block [rad]
    real(wp), parameter :: turned = pi/4.0_wp
 
-   !> Share of the duration after which a motion that is larger than before still moves away
+   !> Share of the duration after which displacements are late
    real(wp), parameter :: late = 0.9_wp
-   !> By how much larger, over what means collapse
+   !> Late growth of displacements over the collapse criterion
    real(wp), parameter :: growth = 0.01_wp
 
-   !> Free fall over elastic motion in a step that can prove a collapse: a shallow arch with three
-   !> hinges yields far more than the same arch without, and looks like a mechanism for a while. The
-   !> longest step that settles will do with less
+   !> Free fall over elastic motion in a step that proves collapse
    real(wp), parameter :: beyond_elastic = 1.0e8_wp
-   !> The least free fall over elastic motion that can prove a collapse
+   !> The same in the longest step that converges
    real(wp), parameter :: beyond_any = 100.0_wp
-   !> Where blocks move, collapse is a displacement of this multiple of the elastic motion, and of
-   !> the round-off of coordinates
+   !> Collapse displacement in current geometry over elastic motion and round-off
    real(wp), parameter :: collapse_multiple = 100.0_wp
-   !> And this multiple of the farthest rest that forces of a step pointed to. They do where they
-   !> lose so much in it that the way to rest is this multiple of its motion at most
+   !> The same over the farthest predicted rest
    real(wp), parameter :: beyond_rest = 10.0_wp
-   !> A step that moves by this share of the most that it may is a full one
+   !> Motion of a full step over the permitted one
    real(wp), parameter :: full = 0.5_wp
-   !> At rest the strains of every block are in balance except for this share of what strains it
+   !> Residual of strain equilibrium at rest
    real(wp), parameter :: unstrained = 1.0e-11_wp
-   !> Where blocks move, rest is a step of this share of the displacement so far
+   !> Last motion at rest over the displacement
    real(wp), parameter :: still = 1.0e-8_wp
-   !> Or of this share at most, where it is round-off alone
+   !> Last motion at rest where it is round-off
    real(wp), parameter :: barely = 1.0e-6_wp
 
    !> How a run ended
