@@ -28,7 +28,7 @@ MOST_ELAPSED = 60
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a command made of a file."""
+    """Outcome of a command on a file."""
 
     status: int
     error: str
@@ -37,7 +37,7 @@ class Outcome:
     memory: int
 
     def fault(self) -> str:
-        """What is wrong with it; empty if nothing."""
+        """Fault of the outcome; empty if there is none."""
         if (self.status, self.error.count("\n")) not in ((0, 0), (2, 1)) or "Traceback" in self.error:
             return f"status {self.status} and {self.error.count(chr(10))} lines: {self.error[:300]}"
         if "of its kind, got a" in self.error:

@@ -50,7 +50,7 @@ def write_assembly(folder: Path, off: float, seed: int) -> None:
 
 
 def check(folder: Path, dda: str) -> str:
-    """What verify says of the folder of a deck; empty if it accepts it, 'refused' if the program refuses the deck."""
+    """Verdict of verify on the folder of a deck; empty if accepted, 'refused' if the program refuses the deck."""
     done = subprocess.run([dda, "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True,
                           preexec_fn=limit_time)
     if done.returncode == 2:

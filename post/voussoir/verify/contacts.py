@@ -40,7 +40,7 @@ class Block:
 
 @dataclass
 class Joint:
-    """Where two blocks touch: a corner of the one on an edge of the other at each end, the same twice for a corner."""
+    """Contact of two blocks: a corner of the one on an edge of the other at each end, the same twice for a corner."""
 
     first: int
     second: int

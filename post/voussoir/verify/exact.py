@@ -114,7 +114,7 @@ def _columns_of(
     exact: ExactScene, joint: Joint, friction: Fraction | float, nudge: Fraction, number: dict[int, int],
     origin: np.ndarray,
 ) -> list[Column]:
-    """What a unit of each force of a joint does: a normal one at each end, with friction either way."""
+    """Effect of a unit of each force of a joint: a normal one at each end, with friction either way."""
     ends, edges = [exact.at(end) for end in joint.ends], [[exact.at(at) for at in edge] for edge in joint.edges]
     along = [edge[1] - edge[0] for edge in edges]
     feet = [edge[0] + way * ((end - edge[0]) @ way / (way @ way)) for end, edge, way in zip(ends, edges, along)]
