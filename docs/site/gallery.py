@@ -20,8 +20,6 @@ from voussoir.plot.figure_style import house_style, save
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input" / "gallery"
 PICTURES = ROOT / "docs" / "images" / "gallery"
-#: Scenes of so many contacts that their forces would cover them
-CROWDED = ("rings", "tunnel")
 HEAD = """# Gallery
 
 Twelve scenes from a semicircle to a tunnel: a question, the picture of `voussoir plot`, and the deck. The decks are in
@@ -76,7 +74,7 @@ def draw(deck: Path, folder: Path) -> None:
             (folder / file.name).write_bytes(file.read_bytes())
     name = deck.stem[3:]
     with house_style():
-        figure = draw_case(results.read(folder / deck.stem), 1, with_forces=name not in CROWDED)
+        figure = draw_case(results.read(folder / deck.stem), 1)
         save(figure, PICTURES, name, ("svg",))
 
 

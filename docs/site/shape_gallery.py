@@ -9,10 +9,13 @@ import matplotlib.pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import voussoir
-from voussoir.plot.case_picture import draw_ring_thrust, draw_supports, row_with_safety
+from voussoir.plot.case_joints import JointMarks
+from voussoir.plot.case_picture import draw_supports, row_with_safety
 from voussoir.plot.case_scene import scene_of
 from voussoir.plot.case_title import safety_of
 from voussoir.plot.figure_style import STONE, house_style
+from voussoir.plot.motion import motion_of
+from voussoir.plot.thrust_path import thrust_pairs
 
 #: Title, then keys of each
 SHAPES = {
@@ -42,7 +45,9 @@ def main() -> None:
             scene = scene_of(run, 1)
             draw_supports(axes, [block.corners for block in scene.supports])
             axes.add_collection(PolyCollection(scene.shapes(0.0), facecolor=STONE, edgecolor="#777777", linewidth=0.6))
-            draw_ring_thrust(axes, scene, run.joints_of(1))
+            joints = run.joints_of(1)
+            marks = JointMarks(scene, joints, motion_of(scene.blocks, scene.supports, 0.0, 0.0), 1.0)
+            marks.draw_thrust(axes, thrust_pairs(scene, joints))
             axes.autoscale_view()
             axes.set_aspect("equal")
             axes.set_axis_off()

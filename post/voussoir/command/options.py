@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -40,3 +41,26 @@ def magnification(word: str) -> float:
     if not 0.0 <= number < math.inf:
         raise argparse.ArgumentTypeError(f"must be a number from 0, got '{word}'")
     return number
+
+
+#: Units of a width [inch]
+INCHES = {"mm": 1.0 / 25.4, "cm": 1.0 / 2.54, "in": 1.0, "pt": 1.0 / 72.0}
+#: Least and greatest width of a picture [inch]
+NARROWEST, WIDEST = 1.0, 40.0
+
+
+def picture_width(word: str) -> float:
+    """A width with its unit, such as "80mm": in inches."""
+    found = re.fullmatch(r"([0-9.]+)\s*(mm|cm|in|pt)", word.strip())
+    width = magnification(found[1]) * INCHES[found[2]] if found else math.nan
+    if not NARROWEST <= width <= WIDEST:
+        raise argparse.ArgumentTypeError(f"must be a width from 25.4mm to 1016mm with its unit, got '{word}'")
+    return width
+
+
+def type_size(word: str) -> float:
+    """A size of type [points]."""
+    size = magnification(word)
+    if not 4.0 <= size <= 40.0:
+        raise argparse.ArgumentTypeError(f"must be a size from 4 to 40 points, got '{word}'")
+    return size

@@ -1,50 +1,42 @@
-"""`voussoir plot`: pictures of a folder of results."""
+"""`voussoir plot`: pictures of a folder of results, or of a file of blocks or lines."""
 
 from __future__ import annotations
 
 import argparse
+import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from voussoir import results
-from voussoir.command.options import magnification
+from voussoir.command.options import magnification, picture_width, type_size
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: Most cases that are drawn without being named
 MOST_CASES = 12
 _AUTO = "auto"
 #: A table of more bytes is large
 LARGE = 10_000_000
+#: Endings of files that are drawn without a run
+_FILES = (".blocks", ".geo")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Draw the cases of a folder that dda run has written, arches and blocks alike: line of thrust, hinges, slips, "
-        "contact forces, loads, held points, ways of measured points; or chart the critical values of a sweep."
+        "Draw the cases of a folder that dda run has written, arches and blocks alike: thrust line, hinges, slips, "
+        "contact forces, loads, held points, ways of measured points; chart a sweep; or draw a file of blocks or lines "
+        "without a run. With more than 40 marked joints their state is the colour of their lines, and blocks are "
+        "shaded by how far they move."
     )
-    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results, or FILE.blocks, FILE.geo")
     parser.add_argument(
         "--case", metavar="N", type=int, nargs="+",
-        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart or --fragility)")
-    parser.add_argument(
-        "--chart",
-        metavar="COLUMN",
-        nargs="?",
-        const=_AUTO,
-        help="chart the critical values against this column, such as half_angle_deg; without a "
-        "name against the swept column with the most values (default: no chart)",
-    )
-    parser.add_argument(
-        "--fragility",
-        metavar="COLUMN",
-        nargs="?",
-        const=_AUTO,
-        help="draw the share of records that make the blocks collapse against this swept column, "
-        "amplitude or scale without a name; or, of searches, against the critical values",
-    )
-    parser.add_argument("--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)")
-    parser.add_argument(
-        "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
-        help="of svg, pdf, png (default: svg)")
+        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart, --x, --map or --fragility)")
+    add_charts(parser)
+    add_sheet(parser)
     parser.add_argument(
         "--magnify",
         metavar="M",
@@ -56,47 +48,128 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--numbers", action="store_true", help="write the blocks' numbers on them")
     parser.add_argument("--coordinates", action="store_true", help="draw the axes, in metres")
-    parser.add_argument("--no-forces", action="store_true", help="leave the contact forces out")
+    forces = parser.add_mutually_exclusive_group()
+    forces.add_argument(
+        "--forces", action="store_true", default=None,
+        help="draw the contact forces (default: where no thrust line is drawn, of up to 150 joints)")
+    forces.add_argument("--no-forces", dest="forces", action="store_false", help="leave the contact forces out")
+
+
+def add_charts(parser: argparse.ArgumentParser) -> None:
+    """Add the options of charts."""
+    parser.add_argument(
+        "--chart",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="chart the critical values against this column, such as half_angle_deg; without a "
+        "name against the swept column with the most values (default: no chart)",
+    )
+    parser.add_argument("--x", metavar="KEY", help="chart --y against this swept key (default: no chart)")
+    parser.add_argument(
+        "--map", metavar="KEY", nargs=2,
+        help="map --y over two swept keys, with contours; without --y and a search the verdicts (default: no map)")
+    parser.add_argument(
+        "--y", metavar="COLUMN", help="column of results.csv for --x and --map (default: the critical value)")
+    parser.add_argument(
+        "--fragility",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="draw the share of records that make the blocks collapse against this swept column, "
+        "amplitude or scale without a name; or, of searches, against the critical values",
+    )
+
+
+def add_sheet(parser: argparse.ArgumentParser) -> None:
+    """Add the options of files, widths and types."""
+    parser.add_argument("--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)")
+    parser.add_argument(
+        "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
+        help="of svg, pdf, png (default: svg)")
+    parser.add_argument(
+        "--width", metavar="W", type=picture_width, default=picture_width("132mm"),
+        help="width of the picture with its unit, mm, cm, in or pt (default: 132mm)")
+    parser.add_argument(
+        "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
+    parser.add_argument("--no-title", dest="title", action="store_false", default=True, help="leave the title out")
+    parser.add_argument("--no-legend", dest="legend", action="store_false", default=True, help="leave the legend out")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw."""
-    from voussoir.plot.case_picture import draw_case
-    from voussoir.plot.design_chart import chart_columns, draw_chart
     from voussoir.plot.figure_style import house_style, save
 
+    if arguments.y and not (arguments.x or arguments.map):
+        raise ValueError("--y needs --x KEY or --map KEY KEY")
+    with house_style(arguments.font):
+        for name, figure in _figures(arguments):
+            out = arguments.out or (Path("plots") if arguments.folder.is_file() else arguments.folder / "plots")
+            for path in save(figure, out, name, tuple(arguments.format)):
+                print(path)
+    return 0
+
+
+def _figures(arguments: argparse.Namespace) -> Iterator[tuple[str, Figure]]:
+    """The pictures that are asked for, with the names of their files."""
+    from voussoir.plot.sheet import Sheet
+
+    sheet = Sheet(arguments.width, arguments.title, arguments.legend)
+    if arguments.folder.suffix in _FILES and arguments.folder.is_file():
+        from voussoir.plot.bare_scene import draw_file
+
+        yield arguments.folder.stem, draw_file(arguments.folder, sheet, arguments.numbers, arguments.coordinates)
+        return
     # of a large table only what the chart needs is held
+    from voussoir.plot.design_chart import chart_columns
+
     table = arguments.folder / "results.csv"
-    bare = arguments.chart and not arguments.case and not arguments.fragility
+    bare = arguments.chart and not (arguments.case or arguments.fragility or arguments.x or arguments.map)
     large = table.is_file() and table.stat().st_size > LARGE
     read = results.read(arguments.folder, chart_columns if bare and large else None)
-    out = arguments.out or arguments.folder / "plots"
-    paths: list[Path] = []
-    with house_style():
-        if arguments.chart:
-            column = None if arguments.chart == _AUTO else arguments.chart
-            name = "chart" if column is None else f"chart_{column}"
-            paths += save(draw_chart(read, column), out, name, tuple(arguments.format))
-        if arguments.fragility:
-            from voussoir.plot.fragility import draw_fragility
+    for name, figure in _charts(arguments, read):
+        yield name, sheet.resized(figure)
+    from voussoir.plot.case_picture import draw_case
 
-            figure, fit = draw_fragility(read, None if arguments.fragility == _AUTO else arguments.fragility)
-            if fit:
-                print(f"lognormal fragility: median {fit.median:.6g}, dispersion {fit.dispersion:.4g}")
-            paths += save(figure, out, "fragility", tuple(arguments.format))
-        for number in _cases(arguments, read):
-            figure = draw_case(
-                read, number, arguments.magnify, not arguments.no_forces, arguments.numbers, arguments.coordinates
-            )
-            paths += save(figure, out, f"case_{number}", tuple(arguments.format))
-    for path in paths:
-        print(path)
-    return 0
+    for number in _cases(arguments, read):
+        yield f"case_{number}", draw_case(
+            read, number, arguments.magnify, arguments.forces, arguments.numbers, arguments.coordinates, sheet)
+
+
+def _charts(arguments: argparse.Namespace, read: results.Results) -> Iterator[tuple[str, Figure]]:
+    """The charts that are asked for, with the names of their files."""
+    if arguments.chart:
+        from voussoir.plot.design_chart import draw_chart
+
+        column = None if arguments.chart == _AUTO else arguments.chart
+        yield "chart" if column is None else f"chart_{column}", draw_chart(read, column)
+    if arguments.x:
+        from voussoir.plot.sweep_chart import draw_sweep
+
+        yield _file_name("sweep", arguments.x, arguments.y), draw_sweep(
+            read, arguments.x, arguments.y, arguments.legend)
+    if arguments.map:
+        from voussoir.plot.sweep_chart import draw_map
+
+        yield _file_name("map", *arguments.map, arguments.y), draw_map(
+            read, tuple(arguments.map), arguments.y, arguments.legend)
+    if arguments.fragility:
+        from voussoir.plot.fragility import draw_fragility
+
+        figure, fit = draw_fragility(read, None if arguments.fragility == _AUTO else arguments.fragility)
+        if fit:
+            print(f"lognormal fragility: median {fit.median:.6g}, dispersion {fit.dispersion:.4g}")
+        yield "fragility", figure
+
+
+def _file_name(*words: str | None) -> str:
+    """A name of a file from names of keys."""
+    return "_".join(re.sub(r"\W+", "_", word).strip("_") for word in words if word)
 
 
 def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
     """Cases to draw."""
-    if arguments.case or arguments.chart or arguments.fragility:
+    if arguments.case or arguments.chart or arguments.fragility or arguments.x or arguments.map:
         return arguments.case or []
     drawn = [int(number) for number in read.cases["case"][:MOST_CASES]]
     if len(drawn) < len(read.cases):

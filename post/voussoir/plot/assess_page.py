@@ -9,9 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from voussoir.plot.case_picture import draw_blocks, draw_supports, new_figure
+from voussoir.plot.case_picture import draw_blocks, draw_supports
 from voussoir.plot.case_scene import scene_of, view
 from voussoir.plot.figure_style import INK
+from voussoir.plot.sheet import Sheet
 from voussoir.plot.units import force_text, value_label
 from voussoir.results import Results
 
@@ -60,7 +61,8 @@ def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: flo
     size = float((high - low).max())
     road = surface if surface is not None else float(high[1])
     box_low, box_high = view(shapes, [block.corners for block in scene.supports])
-    figure, axes = new_figure(
+    sheet = Sheet()
+    figure, axes = sheet.start(
         np.minimum(box_low, low - 0.16 * size), np.maximum(box_high, [high[0] + 0.2 * size, road + 0.2 * size])
     )
     draw_supports(axes, [block.corners for block in scene.supports])
@@ -79,7 +81,7 @@ def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: flo
         tip = {"arrowstyle": "-|>", "color": INK[2], "linewidth": 1.6}
         axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
         axes.text(place, road + 0.14 * size, f"{force_text(weight)}", ha="center", fontsize=8, color=INK[2])
-    return figure
+    return sheet.finish(figure, axes)
 
 
 def dimensions_of(run: Results) -> str:

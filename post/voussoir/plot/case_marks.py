@@ -10,11 +10,14 @@ from matplotlib.patheffects import withStroke
 
 from voussoir.plot.case_scene import CaseScene
 from voussoir.plot.figure_style import INK
+from voussoir.plot.motion import Motion
 from voussoir.plot.source_file import Source
 from voussoir.plot.units import force_text
 
 #: Longest load in the picture, over its size; most loads that have their value beside them
 LOAD_LENGTH, MOST_VALUES = 0.12, 12
+#: Colours of bars and of live loads
+BAR, LIVE = "#7a3b8f", "#1b7a3d"
 #: Marks of points that are held along both directions, x or y
 _HELD = {
     "": ({"marker": "^", "markerfacecolor": INK[0]}, "held point"),
@@ -28,47 +31,51 @@ def entry(label: str, **style) -> Line2D:
     return Line2D([], [], **({"linestyle": "none", "label": label} | style))
 
 
-def load_arrows(source: Source, size: float) -> tuple[np.ndarray, np.ndarray]:
+def load_arrows(source: Source, size: float, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     """Tails and tips of the loads, the longest of a fixed share of the picture: (n, 2) each [m]."""
-    tips = np.array([point for point, _, _ in source.loads]).reshape(-1, 2)
+    tips = np.array([motion.placed(point) for point, _, _ in source.loads]).reshape(-1, 2)
     forces = np.array([force for _, force, _ in source.loads]).reshape(-1, 2)
     largest = float(np.hypot(*forces.T).max(initial=0.0))
     return tips - forces * (LOAD_LENGTH * size / (largest or 1.0)), tips
 
 
-def draw_loads(axes: Axes, source: Source, size: float) -> list[Artist]:
+def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: float = 1.0) -> list[Artist]:
     """Draw the forces that the deck puts on points; gives the entries of the legend."""
-    tails, tips = load_arrows(source, size)
+    tails, tips = load_arrows(source, size, motion)
     entries = []
-    for live, color, words in ((False, INK[0], "load"), (True, INK[1], "live load, before its factor")):
+    for live, color, words in ((False, INK[0], "load"), (True, LIVE, "live load, before its factor")):
         chosen = [number for number, load in enumerate(source.loads) if load[2] == live and any(load[1])]
         for number in chosen:
-            arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
+            arrow = {
+                "arrowstyle": "-|>", "color": color, "linewidth": 1.5 * pen, "shrinkA": 0, "shrinkB": 0,
+                "mutation_scale": 10 * pen}
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
             if len(source.loads) <= MOST_VALUES:
                 value = force_text(float(np.hypot(*source.loads[number][1])))
                 axes.annotate(
-                    value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize=8.5, color=color, zorder=9
-                )
+                    value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize="small", color=color,
+                    zorder=9)
         if chosen:
             entries.append(entry(words, marker=r"$\downarrow$", markersize=10, color=color))
     return entries
 
 
-def draw_held(axes: Axes, source: Source, scene: CaseScene) -> list[Artist]:
+def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> list[Artist]:
     """Draw points and lines that are held, and bars; gives the entries of the legend."""
     entries = []
     for along, (mark, words) in _HELD.items():
-        ends = [(scene.held_at(pair[0]), scene.held_at(pair[1])) for pair in source.held if pair[2] == along]
+        ends = [(motion.placed(pair[0]), motion.placed(pair[1])) for pair in source.held if pair[2] == along]
         for start, end in ends:
             axes.plot(
-                *zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8, markeredgecolor=INK[0], **mark)
+                *zip(start, end), color=INK[0], linewidth=2.0 * pen, zorder=7, markersize=6 * pen,
+                markeredgecolor=INK[0], **mark)
         if ends:
-            entries.append(entry(words, markeredgecolor=INK[0], markersize=8, **mark))
+            entries.append(entry(words, markeredgecolor=INK[0], markersize=6 * pen, **mark))
     for ends in source.bars:
-        axes.plot(*zip(*ends), color=INK[2], linewidth=1.8, marker="o", markersize=3, zorder=7)
+        placed = [motion.placed(end) for end in ends]
+        axes.plot(*zip(*placed), color=BAR, linewidth=1.7 * pen, marker="o", markersize=3 * pen, zorder=7)
     if source.bars:
-        entries.append(entry("bar", linestyle="-", color=INK[2], marker="o", markersize=3))
+        entries.append(entry("bar", linestyle="-", color=BAR, linewidth=1.7 * pen, marker="o", markersize=3 * pen))
     entries += draw_water(axes, source)
     entries += [entry(f"not drawn: {what}") for what in source.missing]
     return entries
@@ -98,7 +105,7 @@ def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None
     placed += [(block.number, block.corners) for block in scene.supports]
     for number, shape in placed:
         axes.text(
-            *shape.mean(axis=0), str(number), fontsize=8, ha="center", va="center", zorder=10, clip_on=True,
+            *shape.mean(axis=0), str(number), fontsize="x-small", ha="center", va="center", zorder=10, clip_on=True,
             path_effects=[withStroke(linewidth=2.0, foreground="white")])
 
 

@@ -9,40 +9,32 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from voussoir.plot.case_joints import JointMarks
 from voussoir.plot.case_marks import draw_held, draw_loads, draw_numbers, entry, load_arrows, show_coordinates
 from voussoir.plot.case_scene import CaseScene, scene_of, view
 from voussoir.plot.case_title import title_of
-from voussoir.plot.collapse_picture import MARKS, MEANINGS
-from voussoir.plot.figure_style import INK, TINTS, Picture
-from voussoir.plot.shape_rings import ring_joints
+from voussoir.plot.figure_style import INK, TINTS
+from voussoir.plot.motion import Motion, motion_of
+from voussoir.plot.sheet import Sheet
 from voussoir.plot.source_file import source_of
-from voussoir.plot.units import force_text, length_text, rounded
+from voussoir.plot.units import length_text, rounded
 from voussoir.results import Results, Table
 
-#: Longest force, largest displacement and length of slip marks in the picture, over its size
-FORCE_LENGTH, DISPLACED_LENGTH, SLIP_LENGTH = 0.10, 0.04, 0.03
-#: More joints than these have smaller marks
-MANY = 100
+#: Largest displacement in the picture, over its size
+DISPLACED_LENGTH = 0.04
 #: Displacements above this share of the picture's size are seen without magnification
 SEEN = 0.02
-#: Width of a figure, and its least and greatest height [inch]
-WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 5.2, 1.8, 5.2
-
-#: What the marks mean where nothing collapses
-TOUCHES = {
-    "intrados": "touches at the intrados only",
-    "extrados": "touches at the extrados only",
-    "hinge": "touches at this corner only",
-    "open": "open joint",
-}
+#: Blocks that do not move, and those that move furthest
+SHADES = LinearSegmentedColormap.from_list("motion", ["#f4f4f2", "#d3dbe2", "#93a8ba"])
 
 
 def draw_case(
-    run: Results, number: int, magnify: float | str | None = None, with_forces: bool = True, numbers: bool = False,
-    coordinates: bool = False
+    run: Results, number: int, magnify: float | str | None = None, with_forces: bool | None = None,
+    numbers: bool = False, coordinates: bool = False, sheet: Sheet = Sheet()
 ) -> Figure:
     """Draw one case of any scene.
 
@@ -52,47 +44,52 @@ def draw_case(
         Magnification of the displaced shape, chosen and stated with "auto". Without it what stands
         is drawn as it stands, and a collapse mechanism, which has no size, as large as can be seen.
     with_forces : bool, optional
-        Whether the forces of the joints are drawn.
+        Whether the forces of the joints are drawn; by default where no thrust line is drawn and the joints are few.
     numbers : bool, optional
         Whether blocks have their numbers on them.
     coordinates : bool, optional
         Whether the axes are drawn [m].
+    sheet : Sheet, optional
+        Width of the picture, and whether it has a title and a legend.
 
     Raises
     ------
     KeyError
         If there is no such case, or its blocks were not written.
     """
-    title = title_of(row_with_safety(run, number), run)
+    title = title_of(row_with_safety(run, number), run) if sheet.title else ""
     scene, source = scene_of(run, number), source_of(run)
     joints = run.joints_of(number) if run.joints is not None else None
     ways = run.points_of(number)
-    shapes, beginning = (scene.shapes(1.0 if now and scene.moves else 0.0) for now in (True, False))
+    told = 1.0 if scene.moves else 0.0
     supports = [block.corners for block in scene.supports]
-    seen = beginning + shapes + ([way_of(way) for way in ways] if scene.moves else [])
-    size = float(np.subtract(*view(seen, supports)[::-1]).max())
-    low, high = view([*seen, *load_arrows(source, size)], supports)
-    figure, axes = new_figure(low, high)
-    entries = draw_supports(axes, supports)
-    if scene.moves and scene.largest > SEEN * size:
-        entries += draw_beginning(axes, beginning, scene.largest)
-    entries += draw_blocks(axes, scene, shapes, source.materials)
+    size = float(np.subtract(*view(scene.shapes(0.0) + scene.shapes(told), supports)[::-1]).max())
     factor = factor_of(scene, magnify, size)
-    if factor > 0.0:
-        entries += draw_displaced(axes, scene, factor)
-    entries += draw_ways(axes, scene, ways, factor)
-    if joints is not None:
-        entries += draw_joints(axes, scene, joints, size, with_forces)
-    entries += draw_loads(axes, source, size) + draw_held(axes, source, scene)
+    motion = motion_of(scene.blocks, scene.supports, factor or told, told)
+    shapes, beginning = scene.shapes(motion.shown), scene.shapes(0.0)
+    low, high = view([*beginning, *shapes, *(places_of(way, motion) for way in ways if scene.moves),
+                      *load_arrows(source, size, motion)], supports)
+    pen = sheet.pen(len(scene.blocks))
+    figure, axes = sheet.start(low, high)
+    marks = JointMarks(scene, joints, motion, size, pen, sheet.scale(low, high)) if joints is not None else None
+    entries = draw_supports(axes, supports, pen)
+    if motion.shown > 0.0 and (factor > 0.0 or scene.largest > SEEN * size):
+        entries += draw_beginning(axes, beginning, beginning_words(scene, factor), pen)
+    if marks is not None and marks.crowded and motion.shown > 0.0:
+        entries += shade_blocks(axes, scene, shapes, pen, length_text(factor or scene.largest))
+    else:
+        entries += draw_blocks(axes, scene, shapes, source.materials, pen, shape_words(scene, factor))
+    entries += draw_ways(axes, scene, ways, motion)
+    if marks is not None:
+        entries += marks.draw(axes, with_forces)
+    entries += draw_loads(axes, source, size, motion, pen) + draw_held(axes, source, motion, pen)
     if numbers:
         draw_numbers(axes, scene, shapes)
     if coordinates:
         show_coordinates(axes)
     else:
-        draw_scale(axes, low, high)
-    axes.set_title(title, fontsize=10.5)
-    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), fontsize=9)
-    return figure
+        draw_scale(axes, low, high, pen)
+    return sheet.finish(figure, axes, title, entries)
 
 
 def row_with_safety(run: Results, number: int) -> dict[str, Any]:
@@ -111,38 +108,46 @@ def row_with_safety(run: Results, number: int) -> dict[str, Any]:
     return row
 
 
-def new_figure(low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:
-    """A figure whose shape is that of a piece of plane, and its bare axes."""
-    wide, tall = high - low
-    height = min(max(WIDTH * tall / wide, LEAST_HEIGHT), MOST_HEIGHT) + 0.5
-    figure = Picture(figsize=(WIDTH, height), layout="constrained")
-    axes = figure.subplots()
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    return figure, axes
-
-
-def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
+def draw_supports(axes: Axes, supports: list[np.ndarray], pen: float = 1.0) -> list[Artist]:
     """Draw what cannot move; gives the entries of the legend."""
     if not supports:
         return []
-    style = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6, "hatch": "////"}
+    style = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6 * pen, "hatch": "/////"}
     axes.add_collection(PolyCollection(supports, **style, zorder=0))
     return [Patch(**style, label="fixed")]
 
 
-def draw_beginning(axes: Axes, shapes: list[np.ndarray], largest: float) -> list[Artist]:
+def beginning_words(scene: CaseScene, factor: float) -> str:
+    """Legend of the blocks before they have moved."""
+    if factor == 0.0:
+        return f"at the beginning; true scale, largest displacement {length_text(scene.largest)}"
+    return "before the collapse" if scene.falls else "at the beginning"
+
+
+def shape_words(scene: CaseScene, factor: float) -> str:
+    """Legend of the blocks where they are drawn."""
+    if factor == 0.0:
+        return "blocks"
+    if scene.falls:
+        return f"collapse mechanism, largest displacement drawn {length_text(factor)}"
+    return f"blocks, displacements × {factor:g} (largest {length_text(scene.largest)})"
+
+
+def draw_beginning(axes: Axes, shapes: list[np.ndarray], words: str, pen: float = 1.0) -> list[Artist]:
     """Draw where blocks that have moved were; gives the entries of the legend."""
+    style = {"linestyle": (0, (3, 2)), "linewidth": 0.6 * pen}
     axes.add_collection(
-        PolyCollection(shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1))
-    words = f"at the beginning; true scale, largest displacement {length_text(largest)}"
-    return [entry(words, linestyle="--", color=INK[3], linewidth=0.9)]
+        PolyCollection(
+            shapes, facecolors="none", edgecolors=INK[3], linewidths=style["linewidth"],
+            linestyles=[style["linestyle"]], zorder=1))
+    return [entry(words, color=INK[3], **style)]
 
 
-def draw_blocks(axes: Axes, scene: CaseScene, shapes: list[np.ndarray], materials: Sequence[int] = ()) -> list[Artist]:
-    """Draw the blocks that can move, where their joints are told, by materials; gives the entries."""
+def draw_blocks(
+    axes: Axes, scene: CaseScene, shapes: list[np.ndarray], materials: Sequence[int] = (), pen: float = 1.0,
+    words: str = "blocks"
+) -> list[Artist]:
+    """Draw the blocks that can move, by materials where these are known; gives the entries of the legend."""
     known = len(materials) >= max((block.number for block in scene.blocks), default=0)
     groups: dict[tuple[int, bool], list[np.ndarray]] = {}
     for block, shape in zip(scene.blocks, shapes):
@@ -154,13 +159,26 @@ def draw_blocks(axes: Axes, scene: CaseScene, shapes: list[np.ndarray], material
         style = {
             "facecolor": TINTS[(material - 1) % len(TINTS)],
             "edgecolor": "#777777",
-            "linewidth": 0.7,
-            "hatch": "..." if held else None,
+            "linewidth": 0.7 * pen,
+            "hatch": "/////" if held else None,
         }
         axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
-        words = f"blocks of material {material}" if several else "blocks"
-        entries.append(Patch(**style, label=words + (" held by points" if held else "")))
-    return entries
+        name = f"blocks of material {material}" if several else "blocks" if held else words
+        entries.append(Patch(**style, label=name + (" held by points" if held else "")))
+    return [*entries, entry(words)] if several and words != "blocks" else entries
+
+
+def shade_blocks(
+    axes: Axes, scene: CaseScene, shapes: list[np.ndarray], pen: float = 1.0, furthest: str = ""
+) -> list[Artist]:
+    """Draw the blocks that can move in shades of how far they move; gives the entries of the legend."""
+    moves = np.array([float(np.hypot(*block.displacement.T).max()) for block in scene.blocks])
+    colors = SHADES(moves / (moves.max() or 1.0))
+    style = {"edgecolor": "#8a8a8a", "linewidth": 0.6 * pen}
+    axes.add_collection(PolyCollection(
+        shapes, facecolors=colors, edgecolors=style["edgecolor"], linewidths=style["linewidth"], zorder=1.5))
+    named = ((0.0, "blocks that do not move"), (1.0, f"blocks that move furthest, drawn {furthest}"))
+    return [Patch(facecolor=SHADES(share), label=label, **style) for share, label in named]
 
 
 def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> float:
@@ -175,161 +193,36 @@ def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> flo
     return rounded(DISPLACED_LENGTH * size / largest)
 
 
-def draw_displaced(axes: Axes, scene: CaseScene, factor: float) -> list[Artist]:
-    """Draw the displaced shape or the mechanism; gives the entries of the legend."""
-    axes.add_collection(
-        PolyCollection(scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2))
-    words = f"displaced shape, displacements × {factor:g} (largest {length_text(scene.largest)})"
-    if scene.falls:
-        words = f"collapse mechanism, drawn with a largest displacement of {length_text(factor)}"
-    return [entry(words, linestyle="-", color=INK[0], linewidth=0.8)]
+def places_of(way: Table, motion: Motion) -> np.ndarray:
+    """Where the picture shows a measured point after each step: (n, 2) [m]."""
+    moves = np.column_stack((way["u"], way["v"]))
+    start = np.array([way["x"][0], way["y"][0]]) - moves[0]
+    return start + motion.shown * moves
 
 
-def way_of(way: Table) -> np.ndarray:
-    """Where a measured point was after each step: (n, 2) [m]."""
-    return np.column_stack((way["x"], way["y"]))
-
-
-def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], factor: float) -> list[Artist]:
+def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -> list[Artist]:
     """Draw the ways of the measured points as the blocks are drawn; gives the entries."""
     for way in ways:
-        motion = np.column_stack((way["u"], way["v"]))
-        start = way_of(way)[0] - motion[0]
-        points = start + motion * (1.0 if scene.moves and factor == 0.0 else factor)
+        points = places_of(way, motion)
         axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
         axes.plot(*points[-1], marker="D", color=INK[1], markersize=4, zorder=6)
         axes.annotate(
-            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points", fontsize=8, color=INK[1],
-            zorder=8)
+            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points", fontsize="small",
+            color=INK[1], zorder=8)
     if not ways:
         return []
-    words = "measured points and their ways" if scene.moves or factor > 0.0 else "measured points"
+    words = "measured points and their ways" if motion.shown > 0.0 else "measured points"
     return [entry(words, linestyle=(0, (4, 1.5)), color=INK[1], marker="D", markersize=4, linewidth=1.1)]
 
 
-def draw_joints(axes: Axes, scene: CaseScene, joints: Table, size: float, with_forces: bool) -> list[Artist]:
-    """Draw thrust, forces, hinges and slips; gives the entries of the legend."""
-    entries = draw_thrust(axes, joints) if scene.is_arch else []
-    if scene.voussoirs:
-        entries = draw_ring_thrust(axes, scene, joints)
-    if with_forces:
-        entries += draw_forces(axes, scene, joints, size)
-    return entries + draw_hinges(axes, scene, joints) + draw_slips(axes, scene, joints, size)
-
-
-def thrust_points(joints: Table) -> np.ndarray:
-    """Where the forces act: (n, 2) [m]; NaN where a joint carries nothing."""
-    points = np.column_stack((joints["x"], joints["y"]))
-    points[~(joints["normal_force"] > 0.0)] = np.nan
-    return points
-
-
-def draw_thrust(axes: Axes, joints: Table) -> list[Artist]:
-    """Draw the line of thrust of an arch; gives the entries of the legend."""
-    axes.plot(*thrust_points(joints).T, color=INK[1], linewidth=2.6, zorder=4)
-    return [entry("line of thrust", linestyle="-", color=INK[1])]
-
-
-def draw_ring_thrust(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
-    """Draw the line of thrust through the voussoirs of each ring; gives the entries of the legend."""
-    points = thrust_points(joints)
-    for pair in ring_joints(joints["block_1"], joints["block_2"], scene.count, scene.voussoirs):
-        axes.plot(*points[list(pair)].T, color=INK[1], linewidth=2.6, solid_capstyle="round", zorder=4)
-    return [entry("line of thrust", linestyle="-", color=INK[1])]
-
-
-def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
-    """Draw the force of each joint on its second block, or on the one of its two that can move.
-
-    Gives the entries of the legend.
-    """
-    vectors = np.column_stack((joints["force_x"], joints["force_y"]))
-    vectors[np.isin(joints["block_2"], [block.number for block in scene.supports])] *= -1.0
-    largest = float(np.hypot(*vectors.T).max(initial=0.0))
-    if not largest > 0.0:
-        return []
-    arrows = vectors * (FORCE_LENGTH * size / largest)
-    axes.quiver(
-        *thrust_points(joints).T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2], width=0.002,
-        headwidth=4.5, zorder=4.5)
-    words = f"contact forces, longest {force_text(largest, scene.unit)}"
-    return [entry(words, linestyle="-", color=INK[2], linewidth=1.2)]
-
-
-def roles_of(joints: Table) -> np.ndarray:
-    """What each joint does: in the collapse if there is one, else at the end of the run."""
-    mechanism = joints["mechanism"]
-    return mechanism if np.any(mechanism != "none") else joints["state"]
-
-
-def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
-    """Draw hinges and open joints; gives the entries of the legend.
-
-    A joint of one corner turns about it always: it is marked in a collapse only.
-    """
-    entries: list[Artist] = []
-    role = roles_of(joints)
-    collapses = role is joints["mechanism"]
-    two = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
-    two |= joints["mechanism"] != "none"
-    places = {
-        "intrados": (role == "hinge_intrados", "x_intrados", "y_intrados"),
-        "extrados": (role == "hinge_extrados", "x_extrados", "y_extrados"),
-        "open": (role == "open", "x", "y"),
-    }
-    seen = set()
-    for kind, (mask, x, y) in places.items():
-        mask = mask & two
-        mark = "hinge" if kind != "open" and not scene.is_arch else kind
-        if not mask.any():
-            continue
-        axes.plot(
-            joints[x][mask], joints[y][mask], linestyle="none", zorder=6,
-            markersize=6.5 if len(joints) <= MANY else 4.0, **MARKS[mark])
-        if mark not in seen:
-            words = MEANINGS[mark] if collapses else TOUCHES[mark]
-            entries.append(entry(words, **MARKS[mark]))
-        seen.add(mark)
-    return entries
-
-
-def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
-    """Draw which way the sides of sliding joints move; gives the entries of the legend."""
-    slides = np.flatnonzero(np.isfinite(joints["slides_x"]))
-    falls = scene.falls or scene.moves
-    centre = {block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports}
-    long = np.hypot(*(joints[f"{axis}_extrados"] - joints[f"{axis}_intrados"] for axis in "xy"))
-    usual = np.median(long[long > 0.0]) if np.any(long > 0.0) else size
-    length, few = min(SLIP_LENGTH * size, 0.5 * float(usual)), len(joints) <= MANY
-    for joint in slides:
-        way = np.array([joints["slides_x"][joint], joints["slides_y"][joint]])
-        normal = np.array([-way[1], way[0]])
-        first, second = (centre[int(joints[f"block_{side}"][joint])] for side in (1, 2))
-        if (second - first) @ normal < 0.0:
-            normal = -normal
-        middle = 0.5 * np.array(
-            [joints[f"{axis}_intrados"][joint] + joints[f"{axis}_extrados"][joint] for axis in "xy"]
-        )
-        for side in (1.0, -1.0):
-            start = middle + side * (0.3 * length * normal - 0.5 * length * way)
-            axes.annotate(
-                "", start + side * length * way, start, zorder=7,
-                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3 if few else 0.9, "shrinkA": 0,
-                            "shrinkB": 0, "mutation_scale": 10 if few else 6})
-    if not len(slides):
-        return []
-    words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
-    return [entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)]
-
-
-def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
+def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray, pen: float = 1.0) -> None:
     """Draw a bar of a round length below the picture."""
     length = rounded(0.2 * float(high[0] - low[0]))
-    room = 0.035 * float((high - low).max())
-    start, level = low[0] + room, low[1] - room
+    room = 0.02 * float((high - low).max())
+    start, level = low[0] + room, low[1]
     axes.plot(
-        [start, start + length], [level, level], color=INK[0], linewidth=2.0, solid_capstyle="butt", clip_on=False,
-        zorder=9)
+        [start, start + length], [level, level], color=INK[0], linewidth=1.8 * pen, solid_capstyle="butt",
+        clip_on=False, zorder=9)
     axes.annotate(
-        length_text(length), (start + length, level), xytext=(5, 0), textcoords="offset points", va="center",
-        fontsize=9, annotation_clip=False)
+        length_text(length), (start + length, level), xytext=(4, 0), textcoords="offset points", va="center",
+        fontsize="small", annotation_clip=False)

@@ -6,9 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.path import Path
 
-from voussoir.plot.source_file import Point
 from voussoir.plot.units import force_unit
 from voussoir.results import Block, Results
 
@@ -41,23 +39,6 @@ class CaseScene:
         if factor == 0.0:  # where displacements are not known, too
             return [block.corners for block in self.blocks]
         return [block.corners + factor * block.displacement for block in self.blocks]
-
-    def held_at(self, point: Point) -> Point:
-        """Place of a held point with its block where the picture shows it."""
-        held = [block for block in self.blocks if block.state == "held"]
-        if not (self.moves and held):
-            return point
-        # a point on an edge may count as outside: then the nearest block has it
-        block = min(held, key=lambda one: (not Path(one.corners).contains_point(point), _distance(one, point)))
-        corners = np.column_stack([block.corners, np.ones(len(block.corners))])
-        affine = np.linalg.lstsq(corners, block.displacement, rcond=None)[0]
-        x, y = np.array(point) + np.array([*point, 1.0]) @ affine
-        return float(x), float(y)
-
-
-def _distance(block: Block, point: Point) -> float:
-    """Distance of a point from the mean corner of a block [m]."""
-    return float(np.hypot(*(block.corners.mean(axis=0) - point)))
 
 
 def scene_of(run: Results, number: int) -> CaseScene:

@@ -71,7 +71,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     if numbers and (len(others) == 2 and curves > MOST_CURVES or len(others) == 1 and curves > MOST_COLOURS):
         across, *panels = sorted(others, key=lambda name: -len(_values(found, name)))
         return draw_field(found, column, across, panels[0] if panels else None, _searched(run), missing)
-    groups = _groups(found, others)
+    groups = groups_of(found, others)
     if column == "position" and len(groups) == 1 and run.searched == "load_factor" and run.blocks is not None:
         return draw_positions(run, run.cases)
     if len(groups) <= MOST_CURVES:
@@ -161,7 +161,8 @@ def _different(*columns: np.ndarray) -> int:
     return int(code.max(initial=0)) + 1
 
 
-def _groups(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
+def groups_of(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
+    """Cases with the same values in some columns, each group with these in words."""
     keys = sorted(set(zip(*(cases[name].tolist() for name in others)))) if others else [()]
     groups = []
     for key in keys:

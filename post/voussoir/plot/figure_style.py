@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from matplotlib.figure import Figure
 
 from voussoir.files import fresh
 
+#: Dots per inch of pictures of a given width
+EXACT_DPI = 300
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
 #: Line styles that tell the curves apart without colour
@@ -25,16 +28,24 @@ _SETTINGS = {
     "figure.dpi": 100, "savefig.dpi": 200, "font.size": 10, "axes.labelsize": 11, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
     "legend.frameon": False, "lines.linewidth": 1.6, "mathtext.fontset": "stix", "font.family": "STIXGeneral",
-    "svg.hashsalt": "voussoir", "svg.fonttype": "path"}
+    "hatch.linewidth": 0.4, "svg.hashsalt": "voussoir", "svg.fonttype": "path"}
 
 
 class Picture(Figure):
     """A figure that notebooks show whatever backend is chosen."""
 
+    #: Whether it is written as large as it is, not cut to what is drawn
+    exact_size = False
+
     def _repr_png_(self) -> bytes:
         stream = io.BytesIO()
-        self.savefig(stream, format="png", dpi=110, bbox_inches="tight")
+        self.savefig(stream, format="png", dpi=110, bbox_inches=box_of(self))
         return stream.getvalue()
+
+
+def box_of(figure: Figure) -> str | None:
+    """What of a figure is written: all, or with "tight" what is drawn on it."""
+    return None if getattr(figure, "exact_size", False) else "tight"
 
 
 def closer(
@@ -52,9 +63,9 @@ def closer(
 
 
 @contextmanager
-def house_style():
-    """Draw within this context."""
-    with plt.rc_context(_SETTINGS):
+def house_style(font: float = 10.0) -> Iterator[None]:
+    """Draw within this context, in type of this size [points]."""
+    with plt.rc_context({**_SETTINGS, "font.size": font, "axes.labelsize": 1.1 * font}):
         yield
 
 
@@ -67,6 +78,8 @@ def save(figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("s
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{ending}" for ending in formats]
     for path in paths:
-        figure.savefig(fresh(path), bbox_inches="tight", metadata=_METADATA[path.suffix])
+        figure.savefig(
+            fresh(path), bbox_inches=box_of(figure), metadata=_METADATA[path.suffix],
+            dpi=EXACT_DPI if box_of(figure) is None else plt.rcParams["savefig.dpi"])
     plt.close(figure)
     return paths

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -50,8 +51,7 @@ def source_of(run: Results) -> Source:
         _read(text, source)
         _raise_water(run, source)
     else:  # of a plain file of lines, rows of seven numbers are bolts
-        rows = [_numbers(line.split()) for line in text.splitlines()]
-        source.bars += [((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7]
+        source.bars += source_of_lines(text).bars
     return source
 
 
@@ -76,18 +76,39 @@ def _lists(run: Results, source: Source, group: str, *keys: str) -> list[list[fl
     return [[float(value) for value in run.settings(f"{group}%{key}")] for key in keys]
 
 
+def source_of_lines(text: str) -> Source:
+    """Bolts of a plain file of lines: its rows of seven numbers."""
+    rows = [_numbers(line.split()) for line in text.splitlines()]
+    return Source(bars=[((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7])
+
+
+def entries_of(text: str) -> Iterator[tuple[list[str], list[list[float]]]]:
+    """Entries of a file of blocks: the words of each, and the numbers of the rows below it."""
+    words: list[str] = []
+    rows: list[list[float]] = []
+    for line in text.splitlines():
+        found = line.partition("!")[0].lower().split()
+        if found and found[0][0] in "0123456789+-.":
+            rows.append(_numbers(found))
+        elif found:
+            if words:
+                yield words, rows
+            words, rows = found, []
+    if words:
+        yield words, rows
+
+
+def read_source(text: str) -> Source:
+    """What a file of blocks says."""
+    source = Source()
+    _read(text, source)
+    return source
+
+
 def _read(text: str, source: Source) -> None:
     """Take in the entries of a file of blocks."""
-    entry: list[str] = []
-    last: list[float] = []
-    for line in [*text.splitlines(), "end"]:
-        words = line.partition("!")[0].lower().split()
-        if words and words[0][0] in "0123456789+-.":
-            last = _numbers(words)
-        elif words:
-            if entry:
-                _take(entry, last, source)
-            entry, last = words, []
+    for words, rows in entries_of(text):
+        _take(words, rows[-1] if rows else [], source)
 
 
 def _numbers(words: list[str]) -> list[float]:

@@ -1,0 +1,208 @@
+"""What the joints of a case do, as its picture shows it: thrust line, forces, hinges, openings, slips."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+
+from voussoir.plot.case_marks import entry
+from voussoir.plot.case_scene import CaseScene
+from voussoir.plot.collapse_picture import MARKS, MEANINGS
+from voussoir.plot.figure_style import INK
+from voussoir.plot.motion import Motion
+from voussoir.plot.sheet import POINTS
+from voussoir.plot.thrust_path import thrust_pairs
+from voussoir.plot.units import force_text
+from voussoir.results import Table
+
+#: Longest force and length of slip marks in the picture, over its size
+FORCE_LENGTH, SLIP_LENGTH = 0.10, 0.03
+#: More marked joints than these are told apart by the colours of their lines
+MOST_MARKS = 40
+#: Median distance of marks below which they run into one another, least and greatest size of marks [points]
+APART, SMALLEST, LARGEST = 5.0, 2.5, 6.5
+#: Least width of a thrust line [points]
+THINNEST_THRUST = 0.9
+#: More joints than these have no forces unless they are asked for
+MOST_FORCES = 150
+#: What the marks mean where nothing collapses
+TOUCHES = {
+    "intrados": "touches at the intrados only",
+    "extrados": "touches at the extrados only",
+    "hinge": "touches at this corner only",
+    "open": "open joint",
+}
+
+
+def roles_of(joints: Table) -> np.ndarray:
+    """What each joint does: in the collapse if there is one, else at the end of the run."""
+    mechanism = joints["mechanism"]
+    return mechanism if np.any(mechanism != "none") else joints["state"]
+
+
+def thrust_points(joints: Table) -> np.ndarray:
+    """Where the forces act, as the table has it: (n, 2) [m]; NaN where a joint carries nothing."""
+    points = np.column_stack((joints["x"], joints["y"]))
+    points[~(joints["normal_force"] > 0.0)] = np.nan
+    return points
+
+
+class JointMarks:
+    """The joints of one case, where its picture shows them.
+
+    Parameters
+    ----------
+    scene, joints, motion
+        The case.
+    size : float
+        Size of the piece of plane [m].
+    pen : float
+        Width of lines over that of a large picture.
+    points_per_metre : float
+        Scale of the drawing.
+    """
+
+    def __init__(
+        self, scene: CaseScene, joints: Table, motion: Motion, size: float, pen: float = 1.0,
+        points_per_metre: float = POINTS
+    ) -> None:
+        self.scene, self.joints, self.size, self.pen = scene, joints, size, pen
+        first, second = joints["block_1"], joints["block_2"]
+        self.sides = {}
+        for name, x, y in (("in", "x_intrados", "y_intrados"), ("out", "x_extrados", "y_extrados"), ("at", "x", "y")):
+            there = np.column_stack((joints[x], joints[y]))
+            self.sides[name] = (motion.carried(there, first), motion.carried(there, second))
+        self.roles = roles_of(joints)
+        self.collapses = self.roles is joints["mechanism"]
+        long = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
+        # a joint of one corner turns about it always: it is marked in a collapse only
+        self.marked = long | (joints["mechanism"] != "none")
+        self.slides = np.isfinite(joints["slides_x"])
+        self.opens = np.isin(self.roles, ("hinge_intrados", "hinge_extrados", "open")) & self.marked
+        lengths = np.hypot(*(self._middle("out") - self._middle("in")).T)
+        self.thickness = float(np.median(lengths[lengths > 0.0])) * points_per_metre if np.any(lengths > 0.0) else 0.0
+        places = self._middle("at")[self.opens | self.slides]
+        self.gap = median_gap(places) * points_per_metre
+        self.crowded = len(places) > MOST_MARKS or len(places) > 3 and self.gap < APART
+
+    def _middle(self, name: str) -> np.ndarray:
+        """Points of the joints, halfway between their two blocks: (n, 2) [m]."""
+        one, other = self.sides[name]
+        return 0.5 * (one + other)
+
+    @property
+    def mark_size(self) -> float:
+        """Size of the marks [points]."""
+        return float(np.clip(0.45 * self.gap, SMALLEST, LARGEST * min(1.0, self.pen)))
+
+    def draw(self, axes: Axes, with_forces: bool | None) -> list[Artist]:
+        """Draw all; gives the entries of the legend."""
+        pairs = thrust_pairs(self.scene, self.joints)
+        entries = self.draw_thrust(axes, pairs) if pairs else []
+        if with_forces or with_forces is None and not pairs and len(self.joints) <= MOST_FORCES:
+            entries += self.draw_forces(axes)
+        if self.crowded:
+            return entries + self.draw_states(axes)
+        return entries + self.draw_hinges(axes) + self.draw_slips(axes)
+
+    def thrust_points(self) -> np.ndarray:
+        """Where the forces act in the picture: (n, 2) [m]; NaN where a joint carries nothing."""
+        return np.where(np.isnan(thrust_points(self.joints)), np.nan, self._middle("at"))
+
+    def draw_thrust(self, axes: Axes, pairs: list[tuple[int, int]]) -> list[Artist]:
+        """Draw the thrust line; gives the entries of the legend."""
+        points = self.thrust_points()
+        width = float(np.clip(0.22 * self.thickness, THINNEST_THRUST, 2.4 * self.pen))
+        lines = [points[list(pair)] for pair in pairs if np.isfinite(points[list(pair)]).all()]
+        axes.add_collection(
+            LineCollection(lines, colors=INK[1], linewidths=width, capstyle="round", joinstyle="round", zorder=4))
+        return [entry("thrust line", linestyle="-", color=INK[1], linewidth=width)]
+
+    def draw_forces(self, axes: Axes) -> list[Artist]:
+        """Draw the force of each joint on its second block, or on the one of its two that can move."""
+        vectors = np.column_stack((self.joints["force_x"], self.joints["force_y"]))
+        vectors[np.isin(self.joints["block_2"], [block.number for block in self.scene.supports])] *= -1.0
+        largest = float(np.hypot(*vectors.T).max(initial=0.0))
+        if not largest > 0.0:
+            return []
+        arrows = vectors * (FORCE_LENGTH * self.size / largest)
+        axes.quiver(
+            *self.thrust_points().T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2],
+            width=0.8 * self.pen / POINTS, units="inches", headwidth=4.5, zorder=4.5)
+        words = f"contact forces, longest {force_text(largest, self.scene.unit)}"
+        return [entry(words, linestyle="-", color=INK[2], linewidth=1.2 * self.pen)]
+
+    def draw_states(self, axes: Axes) -> list[Artist]:
+        """Draw the lines of joints in the colours of what they do; gives the entries of the legend."""
+        entries = []
+        width = max(0.8, 1.6 * self.pen)
+        kinds = (
+            (self.opens & ~self.slides, INK[0], "joint that opens"),
+            (self.slides, INK[2], "joint that slides" if self.collapses or self.scene.moves
+             else "joint at its friction limit"),
+        )
+        for mask, color, words in kinds:
+            lines = [
+                line for one, other in zip(self.sides["in"], self.sides["out"])
+                for line in np.stack((one[mask], other[mask]), axis=1)]
+            if lines:
+                axes.add_collection(
+                    LineCollection(lines, colors=color, linewidths=width, capstyle="round", zorder=3))
+                entries.append(entry(words, linestyle="-", color=color, linewidth=width))
+        return entries
+
+    def draw_hinges(self, axes: Axes) -> list[Artist]:
+        """Draw hinges and open joints; gives the entries of the legend."""
+        entries: list[Artist] = []
+        kinds = (("intrados", "hinge_intrados", "in"), ("extrados", "hinge_extrados", "out"), ("open", "open", "at"))
+        seen = set()
+        for kind, role, at in kinds:
+            mask = (self.roles == role) & self.marked
+            mark = "hinge" if kind != "open" and not self.scene.is_arch else kind
+            if not mask.any():
+                continue
+            style = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **MARKS[mark]}
+            axes.plot(*self._middle(at)[mask].T, linestyle="none", zorder=6, **style)
+            if mark not in seen:
+                entries.append(entry(MEANINGS[mark] if self.collapses else TOUCHES[mark], **style))
+            seen.add(mark)
+        return entries
+
+    def draw_slips(self, axes: Axes) -> list[Artist]:
+        """Draw which way the sides of sliding joints move; gives the entries of the legend."""
+        joints, slides = self.joints, np.flatnonzero(self.slides)
+        if not len(slides):
+            return []
+        centre = {block.number: block.corners.mean(axis=0) for block in self.scene.blocks + self.scene.supports}
+        ends = [self._middle(name) for name in ("in", "out")]
+        long = np.hypot(*(ends[1] - ends[0]).T)
+        usual = np.median(long[long > 0.0]) if np.any(long > 0.0) else self.size
+        length = min(SLIP_LENGTH * self.size, 0.5 * float(usual))
+        for joint in slides:
+            way = np.array([joints["slides_x"][joint], joints["slides_y"][joint]])
+            normal = np.array([-way[1], way[0]])
+            first, second = (centre[int(joints[f"block_{side}"][joint])] for side in (1, 2))
+            if (second - first) @ normal < 0.0:
+                normal = -normal
+            for side in (1.0, -1.0):
+                start = 0.5 * (ends[0] + ends[1])[joint] + side * (0.3 * length * normal - 0.5 * length * way)
+                axes.annotate(
+                    "", start + side * length * way, start, zorder=7,
+                    arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.2 * self.pen, "shrinkA": 0,
+                                "shrinkB": 0, "mutation_scale": 9 * self.pen})
+        falls = self.scene.falls or self.scene.moves
+        words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
+        return [entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0],
+                      markersize=9, markeredgewidth=0.3)]
+
+
+def median_gap(points: np.ndarray) -> float:
+    """Median distance of points to their nearest neighbours; infinite for fewer than two."""
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) < 2 or len(points) > 20 * MOST_MARKS:
+        return np.inf if len(points) < 2 else 0.0
+    apart = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1))
+    np.fill_diagonal(apart, np.inf)
+    return float(np.median(apart.min(axis=1)))

@@ -1,0 +1,86 @@
+"""Where points of a case are drawn: each goes with the block that it belongs to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voussoir.results import Block
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Displacements of a case as its picture shows them.
+
+    Attributes
+    ----------
+    shown, told : float
+        Multiples of the displacements at which the picture shows the blocks, and at which tables have their points.
+    fields : dict of int to ndarray
+        Of each block that can move, the rows a of u = (x, y, 1) a: (3, 2), of the places before it has moved.
+    corners : dict of int to ndarray
+        Its corners before it has moved [m].
+    """
+
+    shown: float
+    told: float
+    fields: dict[int, np.ndarray]
+    corners: dict[int, np.ndarray]
+
+    def carried(self, points: np.ndarray, blocks: np.ndarray) -> np.ndarray:
+        """Places in the picture of points of tables, each of one block: (n, 2) [m]."""
+        moved = np.array(points, dtype=float)
+        for number in np.unique(blocks):
+            field = self.fields.get(int(number))
+            if field is None or self.shown == self.told:
+                continue
+            mine = blocks == number
+            # the table has p + told u(p): p is found from it
+            slope = np.eye(2) + self.told * field[:2]
+            first = (moved[mine] - self.told * field[2]) @ np.linalg.inv(slope)
+            moved[mine] = first + self.shown * (np.column_stack((first, np.ones(len(first)))) @ field)
+        return moved
+
+    def placed(self, point: tuple[float, float]) -> tuple[float, float]:
+        """Place in the picture of a point that a file gives before anything has moved [m]."""
+        number = self.nearest(point)
+        if number is None or self.shown == 0.0:
+            return point
+        x, y = np.array(point) + self.shown * (np.array([*point, 1.0]) @ self.fields[number])
+        return float(x), float(y)
+
+    def nearest(self, point: tuple[float, float]) -> int | None:
+        """Number of the block that has a point, or is nearest to it; None where no block can move."""
+        best, found = np.inf, None
+        for number, corners in self.corners.items():
+            gap = distance(corners, np.array(point))
+            if gap < best:
+                best, found = gap, number
+        return found if found in self.fields else None
+
+
+def distance(corners: np.ndarray, point: np.ndarray) -> float:
+    """Distance of a point from a polygon, below 0 within it [m]."""
+    start, along = corners, np.roll(corners, -1, axis=0) - corners
+    square = np.einsum("ij,ij->i", along, along)
+    share = np.clip(np.einsum("ij,ij->i", point - start, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    gap = float(np.hypot(*(start + share[:, None] * along - point).T).min())
+    ends = start + along
+    crosses = (start[:, 1] > point[1]) != (ends[:, 1] > point[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = start[:, 0] + (point[1] - start[:, 1]) * along[:, 0] / along[:, 1]
+    inside = np.count_nonzero(crosses & (point[0] < at)) % 2 == 1
+    return -gap if inside else gap
+
+
+def motion_of(blocks: list[Block], supports: list[Block], shown: float, told: float) -> Motion:
+    """The motion of a case; blocks whose displacements are not known stay."""
+    fields, corners = {}, {}
+    for block in blocks:
+        corners[block.number] = block.corners
+        if np.all(np.isfinite(block.displacement)):
+            rows = np.column_stack((block.corners, np.ones(len(block.corners))))
+            fields[block.number] = np.linalg.lstsq(rows, block.displacement, rcond=None)[0]
+    corners |= {block.number: block.corners for block in supports}
+    return Motion(shown, told, fields, corners)

@@ -1,0 +1,205 @@
+"""Charts of any column of results against what was swept: one key along the axis, or two keys as a map."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.transforms import ScaledTranslation
+
+from voussoir.plot.design_chart import MOST_CURVES, ChartError, groups_of, swept_columns
+from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.units import axis_label, name_of
+from voussoir.results import Results, Table
+
+_MARKERS = "osD^vP*X"
+#: Words and units of columns of results that are no parameters
+COLUMNS = {
+    "thrust_min": ("least thrust", "N/m"), "thrust_max": ("greatest thrust", "N/m"),
+    "safety_thickness": ("geometric safety factor", ""), "worst_position": ("worst position", "m"),
+    "relative_error": ("relative error", ""), "sliding_share": ("share of sliding", ""),
+    "seconds": ("run time", "s"), "contact_residual": ("contact residual", "m/s"),
+    "path_time": ("pseudo-time of the path", ""), "steps": ("number of steps", ""),
+}
+#: Verdicts in the order of a legend, and their colours
+VERDICTS = {
+    "stable": "#bcd0e0", "found": "#bcd0e0", "completed": "#dfe7ee", "undecided": "#efe3b5", "collapsed": "#d1632a"
+}
+#: Most contours of a map, and most cells that have a mark in their middle
+MOST_CONTOURS, MOST_MARKS = 7, 400
+
+
+def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool = True) -> Figure:
+    """Draw a column of results against a swept key, a curve for each combination of the other swept values.
+
+    Parameters
+    ----------
+    key, column : str
+        Key of a &sweep group, such as "radius" or "arch%radius", and a column of numbers; by default what was searched.
+    legend : bool, optional
+        Whether several curves are named.
+
+    Raises
+    ------
+    ChartError
+        If there is no such key or column, or the curves are too many.
+    """
+    x, y = swept(run, key), number_column(run, column)
+    others = [name for name in swept_columns(run.cases) if name != x and not linked(run, name, x)]
+    groups = groups_of(run.cases, others)
+    if len(groups) > MOST_CURVES:
+        raise ChartError(
+            f"expected at most {MOST_CURVES} curves, got {len(groups)}; sweep fewer values, or draw --map {key} KEY")
+    figure = Picture(figsize=(5.2, 3.7), layout="constrained")
+    figure.exact_size = True
+    axes = figure.subplots()
+    for number, (label, rows) in enumerate(groups):
+        rows = rows.take(np.argsort(rows[x], kind="stable"))
+        axes.plot(
+            rows[x], values_of(rows, y), color=INK[number % 3], linewidth=0.8, marker=_MARKERS[number], markersize=4.5,
+            markerfacecolor="white", label=label if len(others) != 1 else plain_value(rows[others[0]][0]))
+    axes.set_xlabel(axis_label(x))
+    axes.set_ylabel(column_label(run, y))
+    if legend and len(groups) > 1:
+        single = len(others) == 1
+        legend_below(axes, min(len(groups), 4 if single else 1), title=axis_label(others[0]) if single else "")
+    note(axes, int(np.count_nonzero(np.isnan(values_of(run.cases, y)))), len(run.cases), y)
+    return figure
+
+
+def plain_value(value: object) -> str:
+    """A swept value without its name and unit."""
+    return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)
+
+
+def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, legend: bool = True) -> Figure:
+    """Draw a column of results over two swept keys: a coloured cell per case, with contours; or verdicts.
+
+    Parameters
+    ----------
+    keys : pair of str
+        Keys along and up.
+    column : str, optional
+        A column of numbers; by default what was searched, and without a search the verdicts.
+    legend : bool, optional
+        Whether verdicts are named.
+
+    Raises
+    ------
+    ChartError
+        If there are no such keys, or other keys were swept, too.
+    """
+    x, y = (swept(run, key) for key in keys)
+    others = [name for name in swept_columns(run.cases) if name not in (x, y)]
+    others = [name for name in others if not linked(run, name, x) and not linked(run, name, y)]
+    if x == y or others:
+        found = f"{x} twice" if x == y else f"also {', '.join(others)}"
+        raise ChartError(f"expected two swept keys and no other, got {found}; sweep two keys")
+    along, up = np.unique(run.cases[x]), np.unique(run.cases[y])
+    place = (np.searchsorted(up, run.cases[y]), np.searchsorted(along, run.cases[x]))
+    figure = Picture(figsize=(5.2, 4.0), layout="constrained")
+    figure.exact_size = True
+    axes = figure.subplots()
+    axes.grid(False)
+    axes.set_facecolor("#c9c9c9")
+    axes.set_xlabel(axis_label(x))
+    axes.set_ylabel(axis_label(y))
+    field = np.full((len(up), len(along)), np.nan)
+    if column is None and run.searched is None:
+        names = list(VERDICTS)
+        field[place] = [names.index(word) for word in run.cases["verdict"]]
+        axes.pcolormesh(
+            along, up, field, shading="nearest", cmap=ListedColormap(list(VERDICTS.values())), vmin=-0.5,
+            vmax=len(names) - 0.5, rasterized=True)
+        seen = [name for name in names if name in run.cases["verdict"]]
+        if legend:
+            legend_below(axes, len(seen), [Patch(facecolor=VERDICTS[name], label=name) for name in seen])
+        return figure
+    name = number_column(run, column)
+    field[place] = values_of(run.cases, name)
+    colors = axes.pcolormesh(along, up, field, shading="nearest", cmap="viridis", rasterized=True)
+    draw_contours(axes, along, up, field)
+    figure.colorbar(colors, ax=axes, label=column_label(run, name))
+    note(axes, int(np.count_nonzero(np.isnan(values_of(run.cases, name)))), len(run.cases), name)
+    return figure
+
+
+def draw_contours(axes: Axes, along: np.ndarray, up: np.ndarray, field: np.ndarray) -> None:
+    """Draw contours with their values, linear between the computed cases."""
+    finite = field[np.isfinite(field)]
+    if min(field.shape) < 2 or len(np.unique(finite)) < 3:
+        return
+    lines = axes.contour(
+        along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
+    axes.clabel(lines, fmt="%.3g", fontsize="x-small")
+
+
+def swept(run: Results, key: str) -> str:
+    """Column of a swept key; ChartError if it was not swept, or has words."""
+    columns = swept_columns(run.cases)
+    numbers = [name for name in columns if run.cases[name].dtype.kind in "if"]
+    bare = key.rpartition("%")[2]
+    chosen = next((name for name in (key, bare) if name in numbers), None)
+    ends = [name for name in numbers if name.rpartition("%")[2] == bare]
+    if chosen is None and len(ends) == 1:
+        chosen = ends[0]
+    if chosen is None:
+        raise ChartError(f"expected a swept number, one of {', '.join(numbers) or 'none'}, got '{key}'")
+    return chosen
+
+
+def number_column(run: Results, column: str | None) -> str:
+    """A column of numbers; by default the critical value of a search."""
+    if column is None:
+        if run.searched is None:
+            raise ChartError("expected a column of numbers for the ordinate, got none; name it with --y COLUMN")
+        return "critical"
+    if column not in run.cases or run.cases[column].dtype.kind not in "if":
+        names = [name for name in run.cases if run.cases[name].dtype.kind in "if" and name != "case"]
+        filled = [name for name in names if not np.all(np.isnan(run.cases[name].astype(float)))]
+        raise ChartError(f"expected a column of numbers, one of {', '.join(filled)}, got '{column}'")
+    return column
+
+
+def values_of(rows: Table, column: str) -> np.ndarray:
+    """A column as floats, NaN where a case has no value."""
+    values = np.asarray(rows[column], dtype=float).copy()
+    if column == "critical":
+        values[rows["verdict"] != "found"] = np.nan
+    values[~np.isfinite(values)] = np.nan
+    return values
+
+
+def column_label(run: Results, column: str) -> str:
+    """Words and unit of a column."""
+    if column == "critical":
+        return "critical " + axis_label(run.searched or "thickness_ratio")
+    words, unit = COLUMNS.get(column) or name_of(column)
+    return f"{words} [{unit}]" if unit else words
+
+
+def linked(run: Results, name: str, key: str) -> bool:
+    """Whether a column is a function of a swept key, as in a linked sweep."""
+    pairs = set(zip(run.cases[key].tolist(), run.cases[name].tolist()))
+    return len(pairs) == len(set(run.cases[key].tolist()))
+
+
+def legend_below(axes: Axes, columns: int, entries: list[Patch] | None = None, title: str = "") -> None:
+    """A legend in small type below the label of the axis."""
+    drop = ScaledTranslation(0.0, -3.6 * plt.rcParams["font.size"] / 72.0, axes.figure.dpi_scale_trans)
+    chosen = {"handles": entries} if entries else {}
+    legend = axes.legend(
+        **chosen, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=axes.transAxes + drop, ncols=columns,
+        fontsize="small", columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
+    if title:
+        legend.set_title(title, {"size": "small"})
+
+
+def note(axes: Axes, lost: int, count: int, column: str) -> None:
+    """Say above the axes how many cases have no value."""
+    if lost:
+        words = "critical value" if column == "critical" else f"value of {column}"
+        axes.set_title(f"{lost} of {count} cases have no {words}", fontsize="small", color="#555555")
