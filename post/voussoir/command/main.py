@@ -29,6 +29,7 @@ COMMANDS = {
     "view": ("voussoir.command.view", "the blocks of a case in a window that turns"),
     "verify": ("voussoir.verify.command", "the proofs of a folder of results, recomputed"),
     "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
+    "study": ("voussoir.command.study", "a deck with one key halved again and again: order of convergence"),
     "validation": ("voussoir.command.validation", "scenes with exact answers beside what the program computes"),
 }
 

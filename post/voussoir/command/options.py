@@ -64,3 +64,18 @@ def type_size(word: str) -> float:
     if not 4.0 <= size <= 40.0:
         raise argparse.ArgumentTypeError(f"must be a size from 4 to 40 points, got '{word}'")
     return size
+
+
+def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
+    """Add the options of files, widths and types."""
+    parser.add_argument("--out", metavar="DIR", type=Path, help=f"where the files go (default: {where})")
+    parser.add_argument(
+        "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
+        help="of svg, pdf, png (default: svg)")
+    parser.add_argument(
+        "--width", metavar="W", type=picture_width, default=picture_width("132mm"),
+        help="width of the picture with its unit, mm, cm, in or pt (default: 132mm)")
+    parser.add_argument(
+        "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
+    parser.add_argument("--no-title", dest="title", action="store_false", default=True, help="leave the title out")
+    parser.add_argument("--no-legend", dest="legend", action="store_false", default=True, help="leave the legend out")

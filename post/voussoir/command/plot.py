@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from voussoir import results
-from voussoir.command.options import magnification, picture_width, type_size
+from voussoir.command.options import add_sheet, magnification
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--case", metavar="N", type=int, nargs="+",
         help=f"cases to draw (default: the first {MOST_CASES}; none with --chart, --x, --map or --fragility)")
     add_charts(parser)
-    add_sheet(parser)
+    add_sheet(parser, "DIR/plots; beside a file plots")
     parser.add_argument(
         "--magnify",
         metavar="M",
@@ -79,21 +79,6 @@ def add_charts(parser: argparse.ArgumentParser) -> None:
         help="draw the share of records that make the blocks collapse against this swept column, "
         "amplitude or scale without a name; or, of searches, against the critical values",
     )
-
-
-def add_sheet(parser: argparse.ArgumentParser) -> None:
-    """Add the options of files, widths and types."""
-    parser.add_argument("--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)")
-    parser.add_argument(
-        "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
-        help="of svg, pdf, png (default: svg)")
-    parser.add_argument(
-        "--width", metavar="W", type=picture_width, default=picture_width("132mm"),
-        help="width of the picture with its unit, mm, cm, in or pt (default: 132mm)")
-    parser.add_argument(
-        "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
-    parser.add_argument("--no-title", dest="title", action="store_false", default=True, help="leave the title out")
-    parser.add_argument("--no-legend", dest="legend", action="store_false", default=True, help="leave the legend out")
 
 
 def run(arguments: argparse.Namespace) -> int:
