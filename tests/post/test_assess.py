@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("matplotlib")
-from voussoir.command import assess as assess_command
+from voussoir.deck import assessment
+from voussoir.deck.run import run as run_deck
+from voussoir.plot.assess_drawing import draw_scheme
+from voussoir.plot.assess_text import assumptions_of, cases_of
+from voussoir.plot.position_chart import draw_positions
 from voussoir.command.main import main
 
 BRIDGE = (
@@ -18,6 +22,8 @@ BRIDGE = (
     "&joint friction_deg = 31 /\n&material unit_weight = 20e3 /\n"
     "&fill height = 0.165, unit_weight = 20e3 /\n&vehicle axles = 40e3, worst = .true. /\n"
 )
+#: Where the page has the geometric safety factor
+SAFETY = r'Geometric safety factor</th><td class="number">([\d.]+)<'
 
 
 def test_the_page_holds_what_a_client_asks(tmp_path: Path) -> None:
@@ -25,13 +31,14 @@ def test_the_page_holds_what_a_client_asks(tmp_path: Path) -> None:
     deck.write_text(BRIDGE)
     assert main(["assess", str(deck)]) == 0
     page = (tmp_path / "bridge.html").read_text()
-    assert "The structure stands under the loads given. It falls when the live loads are multiplied by" in page
-    for words in ("Geometrical safety", "Load factor", "Range of thrust", "Worst position", "Position of the vehicle"):
+    assert "The structure stands under the loads given. It collapses when the live loads are multiplied by" in page
+    for words in ("Geometric safety factor", "Load factor", "Thrust at the crown", "Worst position", "Load cases",
+                  "Position of the vehicle", "Assumptions", "friction angle 31°", "unit weight 20 kN/m³"):
         assert words in page
     assert page.count("<svg") == 4
     assert "A bridge &amp; its &lt;axle&gt;" in page
     assert hashlib.sha256(deck.read_bytes()).hexdigest() in page
-    assert float(re.search(r"Geometrical safety</th><td>([\d.]+):", page)[1]) > 1.0
+    assert float(re.search(SAFETY, page)[1]) > 1.0
 
 
 def test_an_arch_that_falls_is_said_to(tmp_path: Path) -> None:
@@ -55,7 +62,7 @@ def test_level_arches_that_any_axle_leaves_standing_have_a_page(tmp_path: Path, 
     )
     assert main(["assess", str(deck)]) == 0
     page = (tmp_path / "level.html").read_text()
-    assert "No multiple of the live loads brings it down." in page
+    assert "No multiple of the live loads makes it collapse." in page
     assert "Position of the vehicle" not in page
 
 
@@ -85,16 +92,16 @@ def test_a_fault_is_reported_with_the_deck_of_the_user(tmp_path: Path, capsys: p
 
 def test_the_chart_of_positions_has_the_worst_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The arch leans against the fill away from the axle: the factor jumps at the crown, to its least there."""
-    from voussoir.plot import position_chart
+    from voussoir.plot import assess_page
 
     seen = {}
 
-    def keep(run: object, cases: object, worst: float | None = None) -> object:
+    def keep(run: object, cases: object, worst: float | None = None, *others: object) -> object:
         seen.update(cases=cases, worst=worst)
-        return drawn(run, cases, worst)
+        return drawn(run, cases, worst, *others)
 
-    drawn = position_chart.draw_positions
-    monkeypatch.setattr(position_chart, "draw_positions", keep)
+    drawn = assess_page.draw_positions
+    monkeypatch.setattr(assess_page, "draw_positions", keep)
     deck = tmp_path / "bridge.nml"
     deck.write_text(BRIDGE.replace("20e3 /\n&vehicle", "20e3, passive_coefficient = 1 /\n&vehicle"))
     assert main(["assess", str(deck)]) == 0
@@ -104,23 +111,26 @@ def test_the_chart_of_positions_has_the_worst_one(monkeypatch: pytest.MonkeyPatc
 
 def test_groups_are_left_out_with_their_lines() -> None:
     text = "&arch /\n&search\n parameter = 'x' /\n&joint /\n"
-    assert assess_command.without(text, "search") == "&arch /\n\n\n&joint /\n"
+    assert assessment.without(text, "search") == "&arch /\n\n\n&joint /\n"
 
 
-def test_the_picture_of_an_arch_of_any_shape_says_its_geometrical_safety(tmp_path: Path) -> None:
+def test_the_geometric_safety_factor_is_thickness_over_critical_thickness(tmp_path: Path) -> None:
     deck = tmp_path / "pointed.nml"
     deck.write_text("&arch shape = 'pointed', span = 6, rise = 4, thickness = 0.6, voussoirs = 12 /\n")
     assert main(["assess", str(deck)]) == 0
     page = (tmp_path / "pointed.html").read_text()
-    safety = float(re.search(r"Geometrical safety</th><td>([\d.]+):", page)[1])
-    assert f"thickness {safety:.3g} × critical" in page
+    found = run_deck(deck.read_text() + "&search parameter = 'thickness', low = 0.01, high = 0.6 /\n")
+    critical = found.cases["critical"][0]
+    safety = float(re.search(SAFETY, page)[1])
+    assert f"stands until it is {safety:.3g} times thinner" in page
+    assert safety == pytest.approx(0.6 / critical, rel=5e-3)
 
 
 def test_forces_of_a_lune_are_no_forces_per_metre(tmp_path: Path) -> None:
     deck = tmp_path / "dome.nml"
     deck.write_text("&arch half_angle_deg = 80, radius = 6, thickness_ratio = 0.08, voussoirs = 12, lune_deg = 6 /\n")
     assert main(["assess", str(deck)]) == 0
-    assert re.search(r"[\d.]+ k?N to [\d.]+ k?N at the crown", (tmp_path / "dome.html").read_text())
+    assert re.search(r"[\d.]+ k?N to [\d.]+ k?N</td>", (tmp_path / "dome.html").read_text())
 
 
 def test_rings_are_drawn_with_one_factor_and_their_dimensions(tmp_path: Path) -> None:
@@ -133,6 +143,82 @@ def test_rings_are_drawn_with_one_factor_and_their_dimensions(tmp_path: Path) ->
     assert main(["assess", str(deck)]) == 0
     page = (tmp_path / "rings.html").read_text()
     told = re.search(r"multiplied by ([\d.]+)\.</p>", page)[1]
-    assert re.search(rf"load factor {re.escape(told)}", page)
-    assert "Span 6 m, rise 1.6 m, thickness 0.5 m." in page
+    assert f'<th>Load factor</th><td class="number">{told}</td>' in page
+    assert "Clear span 6 m, rise 1.6 m, crown thickness 0.5 m." in page
     assert "by limit analysis, an upper bound where rings slide" in page
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        # (R - t/2) 2 sin a, (R - t/2) (1 - cos a), t
+        ("radius = 5, thickness_ratio = 0.2, half_angle_deg = 60, voussoirs = 12",
+         "Clear span 7.79 m, rise 2.25 m, crown thickness 1 m."),
+        ("shape = 'pointed', span = 6, rise = 4, thickness = 0.6, voussoirs = 12",
+         "Clear span 6 m, rise 4 m, crown thickness"),
+        ("shape = 'flat', span = 3, half_angle_deg = 25, thickness = 0.5, voussoirs = 9",
+         "Clear span 3 m, crown thickness 0.5 m."),
+        ("shape = 'segmental', span = 4, rise = 1, thickness = 0.4, spans = 2, pier_width = 1, pier_height = 2",
+         "Overall width 9.64 m, overall height"),
+    ],
+)
+def test_dimensions_of_the_drawing_are_those_of_its_caption(tmp_path: Path, keys: str, words: str) -> None:
+    deck = tmp_path / "arch.nml"
+    deck.write_text(f"&arch {keys} /\n&joint friction_deg = 40 /\n")
+    found = assessment.assess(deck.read_text(), deck)
+    figure, caption = draw_scheme(found)
+    assert caption.startswith(words)
+    drawn = {text.get_text() for text in figure.axes[0].texts if text.get_text()}
+    assert {part.split(" ", len(part.split()) - 2)[-1] for part in caption.rstrip(".").split(", ")} <= drawn
+
+
+def test_load_cases_have_live_loads_of_given_and_critical_size(tmp_path: Path) -> None:
+    deck = tmp_path / "bridge.nml"
+    deck.write_text(BRIDGE.replace("worst = .true.", "position = -1.5"))
+    found = assessment.assess(deck.read_text(), deck)
+    heads, dead, given, critical = cases_of(found)
+    assert heads[1] == "Live load [kN/m]" and dead[:3] == ("Dead load of masonry and fill", "0", "stable")
+    factor = found.factor["critical"]
+    assert given[1:4] == ("40", "stable", "1") and critical[1] == f"{40 * factor:.3g}"
+    # the thrust grows with the load
+    assert float(given[4].split()[0]) > float(dead[4].split()[0])
+
+
+def test_page_says_what_is_assumed(tmp_path: Path) -> None:
+    deck = tmp_path / "bridge.nml"
+    deck.write_text(
+        BRIDGE.replace("unit_weight = 20e3 /\n&fill", "unit_weight = 21.5e3, compressive_strength = 4e6 /\n&fill")
+        .replace("&vehicle", "&analysis flow = 'associated' /\n&vehicle"))
+    lines = " ".join(assumptions_of(assessment.assess(deck.read_text(), deck)))
+    for words in ("Joints carry no tension; friction angle 31°.", "Flow rule: associated", "crush at 4 MPa",
+                  "Unit weight of the masonry 21.5 kN/m³.", "Fill to 0.165 m above the extrados",
+                  "to either side by 0.5 of the depth", "no horizontal resistance"):
+        assert words in lines
+
+
+def test_several_decks_are_compared_on_one_page(tmp_path: Path, capsys) -> None:
+    for name, thickness in (("thin", 0.35), ("thick", 0.6)):
+        (tmp_path / f"{name}.nml").write_text(
+            BRIDGE.replace("A bridge & its <axle>", name).replace("thickness = 0.44", f"thickness = {thickness}"))
+    decks = [str(tmp_path / f"{name}.nml") for name in ("thin", "thick")]
+    assert main(["assess", *decks, "--out", str(tmp_path / "both.html")]) == 0
+    page = (tmp_path / "both.html").read_text()
+    assert page.count('class="verdict"') == 2 and page.count("<svg") == 4
+    rows = re.findall(r"<tr><th>(thin|thick)</th>(.*?)</tr>", page)
+    factors = [float(re.findall(r">([^<]*)</td>", row)[2]) for _, row in rows]
+    assert [name for name, _ in rows] == ["thin", "thick"] and factors[0] < factors[1]
+    (tmp_path / "wrong.nml").write_text("&sweep parameter = 'radius', values = 1, 2 /\n")
+    assert main(["assess", decks[0], str(tmp_path / "wrong.nml"), "--out", str(tmp_path / "x.html")]) == 2
+    assert capsys.readouterr().err.startswith(f"{tmp_path / 'wrong.nml'}:1: error: expected one case")
+
+
+def test_positions_without_a_factor_have_a_mark_that_says_why(tmp_path: Path) -> None:
+    run = run_deck(
+        "&arch shape = 'segmental', span = 6, rise = 1.5, thickness = 0.4, voussoirs = 21 /\n"
+        "&fill height = 0.3, unit_weight = 20e3, passive_coefficient = 1.0 /\n"
+        "&vehicle axles = 40e3, 60e3, spacings = 1.8 /\n&search parameter = 'load_factor' /\n"
+        "&sweep parameter = 'position', values = -3.4, -2, -1, -0.5, 2 /\n")
+    axes = draw_positions(run, run.cases).axes[0]
+    marked = {line.get_label(): list(line.get_xdata()) for line in axes.lines if not line.get_label().startswith("_")}
+    still = [row["position"] for row in run.cases.rows() if row["verdict"] == "stable"]
+    assert still and marked["no multiple collapses it"] == still

@@ -69,9 +69,9 @@ def safety_of(row: Row, run: Results | None) -> str:
     elif not math.isnan(safety):
         words += f", thickness {safety:.3g} × critical"
     if not math.isnan(factor):
-        words += f", load factor {factor:.4g}"
+        words += f", load factor {factor:.3g}"
     elif not math.isnan(limit):  # of limit analysis: joints that slide may fall before
-        words += f", load factor at most {limit:.4g}"
+        words += f", load factor at most {limit:.3g}"
     thrust = thrust_of(row, force_unit(run))
     return f"{words}, thrust {thrust}" if thrust else words
 

@@ -44,7 +44,8 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
     if drawn:
         axes.set_xscale("log")
         axes.set_yscale("log")
-        shown = values[:: -1 - (len(values) - 1) // MOST_LABELS]
+        drawn_values = values if exact else values[1:]
+        shown = drawn_values[:: -1 - (len(drawn_values) - 1) // MOST_LABELS]
         axes.set_xticks(shown, [f"{value:.3g}" for value in shown])
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_minor_formatter(NullFormatter())

@@ -93,8 +93,25 @@ def force_text(force: float, unit: str = "N/m") -> str:
     """A force in N/m or N with the size of unit that suits it, such as "12.5 kN/m"."""
     for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0)):
         if size <= force < 1e3 * size:
-            return f"{force / size:.4g} {prefix}{unit}"
-    return f"{force:.4g} {unit}"
+            return f"{force / size:.3g} {prefix}{unit}"
+    return f"{force:.3g} {unit}"
+
+
+def quantity(value: float, unit: str) -> str:
+    """A number of three digits with its unit, in the size that suits it: "12.5 kN/m³", "0.4 m", "50°".
+
+    Examples
+    --------
+    >>> quantity(21974.4, "N/m³"), quantity(-3.40619, "m"), quantity(31.0, "°"), quantity(5e9, "Pa")
+    ('22 kN/m³', '-3.41 m', '31°', '5 GPa')
+    """
+    if unit == "°":
+        return f"{value:.3g}°"
+    if unit.startswith(("N", "Pa")):
+        for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+            if abs(value) >= size:
+                return f"{value / size:.3g} {prefix}{unit}"
+    return f"{value:.3g} {unit}"
 
 
 def rounded(value: float) -> float:

@@ -1,0 +1,192 @@
+"""What an assessment of an arch computes: verdicts, safety numbers, the worst position, load cases, assumptions."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import subprocess
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from voussoir.dda_program import DdaError, find_dda
+from voussoir.deck.run import run as run_deck
+from voussoir.deck.text import merged
+from voussoir.deck.thickness import dead_groups, thickness_safety
+from voussoir.results import Results, Table
+
+Row = dict[str, Any]
+#: Positions of the first axle in the diagram
+POSITIONS = 41
+#: Share of the least factor by which that of a fixed position may be smaller
+SMALLER = 1e-6
+#: Columns of a row that say its load factor
+_OF_FACTOR = ("verdict", "critical", "critical_low", "critical_high", "collapses_at", "exact_low", "exact_high")
+_TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
+
+
+@dataclass
+class Assessment:
+    """All that the page of one deck needs.
+
+    Attributes
+    ----------
+    deck : Path
+        The deck, and `text`, what stands in it.
+    own : Results
+        The run of the loads given.
+    dead : dict
+        Row of the run without live loads.
+    found, factor : Results and dict, or None
+        The search for the load factor, and its row, corrected by fixed positions that are worse.
+    safety : tuple of float and str
+        Thickness over critical thickness, and how it was found.
+    axles : list of tuple
+        Places and weights of the axles [m, N/m].
+    positions : Table or None
+        Load factors along the road.
+    """
+
+    deck: Path
+    text: str
+    own: Results
+    dead: Row
+    found: Results | None
+    factor: Row | None
+    safety: tuple[float, str]
+    axles: list[tuple[float, float]]
+    positions: Table | None
+
+    @property
+    def row(self) -> Row:
+        """Row of the run of the loads given."""
+        return self.own.case(1)
+
+    @property
+    def place(self) -> float:
+        """The worst position [m], NaN where none is sought."""
+        return math.nan if self.factor is None else float(self.factor.get("worst_position", math.nan))
+
+    @property
+    def title(self) -> str:
+        """Title of the deck, or its name."""
+        return self.own.setting("scene%title") or self.deck.stem
+
+    @property
+    def surface(self) -> float | None:
+        """Height of the surface of the fill, None without one [m]."""
+        height = self.own.setting("fill%height")
+        free = np.vstack([block.corners for block in self.own.blocks_of(1) if block.state != "fixed"])
+        return None if height is None else float(free[:, 1].max()) + float(height)
+
+    def value(self, name: str) -> str | None:
+        """A key as the deck has it, else its default; None where it has none."""
+        given = self.own.setting(name)
+        return given if given is not None else defaults(find_dda()).get(name)
+
+
+def assess(text: str, deck: Path) -> Assessment:
+    """Compute what the page of a deck says."""
+    bare = without(text, "search")
+    found, factor = load_search(bare)
+    place = math.nan if factor is None else factor.get("worst_position", math.nan)
+    fixed, way = _at_position(bare, place), _turned(found)
+    own = run_deck(fixed, **way)
+    steps = [float(word) for word in own.settings("vehicle%spacings")]
+    start = float(own.setting("vehicle%position") or "nan")
+    axles = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own.settings("vehicle%axles"))]
+    safety = thickness_safety(own)
+    own.cases["safety_thickness"][0] = safety[0]
+    free = np.vstack([block.corners for block in own.blocks_of(1) if block.state != "fixed"])
+    flow = {"analysis%flow": "associated"} if slides(own) else {}
+    cases = _positions(fixed, free[:, 0], steps, place, {**way, **flow}) if axles else None
+    factor = least_of(factor, cases)
+    if factor is not None:  # the title has the factor of the page
+        own.cases["critical"][0] = factor["critical"]
+    dead = run_deck(merged(dead_groups(own, own.case(1)), {})).case(1) if factor is not None else own.case(1)
+    return Assessment(deck, text, own, dead, found, factor, safety, axles, cases)
+
+
+def without(text: str, *groups: str) -> str:
+    """A deck without some of its groups, whose texts have no slashes."""
+    for group in groups:
+        text = re.sub(rf"&{group}\b[^/]*/", lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
+    return text
+
+
+def load_search(text: str) -> tuple[Results | None, Row | None]:
+    """Search the load factor of a deck with live loads: the run and its row; neither without live loads."""
+    if not re.search(r"^\s*&(live|vehicle)\b", text, re.IGNORECASE | re.MULTILINE):
+        return None, None
+    found = run_deck(text + "\n&search parameter = 'load_factor' /\n")
+    return found, found.case(1)
+
+
+def least_of(factor: Row | None, cases: Table | None) -> Row | None:
+    """The row of the search for the load factor, or what a fixed position says against it."""
+    if factor is None or cases is None or math.isnan(factor["worst_position"]):
+        return factor
+    for row in cases.rows():
+        falls = row["verdict"] == "collapsed" or row["verdict"] == "found" and row["collapses_at"] == "low"
+        value = 0.0 if falls else row["critical"]
+        if not value < (1.0 - SMALLER) * {"stable": math.inf, "collapsed": 0.0}.get(
+                factor["verdict"], factor["critical"]):
+            continue
+        factor = {**factor, **{name: row[name] for name in _OF_FACTOR}, "worst_position": row["position"]}
+        if falls:
+            factor["verdict"] = "collapsed"
+    return factor
+
+
+def slides(run: Results) -> bool:
+    """Whether rings slide on one another, so that a loading path for every position takes too long."""
+    return int(run.setting("arch%rings") or 1) > 1
+
+
+@lru_cache(maxsize=4)
+def defaults(dda: Path) -> dict[str, str]:
+    """Defaults of all keys that have one, by their names with groups."""
+    text = subprocess.run([str(dda), "help", "keys", "--json"], capture_output=True, text=True, check=True).stdout
+    return {f"{group['name']}%{key['name']}": str(key["default"]).strip("'")
+            for group in json.loads(text)["groups"] for key in group["keys"] if "default" in key}
+
+
+def _at_position(text: str, place: float) -> str:
+    """The deck with its vehicle at the worst position, where it asks for that; where none is worst, half way."""
+    if not _TRUE.search(re.sub(r"!.*", "", text)):
+        return text
+    return _TRUE.sub(f"position = {0.0 if math.isnan(place) else float(place)!r}", text)
+
+
+def _turned(found: Results | None) -> dict[str, list[float]]:
+    """Keys of a vehicle that stands worst as it drives the other way; none of one that drives as the deck says."""
+    if found is None or found.case(1).get("worst_direction", "") != "backward":
+        return {}
+    lists = {name: [float(word) for word in found.settings(name)[::-1]] for name in ("vehicle%axles",
+                                                                                    "vehicle%spacings")}
+    return {name: values for name, values in lists.items() if values}
+
+
+def _positions(text: str, x: np.ndarray, steps: list[float], worst: float, flow: dict[str, Any]) -> Table | None:
+    """Load factors along the road, and at the worst position if there is one: it may lie where they jump, as the arch
+    begins to lean against the fill of its other side. Nothing where no position can be computed.
+    """
+    low, high = float(x.min()) - sum(steps), float(x.max())
+    # axles that only the ground carries are refused: the ends are drawn in until all stand on the arch
+    for inset in (0.02, 0.05, 0.1):
+        reach = inset * (float(x.max()) - float(x.min()))
+        places = np.linspace(low + reach, high - reach, POSITIONS)
+        places = np.sort(np.append(places, worst if low + reach < worst < high - reach else []))
+        values = ", ".join(repr(float(place)) for place in places)
+        try:
+            return run_deck(
+                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = {values} /\n",
+                **flow,
+            ).cases
+        except DdaError:
+            continue
+    return None

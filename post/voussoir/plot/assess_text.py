@@ -1,0 +1,163 @@
+"""What an assessment assumes, and what its numbers mean, in sentences."""
+
+from __future__ import annotations
+
+import math
+
+from voussoir.deck.assessment import Assessment
+from voussoir.plot.case_title import thrust_of
+from voussoir.plot.units import force_text, force_unit, quantity
+
+#: The passive pressure and the spread of fill are named where they are not 0
+_NONE = ("0", "0.0")
+
+
+def assumptions_of(found: Assessment) -> list[str]:
+    """What holds for a deck, each in a sentence."""
+    value = found.value
+    lune = value("arch%lune_deg")
+    lines = [
+        "The section is a lune of the dome; hoop forces are left out." if lune else
+        "The section is plane: loads and forces are per metre of depth."]
+    if value("analysis%geometry") == "current":
+        young = quantity(float(value("material%young") or 0.0), "Pa")
+        lines.append(f"Blocks move and strain: Young's modulus {young}.")
+    else:
+        lines.append("Blocks are rigid and displacements small; supports do not move.")
+    tension, cohesion = (float(value(f"joint%{name}") or 0.0) for name in ("tension", "cohesion"))
+    joints = "no tension" if tension == 0.0 else f"tension up to {quantity(tension, 'Pa')}"
+    joints += f"; friction angle {quantity(float(value('joint%friction_deg') or 0.0), '°')}"
+    joints += f"; cohesion {quantity(cohesion, 'Pa')}" if cohesion else ""
+    lines.append(f"Joints carry {joints}.")
+    rule = "associated: joints open as they slide, an upper bound" if value("analysis%flow") == "associated" else (
+        "Coulomb: joints slide without opening, on the loading path dead loads first, then live loads")
+    lines.append(f"Flow rule: {rule}.")
+    strength = value("material%compressive_strength")
+    lines.append(
+        f"Joints crush at {quantity(float(strength), 'Pa')}." if strength else
+        "Compressive strength is unlimited: crushing is not checked.")
+    weight = value("material%unit_weight")
+    unit = float(weight) if weight else float(value("material%density") or 0.0) * float(value("load%gravity") or 0.0)
+    lines.append(f"Unit weight of the masonry {quantity(unit, 'N/m³')}.")
+    return lines + fill_of(found)
+
+
+def fill_of(found: Assessment) -> list[str]:
+    """What holds for the fill."""
+    value = found.value
+    height = found.own.setting("fill%height")
+    if height is None:
+        return ["There is no fill: live loads act on the blocks below them."]
+    weight = quantity(float(value("fill%unit_weight") or 0.0), "N/m³")
+    lines = [f"Fill to {quantity(float(height), 'm')} above the extrados, unit weight {weight}, is dead weight."]
+    spread = float(value("fill%spread") or 0.0)
+    lines.append(
+        f"Axles spread through the fill to either side by {spread:.3g} of the depth." if spread else
+        "Axles do not spread through the fill.")
+    passive, share = (found.own.setting(f"fill%passive_{name}") for name in ("coefficient", "share"))
+    if share not in (None, *_NONE):
+        lines.append(f"The fill resists with up to {float(share or 0.0):.3g} of Rankine's passive pressure.")
+    elif passive not in (None, *_NONE):
+        lines.append(f"The fill resists with up to {float(passive or 0.0):.3g} times the pressure of its own weight.")
+    else:
+        lines.append("The fill gives no horizontal resistance.")
+    if found.own.setting("fill%backing_height"):
+        height = quantity(float(found.own.setting("fill%backing_height") or 0.0), "m")
+        lines.append(f"Backing up to {height} above the left springing is rigid masonry.")
+    return lines
+
+
+def numbers_of(found: Assessment) -> list[tuple[str, str, str]]:
+    """The safety numbers: name, value with unit, meaning in a sentence."""
+    safety, note = found.safety
+    rows = []
+    if math.isfinite(safety):
+        meaning = f"Under dead load the arch stands until it is {safety:.3g} times thinner."
+        rows.append(("Geometric safety factor", f"{safety:.3g}", meaning))
+    else:
+        rows.append(("Geometric safety factor", "any" if math.isinf(safety) else "not known", note + "."))
+    rows += factor_rows(found)
+    thrust = thrust_of(found.row, force_unit(found.own))
+    rows.append((
+        "Thrust at the crown", thrust or "not known",
+        "Every horizontal thrust in this range is in equilibrium with the loads given; supports must bear the least."))
+    return rows
+
+
+def factor_rows(found: Assessment) -> list[tuple[str, str, str]]:
+    """The load factor, its bounds, and the worst position."""
+    factor = found.factor
+    if factor is None:
+        return [("Load factor", "none", "There are no live loads.")]
+    words = {"stable": "unlimited", "collapsed": "0", "found": f"{factor['critical']:.3g}"}
+    meaning = {
+        "stable": "No multiple of the live loads makes the arch collapse.",
+        "collapsed": "The dead loads alone make the arch collapse.",
+        "found": "The arch collapses when the live loads are multiplied by this; below 1 it does not carry them.",
+    }
+    verdict = str(factor["verdict"])
+    rows = [("Load factor", words.get(verdict, verdict), meaning.get(verdict, "The search found no factor."))]
+    low, high = factor["exact_low"], factor["exact_high"]
+    if not math.isnan(high):
+        same = f"{low:.3g}" == f"{high:.3g}" or math.isnan(low)
+        rows.append((
+            "Load factor by limit analysis", f"{high:.3g}" if same else f"{low:.3g} to {high:.3g}",
+            "Certified for joints that open as they slide; real joints may collapse below it."))
+    if not math.isnan(found.place):
+        rows.append((
+            "Worst position", quantity(found.place, "m"),
+            f"The load factor is least with the leftmost axle here, driving {factor['worst_direction']}."))
+    return rows
+
+
+def cases_of(found: Assessment) -> list[tuple[str, ...]]:
+    """The load cases: what acts, live load, verdict, load factor, thrust; the heads first."""
+    unit = force_unit(found.own)
+    heads = ("Load case", f"Live load [k{unit}]", "Verdict", "Load factor [-]", f"Thrust at the crown [k{unit}]")
+    dead = "Dead load of masonry" + (" and fill" if found.own.setting("fill%height") else "")
+    rows = [heads, (dead, "0", str(found.dead["verdict"]), "-", thrust_range(found.dead))]
+    if found.factor is None:
+        return rows
+    live = sum(weight for _, weight in found.axles)
+    live += sum(abs(float(word)) for word in found.own.settings("live%fy"))
+    where = f", leftmost axle at {quantity(found.axles[0][0], 'm')}" if found.axles else ""
+    rows.append((
+        f"Live loads as given{where}", f"{live / 1e3:.3g}", str(found.row["verdict"]), "1", thrust_range(found.row)))
+    if found.factor["verdict"] == "found":
+        critical = found.factor["critical"]
+        mode = found.found.case(1)["collapse_mode"] if found.found is not None else "none"
+        words = f"collapses, {mode}" if mode != "none" else "collapses"
+        total = f"{live * critical / 1e3:.3g}"
+        rows.append(("Live loads multiplied to collapse", total, words, f"{critical:.3g}", "-"))
+    return rows
+
+
+def thrust_range(row: dict[str, object]) -> str:
+    """Least and greatest thrust in thousands."""
+    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
+    texts = ["-" if math.isnan(end) else f"{end / 1e3:.3g}" for end in ends if isinstance(end, float)]
+    return " to ".join(texts) if set(texts) != {"-"} else "-"
+
+
+def verdict_of(found: Assessment) -> tuple[str, bool]:
+    """The verdict in a sentence, and whether it is a bad one."""
+    own, factor = found.row, found.factor
+    words = {
+        "stable": "The structure stands under the loads given.",
+        "collapsed": "The structure does not stand under the loads given.",
+    }
+    text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
+    if factor is not None and factor["verdict"] == "found":
+        text += f" It collapses when the live loads are multiplied by {factor['critical']:.3g}."
+    elif factor is not None and factor["verdict"] == "stable":
+        text += " No multiple of the live loads makes it collapse."
+    elif factor is not None and factor["verdict"] == "collapsed" and not math.isnan(factor["worst_position"]):
+        text += f" Its dead loads alone make it collapse with the vehicle at {quantity(factor['worst_position'], 'm')}."
+    elif factor is not None:
+        text += f" The search for the load factor is {factor['verdict']}."
+    return text, own["verdict"] != "stable" or factor is not None and factor["verdict"] == "collapsed"
+
+
+def live_text(found: Assessment) -> str:
+    """The axles in words."""
+    return ", ".join(force_text(weight) for _, weight in found.axles)
