@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import subprocess
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +16,7 @@ from voussoir.dda_program import DdaError, find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import ENDINGS, Content, ImportedShape, read_shapes
 from voussoir.files import write_text
+from voussoir.imports.layers import Layer, merged_materials
 from voussoir.imports.limits import limited
 from voussoir.imports.plane import AXES
 from voussoir.imports.traces import line_file
@@ -30,7 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Make a deck and its file of blocks from outlines: DXF (closed polylines, circles, inserted blocks, what "
         "single lines and arcs of a layer enclose; arcs become chords), GeoJSON, WKT, meshes, COMPAS (json). GeoJSON "
-        "and WKT of lines alone become a file of lines for dda cut."
+        "and WKT of lines alone become a file of lines for dda cut. Layers, the properties role, layer and material, "
+        "and physical groups of gmsh are materials; properties density, unit_weight, young and poisson are those of "
+        "the material, equal materials are merged, and 'fixed': true is a block that does not move. Prints what was "
+        "repaired, snapped, dropped and merged."
     )
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(ENDINGS)}")
     parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
@@ -127,10 +132,7 @@ def import_file(arguments: argparse.Namespace) -> _Imported:
     made.lines.append(
         f"{deck}, {name}: {len(blocks.shapes)} blocks, {made.fixed} of them fixed; a unit is {scale:g} m ({whose}); "
         f"chords within {arguments.tolerance:g} m of their arcs")
-    layers = {shape.material: found.layer for shape, found in zip(blocks.shapes, shapes) if not shape.fixed}
-    if len(layers) > 1:
-        made.lines.append(
-            "materials: " + ", ".join(f"{number} {layer or '(no layer)'}" for number, layer in layers.items()))
+    made.lines += _said_of(shapes, blocks)
     if not made.fixed:
         made.advice.append(
             "nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD, or --hold N")
@@ -181,16 +183,46 @@ def _run_deck(deck: Path) -> int:
 
 
 def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...], held: Sequence[int] = ()) -> Blocks:
-    """Blocks from outlines: a material a layer, in the order in which the layers come.
+    """Blocks from outlines: a material per layer, in the order in which the layers come; equal ones are merged.
 
     `fixed` are the layers, in small letters, of what does not move, `held` numbers of further ones from 1.
     """
     if max(held, default=0) > len(shapes):
         raise ValueError(f"expected numbers of blocks from 1 to {len(shapes)} to hold, got {max(held)}")
     blocks = Blocks()
-    still = [shape.layer.lower() in fixed or number in held for number, shape in enumerate(shapes, 1)]
-    moving = dict.fromkeys(shape.layer for shape, stays in zip(shapes, still) if not stays)
-    materials = {layer: number for number, layer in enumerate(moving, 1)}
+    still = [
+        full_layer(shape).is_fixed or shape.layer.lower() in fixed or number in held
+        for number, shape in enumerate(shapes, 1)]
+    numbers, layers = merged_materials(shape.layer for shape, stays in zip(shapes, still) if not stays)
     for shape, stays in zip(shapes, still):
-        blocks.add_polygon(shape.polygon, stays, 1 if stays else materials[shape.layer])
+        blocks.add_polygon(shape.polygon, stays, 1 if stays else numbers[full_layer(shape).material])
+    for number, known in layers.items():
+        if not known[0].properties:
+            continue
+        if number == 1:
+            blocks.groups["material"] = dict(known[0].properties)
+        else:
+            blocks.material(number, **dict(known[0].properties))
     return blocks
+
+
+def full_layer(shape: ImportedShape) -> Layer:
+    """The layer of an outline with all that is known of it."""
+    return shape.layer if isinstance(shape.layer, Layer) else Layer(shape.layer)
+
+
+def _said_of(shapes: list[ImportedShape], blocks: Blocks) -> list[str]:
+    """Lines about what is fixed and which materials there are."""
+    pairs = list(zip(blocks.shapes, map(full_layer, shapes)))
+    reasons = Counter(
+        "property fixed" if layer.is_fixed else f"layer {layer or '(none)'}" for shape, layer in pairs if shape.fixed)
+    lines = []
+    if reasons:
+        lines.append("fixed: " + ", ".join(f"{count} of {reason}" for reason, count in reasons.items()))
+    _, layers = merged_materials(layer for shape, layer in pairs if not shape.fixed)
+    several = [number for number, known in layers.items() if len(known) > 1]
+    if len(layers) > 1 or any(known[0].properties for known in layers.values()):
+        lines.append("materials: " + ", ".join(f"{number} {known[0].words}" for number, known in layers.items()))
+    for number in several:
+        lines.append(f"merged: {len(layers[number])} layers of equal material into material {number}")
+    return lines

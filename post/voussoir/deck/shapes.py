@@ -87,8 +87,7 @@ def _only_lines(rows: list[tuple[str, Any, str]], scale: float) -> list[Trace]:
     """Lines of a file that has no outlines except those of the boundary."""
     given = [(geometry, layer) for _, geometry, layer in rows if geometry is not None and not geometry.is_empty]
     lines = [pair for pair in given if pair[0].geom_type in ("LineString", "MultiLineString", "LinearRing")]
-    rims = [pair for pair in given if pair not in lines and pair[0].geom_type in ("Polygon", "MultiPolygon")
-            and pair[1].lower() == BOUNDARY]
+    rims = [pair for pair in given if pair[0].geom_type in ("Polygon", "MultiPolygon") and pair[1].lower() == BOUNDARY]
     if not lines or len(lines) + len(rims) != len(rows):
         return []
     return [trace for geometry, layer in lines + rims for trace in traces_of(geometry, layer, scale)]

@@ -13,6 +13,7 @@ import numpy as np
 from voussoir.extras import load
 from voussoir.files import read_text
 from voussoir.imports.compas import is_compas, read_compas
+from voussoir.imports.layers import layer_of
 from voussoir.imports.limits import one_line
 from voussoir.imports.linework import Found
 from voussoir.imports.plane import Plane
@@ -32,7 +33,8 @@ _ADVICE = (
 
 
 def read_json(file: Path, plane_name: str, plane: Plane, tolerance: float, has_unit: bool) -> Found:
-    """Features, or a geometry, or what COMPAS has written; the property role, layer or name is the layer.
+    """Features, or a geometry, or what COMPAS has written; the property role, layer, material or name is the layer,
+    with `fixed` and the properties of a material.
 
     ValueError if GeoJSON without a unit is in degrees.
     """
@@ -65,8 +67,7 @@ def read_json(file: Path, plane_name: str, plane: Plane, tolerance: float, has_u
         shape = feature.get("geometry") if feature.get("type") == "Feature" else feature
         known = feature.get("properties")
         known = known if isinstance(known, dict) else {}
-        layer = next((str(known[key]) for key in ("role", "layer", "name") if known.get(key)), "")
-        found.append((words, None if shape is None else _geometry(shape, plane, words), layer))
+        found.append((words, None if shape is None else _geometry(shape, plane, words), layer_of(known, words)))
     if not has_unit:
         _check_is_length([geometry for _, geometry, _ in found if geometry is not None])
     yield from found

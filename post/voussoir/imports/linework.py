@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Optional
@@ -10,6 +11,7 @@ import numpy as np
 
 from voussoir.extras import load
 from voussoir.imports.curves import MOST_CHORDS, Curve, Line, Points, nearest, polyline
+from voussoir.imports.near import Cells
 from voussoir.imports.notes import Notes
 from voussoir.imports.snapping import Ends
 
@@ -78,10 +80,15 @@ def _gap(one: Drawn) -> float:
 
 def _closed_alone(drawn: list[Drawn], reach: float, notes: Notes) -> list[Drawn]:
     """Entities, those that may be closed and meet no other entity closed."""
+    if not any(one.may_close for one in drawn):
+        return drawn
     row = []
+    owned = [(one, curve) for one in drawn for curve in one.curves]
+    cells = Cells([curve for _, curve in owned], reach, reach)
     for one in drawn:
         ends = np.array([one.curves[0].start, one.curves[-1].end])
-        others = (curve for other in drawn if other is not one for curve in other.curves)
+        around = {number for end in ends.tolist() for number in cells.near(end)} if one.may_close else set()
+        others = (owned[number][1] for number in around if owned[number][0] is not one)
         if not one.may_close or len(one.curves) < 2 or any(
                 nearest(curve, ends, reach)[1].min() <= reach for curve in others):
             row.append(one)
@@ -94,23 +101,47 @@ def _closed_alone(drawn: list[Drawn], reach: float, notes: Notes) -> list[Drawn]
 def _snapped(drawn: list[Drawn], snap: float, tolerance: float, notes: Notes) -> list[Drawn]:
     """Entities whose open ends are moved to the nearest other line within a distance."""
     snap *= 1.0 + 1e-6  # a gap as wide as asked may be read wider
-    curves = [(number, curve) for number, one in enumerate(drawn) for curve in one.curves]
-    corners = [(curve.start, curve.end) for _, curve in curves]
-    row = list(drawn)
-    for number, one in enumerate(drawn):
-        ends = []
+    curves = [curve for one in drawn for curve in one.curves]
+    cells = Cells(curves, snap, tolerance)
+    targets: dict[complex, complex] = {}
+    for one in drawn:
         for curve, end in ((one.curves[0], one.curves[0].start), (one.curves[-1], one.curves[-1].end)):
-            others = [pair for (_, other), pair in zip(curves, corners) if other is not curve]
-            others += [(curve.start if end == curve.end else curve.end,)]
-            near = [point for pair in others for point in pair if abs(point - end) <= snap]
+            others = [curves[place] for place in cells.near(end) if curves[place] is not curve]
+            corners = [point for other in others for point in (other.start, other.end)]
+            corners += [curve.start if end == curve.end else curve.end]
+            near = [point for point in corners if abs(point - end) <= snap]
             target = min(near, key=lambda point: abs(point - end), default=None)
             if target is None:
-                target = _on_others(end, [other for _, other in curves if other is not curve], snap, tolerance)
-            ends.append(end if target is None or abs(target - end) <= 0.0 else complex(target))
-        moved = [abs(new - old) for new, old in zip(ends, (one.curves[0].start, one.curves[-1].end))]
+                target = _on_others(end, others, snap, tolerance)
+            if target is not None and abs(target - end) > 0.0:
+                targets[end] = complex(target)
+    places = _places(targets, snap)
+    row = list(drawn)
+    for number, one in enumerate(drawn):
+        old = (one.curves[0].start, one.curves[-1].end)
+        ends = [places.get(end, end) for end in old]
+        moved = [abs(new - end) for new, end in zip(ends, old)]
         notes.snapped += [distance for distance in moved if distance > SAME * tolerance]
         row[number] = replace(one, curves=_with_ends(one.curves, ends[0], ends[1]))
     return [replace(one, is_closed=len(one.curves) > 1 and _gap(one) <= SAME * tolerance) for one in row]
+
+
+def _places(targets: dict[complex, complex], snap: float) -> dict[complex, complex]:
+    """Where ends are moved: of two that would swap places, that stays to which more others move, else the first."""
+    asked = Counter(targets.values())
+    order = {end: number for number, end in enumerate(targets)}
+    stays = {
+        end for end, target in targets.items()
+        if targets.get(target) == end and (-asked[end], order[end]) < (-asked[target], order[target])}
+    places = {}
+    for end, target in targets.items():
+        if end in stays:
+            continue
+        last, steps = target, 0
+        while last in targets and last not in stays and steps < len(targets):  # the target moves itself
+            last, steps = targets[last], steps + 1
+        places[end] = last if abs(last - end) <= snap else target
+    return places
 
 
 def _on_others(end: complex, others: list[Curve], snap: float, tolerance: float) -> Optional[complex]:

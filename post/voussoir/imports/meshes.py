@@ -15,14 +15,16 @@ from voussoir.imports.plane import Plane
 
 
 def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
-    """Triangles, quadrilaterals and polygons of a mesh; points and lines are left out."""
+    """Triangles, quadrilaterals and polygons of a mesh, their layers those of gmsh's physical groups; points and lines
+    are left out.
+    """
     geometry = load("shapely.geometry", "a mesh")
     mesh = _mesh_of(file)
     points = np.asarray(mesh.points, dtype=float)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.all(abs(points) <= 1e12):
         raise ValueError("expected points of a mesh with two or three numbers within 1e12, got others")
-    used: list[tuple[str, np.ndarray]] = []
-    for cells in mesh.cells:
+    used: list[tuple[str, np.ndarray, str]] = []
+    for cells, groups in zip(mesh.cells, _groups_of(mesh)):
         if cells.type in ("vertex", "line", "line3"):
             notes.left_out.append(f"{len(cells.data)} cells '{cells.type}'")
             continue
@@ -33,9 +35,22 @@ def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
             elif corners.min() < 0 or corners.max() >= len(points):
                 raise ValueError(f"{words}: expected points from 1 to {len(points)}, got others")
             else:
-                used.append((words, corners))
-    for words, corners in used:
-        yield words, geometry.Polygon(plane.flat(points[corners])), ""
+                used.append((words, corners, groups[number - 1] if number <= len(groups) else ""))
+    for words, corners, layer in used:
+        yield words, geometry.Polygon(plane.flat(points[corners])), layer
+
+
+def _groups_of(mesh: Any) -> list[list[str]]:
+    """Names of the physical groups of the cells, for each piece of the mesh; of a group without a name its number."""
+    names = {}
+    for name, found in (getattr(mesh, "field_data", None) or {}).items():
+        pair = np.ravel(np.asarray(found))
+        if len(pair) == 2 and pair[1] == 2:
+            names[int(pair[0])] = str(name)
+    tags = (getattr(mesh, "cell_data", None) or {}).get("gmsh:physical")
+    if tags is None:
+        return [[] for _ in mesh.cells]
+    return [[names.get(int(tag), f"group {int(tag)}" if tag else "") for tag in np.ravel(part)] for part in tags]
 
 
 def _mesh_of(file: Path) -> Any:

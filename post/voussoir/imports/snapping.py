@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from voussoir.extras import load
-from voussoir.imports.curves import Line, Points, on_curve
+from voussoir.imports.near import points_on_edges
 from voussoir.imports.notes import Notes
 
 
@@ -37,16 +37,7 @@ def snapped(polygons: list[Any], reach: float, notes: Notes) -> list[Any]:
     ends = Ends(reach)
     given = [[_ring(ring) for ring in (polygon.exterior, *polygon.interiors)] for polygon in polygons]
     joined = [[[ends.of(point) for point in ring] for ring in rings] for rings in given]
-    corners = Points([point for rings in joined for ring in rings for point in ring])
-    onto: dict[complex, complex] = {}
-    for ring in (ring for rings in joined for ring in rings):
-        for start, end in zip(ring, [*ring[1:], ring[0]]):
-            if start == end:
-                continue
-            for share, point in on_curve(Line(start, end), corners, reach, reach):
-                target = start + share * (end - start)
-                if abs(target - point) > 1e-14 * (abs(start) + abs(end)):  # else it lies there but for rounding
-                    onto.setdefault(point, target)
+    onto = _onto_edges([ring for rings in joined for ring in rings], reach)
     found = []
     for rings, before in zip(joined, given):
         moved = [[onto.get(point, point) for point in ring] for ring in rings]
@@ -56,6 +47,26 @@ def snapped(polygons: list[Any], reach: float, notes: Notes) -> list[Any]:
         found.append(shape.Polygon(rows[0], [row for row in rows[1:] if len(row) > 2]) if len(rows[0]) > 2
                      else shape.Polygon())
     return found
+
+
+def _onto_edges(rings: list[list[complex]], reach: float) -> dict[complex, complex]:
+    """Corners that lie near edges, and the points of these that they are moved to."""
+    corners = np.unique(np.array([point for ring in rings for point in ring] or [0.0], dtype=complex))
+    edges = [(start, end) for ring in rings for start, end in zip(ring, [*ring[1:], ring[0]]) if start != end]
+    starts, ends = np.array([edge[0] for edge in edges]), np.array([edge[1] for edge in edges])
+    onto: dict[complex, complex] = {}
+    last: tuple[int, complex] | None = None
+    for edge, share, number in points_on_edges(starts, ends, corners, reach):
+        point = complex(corners[number])
+        follows = last is not None and last[0] == edge and abs(point - last[1]) <= reach
+        last = (edge, point)
+        if follows:
+            continue
+        start, end = edges[edge]
+        target = start + share * (end - start)
+        if abs(target - point) > 1e-14 * (abs(start) + abs(end)):  # else it lies there but for rounding
+            onto.setdefault(point, target)
+    return onto
 
 
 def _ring(ring: Any) -> list[complex]:
