@@ -30,6 +30,7 @@ COMMANDS = {
     "verify": ("voussoir.verify.command", "the proofs of a folder of results, recomputed"),
     "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
     "study": ("voussoir.command.study", "a deck with one key halved again and again: order of convergence"),
+    "traffic": ("voussoir.command.traffic", "vehicles of a list on an arch: load factors and worst positions"),
     "validation": ("voussoir.command.validation", "scenes with exact answers beside what the program computes"),
 }
 

@@ -20,8 +20,8 @@ from voussoir.deck.thickness import dead_groups, thickness_safety
 from voussoir.results import Results, Table
 
 Row = dict[str, Any]
-#: Positions of the first axle in the diagram
-POSITIONS = 41
+#: Positions of the first axle in the diagram for each length of the arch that the vehicle passes, and most of them
+POSITIONS, MOST_POSITIONS = 41, 121
 #: Share of the least factor by which that of a fixed position may be smaller
 SMALLER = 1e-6
 #: Columns of a row that say its load factor
@@ -89,8 +89,8 @@ class Assessment:
         return given if given is not None else defaults(find_dda()).get(name)
 
 
-def assess(text: str, deck: Path) -> Assessment:
-    """Compute what the page of a deck says."""
+def assess(text: str, deck: Path, full: bool = True) -> Assessment:
+    """Compute what the page of a deck says; without `full` neither the critical thickness nor the dead load alone."""
     bare = without(text, "search")
     found, factor = load_search(bare)
     place = math.nan if factor is None else factor.get("worst_position", math.nan)
@@ -99,7 +99,7 @@ def assess(text: str, deck: Path) -> Assessment:
     steps = [float(word) for word in own.settings("vehicle%spacings")]
     start = float(own.setting("vehicle%position") or "nan")
     axles = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own.settings("vehicle%axles"))]
-    safety = thickness_safety(own)
+    safety = thickness_safety(own) if full else (math.nan, "not sought")
     own.cases["safety_thickness"][0] = safety[0]
     free = np.vstack([block.corners for block in own.blocks_of(1) if block.state != "fixed"])
     flow = {"analysis%flow": "associated"} if slides(own) else {}
@@ -107,7 +107,9 @@ def assess(text: str, deck: Path) -> Assessment:
     factor = least_of(factor, cases)
     if factor is not None:  # the title has the factor of the page
         own.cases["critical"][0] = factor["critical"]
-    dead = run_deck(merged(dead_groups(own, own.case(1)), {})).case(1) if factor is not None else own.case(1)
+    dead = own.case(1)
+    if factor is not None and full:
+        dead = run_deck(merged(dead_groups(own, dead), {})).case(1)
     return Assessment(deck, text, own, dead, found, factor, safety, axles, cases)
 
 
@@ -176,10 +178,11 @@ def _positions(text: str, x: np.ndarray, steps: list[float], worst: float, flow:
     begins to lean against the fill of its other side. Nothing where no position can be computed.
     """
     low, high = float(x.min()) - sum(steps), float(x.max())
+    count = min(MOST_POSITIONS, round(POSITIONS * (high - low) / float(np.ptp(x))))
     # axles that only the ground carries are refused: the ends are drawn in until all stand on the arch
     for inset in (0.02, 0.05, 0.1):
         reach = inset * (float(x.max()) - float(x.min()))
-        places = np.linspace(low + reach, high - reach, POSITIONS)
+        places = np.linspace(low + reach, high - reach, count)
         places = np.sort(np.append(places, worst if low + reach < worst < high - reach else []))
         values = ", ".join(repr(float(place)) for place in places)
         try:

@@ -6,7 +6,7 @@ import math
 
 from voussoir.deck.assessment import Assessment
 from voussoir.plot.case_title import thrust_of
-from voussoir.plot.units import force_text, force_unit, quantity
+from voussoir.plot.units import digits, force_unit, quantity
 
 #: The passive pressure and the spread of fill are named where they are not 0
 _NONE = ("0", "0.0")
@@ -72,8 +72,8 @@ def numbers_of(found: Assessment) -> list[tuple[str, str, str]]:
     safety, note = found.safety
     rows = []
     if math.isfinite(safety):
-        meaning = f"Under dead load the arch stands until it is {safety:.3g} times thinner."
-        rows.append(("Geometric safety factor", f"{safety:.3g}", meaning))
+        meaning = f"Under dead load the arch stands until it is {digits(safety)} times thinner."
+        rows.append(("Geometric safety factor", digits(safety), meaning))
     else:
         rows.append(("Geometric safety factor", "any" if math.isinf(safety) else "not known", note + "."))
     rows += factor_rows(found)
@@ -89,7 +89,7 @@ def factor_rows(found: Assessment) -> list[tuple[str, str, str]]:
     factor = found.factor
     if factor is None:
         return [("Load factor", "none", "There are no live loads.")]
-    words = {"stable": "unlimited", "collapsed": "0", "found": f"{factor['critical']:.3g}"}
+    words = {"stable": "unlimited", "collapsed": "0", "found": digits(factor["critical"])}
     meaning = {
         "stable": "No multiple of the live loads makes the arch collapse.",
         "collapsed": "The dead loads alone make the arch collapse.",
@@ -99,9 +99,9 @@ def factor_rows(found: Assessment) -> list[tuple[str, str, str]]:
     rows = [("Load factor", words.get(verdict, verdict), meaning.get(verdict, "The search found no factor."))]
     low, high = factor["exact_low"], factor["exact_high"]
     if not math.isnan(high):
-        same = f"{low:.3g}" == f"{high:.3g}" or math.isnan(low)
+        same = math.isnan(low) or digits(low) == digits(high)
         rows.append((
-            "Load factor by limit analysis", f"{high:.3g}" if same else f"{low:.3g} to {high:.3g}",
+            "Load factor by limit analysis", digits(high) if same else f"{digits(low)} to {digits(high)}",
             "Certified for joints that open as they slide; real joints may collapse below it."))
     if not math.isnan(found.place):
         rows.append((
@@ -122,20 +122,20 @@ def cases_of(found: Assessment) -> list[tuple[str, ...]]:
     live += sum(abs(float(word)) for word in found.own.settings("live%fy"))
     where = f", leftmost axle at {quantity(found.axles[0][0], 'm')}" if found.axles else ""
     rows.append((
-        f"Live loads as given{where}", f"{live / 1e3:.3g}", str(found.row["verdict"]), "1", thrust_range(found.row)))
+        f"Live loads as given{where}", digits(live / 1e3), str(found.row["verdict"]), "1", thrust_range(found.row)))
     if found.factor["verdict"] == "found":
         critical = found.factor["critical"]
         mode = found.found.case(1)["collapse_mode"] if found.found is not None else "none"
         words = f"collapses, {mode}" if mode != "none" else "collapses"
-        total = f"{live * critical / 1e3:.3g}"
-        rows.append(("Live loads multiplied to collapse", total, words, f"{critical:.3g}", "-"))
+        total = digits(live * critical / 1e3)
+        rows.append(("Live loads multiplied to collapse", total, words, digits(critical), "-"))
     return rows
 
 
 def thrust_range(row: dict[str, object]) -> str:
     """Least and greatest thrust in thousands."""
     ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
-    texts = ["-" if math.isnan(end) else f"{end / 1e3:.3g}" for end in ends if isinstance(end, float)]
+    texts = ["-" if math.isnan(end) else f"{digits(end / 1e3)}" for end in ends if isinstance(end, float)]
     return " to ".join(texts) if set(texts) != {"-"} else "-"
 
 
@@ -148,7 +148,7 @@ def verdict_of(found: Assessment) -> tuple[str, bool]:
     }
     text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
     if factor is not None and factor["verdict"] == "found":
-        text += f" It collapses when the live loads are multiplied by {factor['critical']:.3g}."
+        text += f" It collapses when the live loads are multiplied by {digits(factor['critical'])}."
     elif factor is not None and factor["verdict"] == "stable":
         text += " No multiple of the live loads makes it collapse."
     elif factor is not None and factor["verdict"] == "collapsed" and not math.isnan(factor["worst_position"]):
@@ -156,8 +156,3 @@ def verdict_of(found: Assessment) -> tuple[str, bool]:
     elif factor is not None:
         text += f" The search for the load factor is {factor['verdict']}."
     return text, own["verdict"] != "stable" or factor is not None and factor["verdict"] == "collapsed"
-
-
-def live_text(found: Assessment) -> str:
-    """The axles in words."""
-    return ", ".join(force_text(weight) for _, weight in found.axles)

@@ -66,7 +66,7 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8})
     axes.set_ylim(0.0, top)
     axes.set_ylabel("load factor [-]")
-    if axes.get_legend_handles_labels()[0]:
+    if sheet.legend and axes.get_legend_handles_labels()[0]:
         axes.legend(fontsize="small", loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, borderpad=0.1,
                     handletextpad=0.2, columnspacing=1.0)
     draw_supports(below, [block.corners for block in scene.supports], pen)

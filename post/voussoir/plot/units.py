@@ -97,6 +97,17 @@ def force_text(force: float, unit: str = "N/m") -> str:
     return f"{force:.3g} {unit}"
 
 
+def digits(value: float) -> str:
+    """A number of three digits, without an exponent where it has few zeros.
+
+    Examples
+    --------
+    >>> digits(1234.0), digits(0.48504), digits(12.0)
+    ('1230', '0.485', '12')
+    """
+    return f"{float(f'{value:.3g}'):g}"
+
+
 def quantity(value: float, unit: str) -> str:
     """A number of three digits with its unit, in the size that suits it: "12.5 kN/m³", "0.4 m", "50°".
 
@@ -106,12 +117,12 @@ def quantity(value: float, unit: str) -> str:
     ('22 kN/m³', '-3.41 m', '31°', '5 GPa')
     """
     if unit == "°":
-        return f"{value:.3g}°"
+        return f"{digits(value)}°"
     if unit.startswith(("N", "Pa")):
         for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
             if abs(value) >= size:
-                return f"{value / size:.3g} {prefix}{unit}"
-    return f"{value:.3g} {unit}"
+                return f"{digits(value / size)} {prefix}{unit}"
+    return f"{digits(value)} {unit}"
 
 
 def rounded(value: float) -> float:
