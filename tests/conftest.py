@@ -26,6 +26,7 @@ MAY_SKIP = (
     "pyarrow is not installed",
     "the site wants",
     "no Chromium was found",
+    "mypy with numpy",
     "ffmpeg is",  # one test for either case
     "no terminal is to be had here",
     "root writes into every folder",

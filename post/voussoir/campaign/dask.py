@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from voussoir.campaign import part
 from voussoir.campaign.part import Part, run_part
@@ -36,7 +37,7 @@ def dask_engine(address: str) -> tuple[Engine, int]:
     # by value: the workers need not have this package
     cloudpickle.register_pickle_by_value(part)
 
-    def task(part: dict) -> Outcome:
+    def task(part: dict[str, Any]) -> Outcome:
         return run_part(Part(**part))
 
     def run(parts: list[Part]) -> Iterator[Outcome]:

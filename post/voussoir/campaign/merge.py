@@ -14,7 +14,7 @@ import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO, BinaryIO
 
 import numpy as np
 
@@ -106,10 +106,11 @@ def merge_table(name: str, header: str, parts: list[Path], owner: np.ndarray, ou
 
     def write(file: BinaryIO) -> None:
         file.write(header.encode() + b"\n")
-        opened, at = None, -1
+        opened: IO[bytes] | None = None
+        at = -1
         for place, stop in zip(places[first], stops):
             number, start = int(place["number"]), int(place["start"])
-            if number != at:
+            if opened is None or number != at:
                 if opened:
                     opened.close()
                 opened, at = (parts[number] / name).open("rb"), number

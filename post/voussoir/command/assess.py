@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             check(text, deck)
             found.append(assess(text, deck))
         except DdaError as error:
-            raise DdaError(_COPY.sub(lambda _, name=str(deck): name, str(error))) from error
+            raise DdaError(_COPY.sub(str(deck).replace("\\", r"\\"), str(error))) from error
         except OSError as error:
             raise ValueError(f"expected a deck that can be read: {error.strerror}") from error
     origin = origin_of(decks)

@@ -80,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 2
     chosen = build_parser(words[0] if words else None).parse_args(words)
     try:
-        return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)
+        return int(importlib.import_module(COMMANDS[chosen.command][0]).run(chosen))
     except BrokenPipeError:  # who reads the output, such as head, has enough of it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0

@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
@@ -45,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, parts)))
 
 
-def _teller(arguments: argparse.Namespace):
+def _teller(arguments: argparse.Namespace) -> Callable[[str], None]:
     """What progress is told to."""
     if arguments.quiet:
         return lambda line: None

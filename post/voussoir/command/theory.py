@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from typing import Any
 
 from voussoir import theory
 
@@ -43,7 +44,7 @@ def _half_angle(word: str) -> float:
     return angle
 
 
-def _row(alpha_deg: float, name: str) -> tuple:
+def _row(alpha_deg: float, name: str) -> tuple[Any, ...]:
     """One line of the table: the solution, or None in its place beyond the limit of the theory."""
     alpha = math.radians(alpha_deg)
     if alpha > theory.limits(name)["alpha_limit"]:
@@ -52,7 +53,7 @@ def _row(alpha_deg: float, name: str) -> tuple:
     return (alpha_deg, name, math.degrees(beta), beta, eta, h)
 
 
-def _csv(rows: list[tuple]) -> list[str]:
+def _csv(rows: list[tuple[Any, ...]]) -> list[str]:
     """Lines with every digit, empty beyond the limits."""
     return [",".join(_COLUMNS)] + [
         ",".join("" if value is None else value if isinstance(value, str) else repr(value) for value in row)
@@ -60,7 +61,7 @@ def _csv(rows: list[tuple]) -> list[str]:
     ]
 
 
-def _table(rows: list[tuple]) -> list[str]:
+def _table(rows: list[tuple[Any, ...]]) -> list[str]:
     """Lines to read."""
     lines = ["{:>10}  {:<12}  {:>11}  {:>11}  {:>12}  {:>11}".format(*_COLUMNS)]
     for alpha_deg, name, *values in rows:

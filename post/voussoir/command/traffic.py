@@ -73,7 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     print(f"effective width: {RULES[arguments.rule]}" if given is None else f"effective width: {given:g} m, given")
     out = arguments.out or Path(f"{arguments.deck.stem}_traffic")
     out.mkdir(parents=True, exist_ok=True)
-    sheet, rows, everything = Sheet(arguments.width, arguments.title, arguments.legend), [HEADS], [COLUMNS]
+    sheet, everything = Sheet(arguments.width, arguments.title, arguments.legend), [COLUMNS]
+    rows: list[tuple[str, ...]] = [HEADS]
     files: list[Path] = []
     for name in names:
         worst, passages = worst_convoy(

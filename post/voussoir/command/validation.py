@@ -47,7 +47,7 @@ def titles_of(decks: Path) -> dict[str, str]:
 def _lines(arguments: argparse.Namespace, decks: Path) -> list[Line]:
     """Lines of all scenes that were asked for."""
     scenes = all_scenes()
-    names = {scene.deck for scene in scenes}
+    names = {str(scene.deck) for scene in scenes}
     unknown = [name for name in arguments.scenes or () if name not in names]
     if unknown:
         known = ", ".join(sorted(names))

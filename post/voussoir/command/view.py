@@ -81,7 +81,7 @@ def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], 
     told = read.blocks_of(number)
     depth = DEPTH * float(np.ptp(np.vstack(pictures[0].blocks), axis=0).max())
     plotter: Any = window.Plotter(off_screen=file is not None, window_size=(1200, 800))
-    shown = {"frame": pictures[-1], "block": 0}
+    shown: dict[str, Any] = {"frame": pictures[-1], "block": 0}
 
     def draw() -> None:
         frame: Frame = shown["frame"]

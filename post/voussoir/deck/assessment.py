@@ -132,11 +132,13 @@ def least_of(factor: Row | None, cases: Table | None) -> Row | None:
     """The row of the search for the load factor, or what a fixed position says against it."""
     if factor is None or cases is None or math.isnan(factor["worst_position"]):
         return factor
+    reached = {"stable": math.inf, "collapsed": 0.0}
     for row in cases.rows():
         falls = row["verdict"] == "collapsed" or row["verdict"] == "found" and row["collapses_at"] == "low"
         value = 0.0 if falls else row["critical"]
-        if not value < (1.0 - SMALLER) * {"stable": math.inf, "collapsed": 0.0}.get(
-                factor["verdict"], factor["critical"]):
+        verdict = str(factor["verdict"])
+        known = reached[verdict] if verdict in reached else float(factor["critical"])
+        if not value < (1.0 - SMALLER) * known:
             continue
         factor = {**factor, **{name: row[name] for name in _OF_FACTOR}, "worst_position": row["position"]}
         if falls:
@@ -164,7 +166,7 @@ def _at_position(text: str, place: float) -> str:
     return _TRUE.sub(f"position = {0.0 if math.isnan(place) else float(place)!r}", text)
 
 
-def _turned(found: Results | None) -> dict[str, list[float]]:
+def _turned(found: Results | None) -> dict[str, Any]:
     """Keys of a vehicle that stands worst as it drives the other way; none of one that drives as the deck says."""
     if found is None or found.case(1).get("worst_direction", "") != "backward":
         return {}

@@ -107,8 +107,9 @@ class Blocks(Deck):
         blocks = cls(**keys)
         for shapes, is_fixed, materials in ((fixed, True, 1), (polygons, False, material)):
             found, dropped = polygons_of(shapes)
-            several = isinstance(materials, Iterable) and not isinstance(materials, str)
-            numbers = list(materials) if several else [materials] * len(found)
+            given: Any = materials
+            several = isinstance(given, Iterable) and not isinstance(given, str)
+            numbers = list(given) if several else [given] * len(found)
             if len(numbers) != len(found):
                 raise ValueError(f"expected {len(found)} materials, one a polygon, got {len(numbers)}")
             for polygon, number in zip(found, numbers):

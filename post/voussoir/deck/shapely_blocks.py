@@ -10,12 +10,13 @@ from voussoir.extras import load
 _PURPOSE = "polygons"
 
 
-def polygons_of(shapes: Any) -> tuple[list, list[str]]:
+def polygons_of(shapes: Any) -> tuple[list[Any], list[str]]:
     """Polygons of a geometry or of several, and in words what is none; TypeError if something is no geometry."""
     base = load("shapely.geometry.base", _PURPOSE)
     if not isinstance(shapes, (base.BaseGeometry, Iterable)):
         raise TypeError(f"expected geometries of shapely, got {shapes!r}")
-    found, dropped = [], []
+    found: list[Any] = []
+    dropped: list[str] = []
     for number, shape in enumerate([shapes] if isinstance(shapes, base.BaseGeometry) else shapes, 1):
         if not isinstance(shape, base.BaseGeometry):
             raise TypeError(f"expected a geometry of shapely, got {shape!r}")
@@ -31,7 +32,7 @@ def polygons_of(shapes: Any) -> tuple[list, list[str]]:
     return found, dropped
 
 
-def pieces_of(polygon: Any) -> list:
+def pieces_of(polygon: Any) -> list[Any]:
     """A polygon, or the pieces without holes that upright lines through the middle of each hole make of it."""
     if not polygon.interiors:
         return [polygon]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Union
 
 #: Groups of a deck: a mapping of keys each; of &sweep a list of such mappings will do
-Groups = Mapping[str, Union[Mapping[str, Any], list]]
+Groups = Mapping[str, Union[Mapping[str, Any], list[Any]]]
 #: Names of groups and keys; a key may have the number of a joint
 _NAME = re.compile(r"[a-z]\w*", re.ASCII | re.IGNORECASE)
 _KEY = re.compile(r"[a-z]\w*(\(\d+\))?", re.ASCII | re.IGNORECASE)
@@ -72,11 +72,11 @@ def merged(groups: Groups, more: Groups) -> dict[str, Any]:
         if group == "sweep":
             joint[group] = [*_as_list(there or []), *_as_list(keys)]
         else:
-            joint[group] = {**(there or {}), **keys}
+            joint[group] = {**(there or {}), **dict(keys)}
     return joint
 
 
-def _as_list(keys: Any) -> list:
+def _as_list(keys: Any) -> list[Any]:
     """Sweeps as a list of mappings."""
     return [keys] if isinstance(keys, Mapping) else list(keys)
 

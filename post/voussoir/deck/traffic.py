@@ -127,7 +127,8 @@ def read_vehicles(file: Path) -> dict[str, Vehicle]:
                 raise ValueError(f"{place}expected one number as {key}, got {len(given)}")
             sizes.append(given[0] if given else usual)
         weights = tuple(1e3 * axle for axle in axles)
-        vehicles[name] = Vehicle(name, weights, spacings, *sizes, source=(row.get("source") or "").strip())
+        source = (row.get("source") or "").strip()
+        vehicles[name] = Vehicle(name, weights, spacings, sizes[0], sizes[1], sizes[2], source)
     if not vehicles:
         raise ValueError(f"{file}:1: error: expected a list of vehicles, got one without rows")
     return vehicles
@@ -175,7 +176,7 @@ def pass_over(
     bare = run_deck(text)
     given, usual = bare.setting("fill%height"), defaults(find_dda())
     depth = float(given) if given else 0.0
-    spread = float(bare.setting("fill%spread") or usual.get("fill%spread", 0.5)) if given else 0.0
+    spread = float(bare.setting("fill%spread") or usual.get("fill%spread") or 0.5) if given else 0.0
     effective = width if width is not None else vehicle.width(depth, spread, rule, barrel)
     keys: dict[str, object] = {
         "axles": [weight / effective for weight in vehicle.axles], "length": vehicle.length, "worst": True,

@@ -83,7 +83,7 @@ def _bodies(content: Any, is_support: bool) -> Iterator[_Body]:
         yield _Body(kind, _faces(data, kind), is_support)
 
 
-def _faces(data: dict, kind: str) -> list[np.ndarray]:
+def _faces(data: dict[str, Any], kind: str) -> list[np.ndarray]:
     """Faces of a mesh, a polyhedron or a polygon; none of what is neither."""
     if isinstance(data.get("vertex"), dict) and isinstance(data.get("face"), dict):
         default = data.get("default_vertex_attributes")
@@ -182,7 +182,7 @@ def _spread(bodies: list[_Body], way: np.ndarray) -> float:
         between = max(between, float(np.minimum(heights - low, high - heights).max()))
     low, high = np.array(ends[False] or ends[True]).T
     short = [max(one - low.max(), high.min() - two) for one, two in ends[True]] if ends[False] else []
-    return max(float(np.ptp(low)), float(np.ptp(high)), between, *short)
+    return float(max(float(np.ptp(low)), float(np.ptp(high)), between, *short))
 
 
 def _upright_axes(way: np.ndarray) -> np.ndarray:

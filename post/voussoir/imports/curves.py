@@ -82,7 +82,7 @@ class Spline:
                 ratio = np.where(high > low, (u - low) / width, 0.0)
                 points[j] = (1.0 - ratio) * points[j - 1] + ratio * points[j]
                 weights[j] = (1.0 - ratio) * weights[j - 1] + ratio * weights[j]
-        return points[p] / weights[p]
+        return np.asarray(points[p] / weights[p])
 
     def chords(self, low: float, high: float, tolerance: float) -> float:
         """Number of chords between two shares that stay within the tolerance, by second differences."""
@@ -108,7 +108,8 @@ class Points:
         first = np.searchsorted(self._x, line.real.min() - reach, "left")
         last = np.searchsorted(self._x, line.real.max() + reach, "right")
         found = self._all[first:last]
-        return found[(found.imag >= line.imag.min() - reach) & (found.imag <= line.imag.max() + reach)]
+        inside = (found.imag >= line.imag.min() - reach) & (found.imag <= line.imag.max() + reach)
+        return np.asarray(found[inside])
 
 
 def count_chords(curve: Curve, low: float, high: float, tolerance: float) -> int:

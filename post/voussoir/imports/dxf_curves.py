@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 
@@ -154,7 +154,7 @@ def _polyline(entry: Entry, vertices: list[Entry]) -> Shape | None:
         bool(flags & 1), is_open_form)
 
 
-def _chain(points: list, bulges: list[float], axes: np.ndarray, is_closed: bool, may_close: bool) -> Shape:
+def _chain(points: list[Any], bulges: list[float], axes: np.ndarray, is_closed: bool, may_close: bool) -> Shape:
     """Lines and arcs from point to point; a bulge is the tangent of a quarter of the turn."""
     pairs = list(zip(points, points[1:] + points[:1], bulges))[: None if is_closed else -1]
     parts: list[Union[LinePart, ArcPart, SplinePart]] = []

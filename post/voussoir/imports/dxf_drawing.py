@@ -88,7 +88,9 @@ class Drawing:
             total += known[name] * _repeats(entry, 70) * _repeats(entry, 71)
         return total
 
-    def _placed(self, entries: list[Entry], placement: Placement, layer: str) -> Iterator:
+    def _placed(
+        self, entries: list[Entry], placement: Placement, layer: str
+    ) -> Iterator[tuple[Entry, list[Entry], Placement, str]]:
         """Entities in a placement; those on layer 0 are on the layer of the insert."""
         number = 0
         while number < len(entries):

@@ -35,7 +35,7 @@ class Placement:
 
     def points(self, given: np.ndarray) -> np.ndarray:
         """Points (n, 3) of points."""
-        return given @ self.matrix.T + self.shift
+        return np.asarray(given @ self.matrix.T + self.shift)
 
     def inserts(self, insert: Entry, base: tuple[float, float, float], columns: int, rows: int) -> Iterator[Placement]:
         """Placements of a block that is inserted in this one, columns and rows of it."""

@@ -72,7 +72,8 @@ def _onto_edges(rings: list[list[complex]], reach: float) -> dict[complex, compl
 def _ring(ring: Any) -> list[complex]:
     """Corners of a ring, each once."""
     points = np.asarray(ring.coords)[:-1]
-    return (points[:, 0] + 1j * points[:, 1]).tolist()
+    found: list[complex] = (points[:, 0] + 1j * points[:, 1]).tolist()
+    return found
 
 
 def _once(ring: list[complex]) -> list[complex]:

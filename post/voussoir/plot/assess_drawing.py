@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -136,16 +137,17 @@ def draw_dimension(axes: Axes, dimension: Dimension, size: float, pen: float) ->
     """Draw a line with its length."""
     away = ROOM * size * np.array(dimension.away)
     start, end = np.array(dimension.start) + away, np.array(dimension.end) + away
-    style = {"arrowstyle": "<->", "color": INK[0], "linewidth": 0.8 * pen, "shrinkA": 0, "shrinkB": 0,
+    style: dict[str, Any] = {"arrowstyle": "<->", "color": INK[0], "linewidth": 0.8 * pen, "shrinkA": 0, "shrinkB": 0,
              "mutation_scale": 6}
     short = dimension.length < 0.12 * size
     if short:
         style["arrowstyle"] = "|-|,widthA=0.2,widthB=0.2"
-    axes.annotate("", start, end, arrowprops=style, zorder=8)
+    axes.annotate("", (start[0], start[1]), (end[0], end[1]), arrowprops=style, zorder=8)
     flat = abs(end[1] - start[1]) < abs(end[0] - start[0])
     middle = 0.5 * (start + end)
     text = quantity(dimension.length, "m")
     offset, ha, va = ((0, -2), "center", "top") if flat else ((3, 0), "left", "center")
     axes.annotate(
-        text, middle, xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize="small", zorder=9,
+        text, (middle[0], middle[1]), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize="small",
+        zorder=9,
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85} if short else None)

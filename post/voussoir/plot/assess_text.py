@@ -115,7 +115,7 @@ def cases_of(found: Assessment) -> list[tuple[str, ...]]:
     unit = force_unit(found.own)
     heads = ("Load case", f"Live load [k{unit}]", "Verdict", "Load factor [-]", f"Thrust at the crown [k{unit}]")
     dead = "Dead load of masonry" + (" and fill" if found.own.setting("fill%height") else "")
-    rows = [heads, (dead, "0", str(found.dead["verdict"]), "-", thrust_range(found.dead))]
+    rows: list[tuple[str, ...]] = [heads, (dead, "0", str(found.dead["verdict"]), "-", thrust_range(found.dead))]
     if found.factor is None:
         return rows
     live = sum(weight for _, weight in found.axles)

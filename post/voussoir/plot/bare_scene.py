@@ -97,7 +97,7 @@ def read_blocks(file: Path) -> tuple[list[Block], Source]:
     if done.returncode != 0:
         raise DdaError(done.stderr.replace(str(file.absolute()), str(file)).strip())
     text = read_text(file)
-    blocks = []
+    blocks: list[Block] = []
     for words, rows in entries_of(text):
         if words[0] == "block":
             corners = np.array([row[:2] for row in rows])
@@ -115,7 +115,9 @@ def cut_blocks(file: Path) -> tuple[list[Block], list[int], str]:
         if done.returncode != 0:
             raise DdaError(done.stderr.strip())
         rows = list(csv.DictReader(read_text(table).splitlines()))
-    blocks, materials, held = [], [], 0
+    blocks: list[Block] = []
+    materials: list[int] = []
+    held = 0
     for row in rows:
         x, y = ([float(word) for word in row[name].split(";")] for name in ("corner_x", "corner_y"))
         corners = np.column_stack((x, y))

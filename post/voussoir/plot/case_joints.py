@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -90,7 +92,7 @@ class JointMarks:
     def _middle(self, name: str) -> np.ndarray:
         """Points of the joints, halfway between their two blocks: (n, 2) [m]."""
         one, other = self.sides[name]
-        return 0.5 * (one + other)
+        return np.asarray(0.5 * (one + other))
 
     @property
     def mark_size(self) -> float:
@@ -136,7 +138,7 @@ class JointMarks:
 
     def draw_states(self, axes: Axes) -> list[Artist]:
         """Draw the lines of joints in the colours of what they do; gives the entries of the legend."""
-        entries = []
+        entries: list[Artist] = []
         width = max(0.8, 1.6 * self.pen)
         kinds = (
             (self.opens & ~self.slides, INK[0], "joint that opens"),
@@ -163,7 +165,7 @@ class JointMarks:
             mark = "hinge" if kind != "open" and not self.scene.is_arch else kind
             if not mask.any():
                 continue
-            style = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **MARKS[mark]}
+            style: dict[str, Any] = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **MARKS[mark]}
             axes.plot(*self._middle(at)[mask].T, linestyle="none", zorder=6, **style)
             if mark not in seen:
                 entries.append(entry(MEANINGS[mark] if self.collapses else TOUCHES[mark], **style))

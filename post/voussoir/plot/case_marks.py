@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -19,14 +21,14 @@ LOAD_LENGTH, MOST_VALUES = 0.12, 12
 #: Colours of bars and of live loads
 BAR, LIVE = "#7a3b8f", "#1b7a3d"
 #: Marks of points that are held along both directions, x or y
-_HELD = {
+_HELD: dict[str, tuple[dict[str, Any], str]] = {
     "": ({"marker": "^", "markerfacecolor": INK[0]}, "held point"),
     "x": ({"marker": ">", "markerfacecolor": "white"}, "point held along x"),
     "y": ({"marker": "^", "markerfacecolor": "white"}, "point held along y"),
 }
 
 
-def entry(label: str, **style) -> Line2D:
+def entry(label: str, **style: Any) -> Line2D:
     """An entry of a legend."""
     return Line2D([], [], **({"linestyle": "none", "label": label} | style))
 
@@ -42,7 +44,7 @@ def load_arrows(source: Source, size: float, motion: Motion) -> tuple[np.ndarray
 def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: float = 1.0) -> list[Artist]:
     """Draw the forces that the deck puts on points; gives the entries of the legend."""
     tails, tips = load_arrows(source, size, motion)
-    entries = []
+    entries: list[Artist] = []
     for live, color, words in ((False, INK[0], "load"), (True, LIVE, "live load, before its factor")):
         chosen = [number for number, load in enumerate(source.loads) if load[2] == live and any(load[1])]
         for number in chosen:
@@ -62,7 +64,7 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
 
 def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> list[Artist]:
     """Draw points and lines that are held, and bars; gives the entries of the legend."""
-    entries = []
+    entries: list[Artist] = []
     for along, (mark, words) in _HELD.items():
         ends = [(motion.placed(pair[0]), motion.placed(pair[1])) for pair in source.held if pair[2] == along]
         for start, end in ends:
@@ -71,8 +73,8 @@ def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> l
                 markeredgecolor=INK[0], **mark)
         if ends:
             entries.append(entry(words, markeredgecolor=INK[0], markersize=6 * pen, **mark))
-    for ends in source.bars:
-        placed = [motion.placed(end) for end in ends]
+    for bar in source.bars:
+        placed = [motion.placed(end) for end in bar]
         axes.plot(*zip(*placed), color=BAR, linewidth=1.7 * pen, marker="o", markersize=3 * pen, zorder=7)
     if source.bars:
         entries.append(entry("bar", linestyle="-", color=BAR, linewidth=1.7 * pen, marker="o", markersize=3 * pen))
@@ -84,11 +86,11 @@ def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> l
 def draw_water(axes: Axes, source: Source) -> list[Artist]:
     """Draw lines of heads, and faces that let waves out; gives the entries of the legend."""
     limits = axes.axis()
-    styles = (
+    styles: tuple[tuple[Any, str, dict[str, Any]], ...] = (
         (source.water, "line of heads", {"color": "#1f77b4", "linewidth": 1.6, "linestyle": "-."}),
         (source.absorbing, "face that lets waves out", {"color": INK[0], "linewidth": 2.2, "linestyle": ":"}),
     )
-    entries = []
+    entries: list[Artist] = []
     for lines, words, style in styles:
         for points in lines:
             axes.plot(*zip(*points), zorder=6, **style)
@@ -104,8 +106,9 @@ def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None
     placed = [(block.number, shape) for block, shape in zip(scene.blocks, shapes)]
     placed += [(block.number, block.corners) for block in scene.supports]
     for number, shape in placed:
+        middle = shape.mean(axis=0)
         axes.text(
-            *shape.mean(axis=0), str(number), fontsize="x-small", ha="center", va="center", zorder=10, clip_on=True,
+            middle[0], middle[1], str(number), fontsize="x-small", ha="center", va="center", zorder=10, clip_on=True,
             path_effects=[withStroke(linewidth=2.0, foreground="white")])
 
 

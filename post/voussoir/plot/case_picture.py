@@ -112,7 +112,7 @@ def draw_supports(axes: Axes, supports: list[np.ndarray], pen: float = 1.0) -> l
     """Draw what cannot move; gives the entries of the legend."""
     if not supports:
         return []
-    style = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6 * pen, "hatch": "/////"}
+    style: dict[str, Any] = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6 * pen, "hatch": "/////"}
     axes.add_collection(PolyCollection(supports, **style, zorder=0))
     return [Patch(**style, label="fixed")]
 
@@ -135,7 +135,7 @@ def shape_words(scene: CaseScene, factor: float) -> str:
 
 def draw_beginning(axes: Axes, shapes: list[np.ndarray], words: str, pen: float = 1.0) -> list[Artist]:
     """Draw where blocks that have moved were; gives the entries of the legend."""
-    style = {"linestyle": (0, (3, 2)), "linewidth": 0.6 * pen}
+    style: dict[str, Any] = {"linestyle": (0, (3, 2)), "linewidth": 0.6 * pen}
     axes.add_collection(
         PolyCollection(
             shapes, facecolors="none", edgecolors=INK[3], linewidths=style["linewidth"],
@@ -156,7 +156,7 @@ def draw_blocks(
     several = len({material for material, _ in groups}) > 1
     entries: list[Artist] = []
     for (material, held), chosen in sorted(groups.items()):
-        style = {
+        style: dict[str, Any] = {
             "facecolor": TINTS[(material - 1) % len(TINTS)],
             "edgecolor": "#777777",
             "linewidth": 0.7 * pen,
@@ -174,7 +174,7 @@ def shade_blocks(
     """Draw the blocks that can move in shades of how far they move; gives the entries of the legend."""
     moves = np.array([float(np.hypot(*block.displacement.T).max()) for block in scene.blocks])
     colors = SHADES(moves / (moves.max() or 1.0))
-    style = {"edgecolor": "#8a8a8a", "linewidth": 0.6 * pen}
+    style: dict[str, Any] = {"edgecolor": "#8a8a8a", "linewidth": 0.6 * pen}
     axes.add_collection(PolyCollection(
         shapes, facecolors=colors, edgecolors=style["edgecolor"], linewidths=style["linewidth"], zorder=1.5))
     named = ((0.0, "blocks that do not move"), (1.0, f"blocks that move furthest, drawn {furthest}"))
@@ -197,7 +197,7 @@ def places_of(way: Table, motion: Motion) -> np.ndarray:
     """Where the picture shows a measured point after each step: (n, 2) [m]."""
     moves = np.column_stack((way["u"], way["v"]))
     start = np.array([way["x"][0], way["y"][0]]) - moves[0]
-    return start + motion.shown * moves
+    return np.asarray(start + motion.shown * moves)
 
 
 def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -> list[Artist]:

@@ -14,9 +14,8 @@ Row = dict[str, Any]
 def title_of(row: Row, run: Results | None = None) -> str:
     """The deck's title if it has one, what tells the case from others, its verdict: a line each."""
     title = run.setting("scene%title") if run is not None else None
-    several = run is not None and len(run.cases) > 1
     given = ", ".join(_given(row, run))
-    if several:
+    if run is not None and len(run.cases) > 1:
         given = f"Case {row['case']} of {len(run.cases)}: {given}"
     lines = [title, given, _ending(row, run)]
     return "\n".join(_plain(line) for line in lines if line)

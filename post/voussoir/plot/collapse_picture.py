@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
@@ -16,7 +18,7 @@ from voussoir.results import Frame, Results, Table
 MECHANISM_SIZE, GROWTH = 0.08, 10
 
 #: Marks of hinges, of joints that part, and of slip
-MARKS = {
+MARKS: dict[str, dict[str, Any]] = {
     "intrados": {"marker": "o", "markerfacecolor": INK[1], "markeredgecolor": INK[0]},
     "extrados": {"marker": "s", "markerfacecolor": "white", "markeredgecolor": INK[2]},
     "hinge": {"marker": "o", "markerfacecolor": INK[1], "markeredgecolor": INK[0]},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
@@ -128,8 +130,8 @@ def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, 
     for value, (_, rows) in zip(values, groups):
         rows = rows.take(np.argsort(rows[column], kind="stable"))
         axes.plot(
-            rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none", marker=".", markersize=5
-        )
+            rows[column], rows["critical"], color=scale.to_rgba(np.array(value)), linestyle="none", marker=".",
+            markersize=5)
     axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
     figure.colorbar(scale, ax=axes, label=axis_label(other))
@@ -142,7 +144,7 @@ def _searched(run: Results) -> str:
     return "critical " + axis_label(name)
 
 
-def _values(cases: Table, name: str) -> set:
+def _values(cases: Table, name: str) -> set[Any]:
     column = np.unique(cases[name])
     return set(column[~np.isnan(column)].tolist() if column.dtype.kind == "f" else column.tolist())
 

@@ -6,6 +6,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
@@ -24,7 +25,7 @@ STONE = "#ececec"
 #: Fill of masonry by its material, that of the deck first
 TINTS = (STONE, "#d9c9ac", "#bccfdd", "#dbbfb6", "#c8d8bd", "#b9b9b9")
 
-_SETTINGS = {
+_SETTINGS: dict[str, Any] = {
     "figure.dpi": 100, "savefig.dpi": 200, "font.size": 10, "axes.labelsize": 11, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
     "legend.frameon": False, "lines.linewidth": 1.6, "mathtext.fontset": "stix", "font.family": "STIXGeneral",
@@ -65,7 +66,8 @@ def closer(
 @contextmanager
 def house_style(font: float = 10.0) -> Iterator[None]:
     """Draw within this context, in type of this size [points]."""
-    with plt.rc_context({**_SETTINGS, "font.size": font, "axes.labelsize": 1.1 * font}):
+    settings: Any = {**_SETTINGS, "font.size": font, "axes.labelsize": 1.1 * font}
+    with plt.rc_context(settings):
         yield
 
 

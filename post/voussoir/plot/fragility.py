@@ -28,7 +28,7 @@ class Lognormal:
 
     def __call__(self, strength: np.ndarray) -> np.ndarray:
         """Probability of collapse at some strengths."""
-        return _normal(np.log(np.asarray(strength) / self.median) / self.dispersion)
+        return np.asarray(_normal(np.log(np.asarray(strength) / self.median) / self.dispersion))
 
 
 def fit_shares(strength: np.ndarray, collapsed: np.ndarray, total: np.ndarray) -> Lognormal | None:

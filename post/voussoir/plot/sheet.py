@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 
 from voussoir.plot.figure_style import Picture
 
@@ -51,8 +54,8 @@ class Sheet:
 
     def pen(self, blocks: int = 1) -> float:
         """Width of lines over that of a picture of `WIDTH` with few blocks."""
-        crowd = min(1.0, (60.0 / max(blocks, 1)) ** 0.3)
-        return max(THINNEST, (self.width / WIDTH) ** 0.5 * crowd)
+        crowd: float = min(1.0, (60.0 / max(blocks, 1)) ** 0.3)
+        return float(max(THINNEST, (self.width / WIDTH) ** 0.5 * crowd))
 
     def scale(self, low: np.ndarray, high: np.ndarray) -> float:
         """Points per metre of a drawing of this piece of plane, close to what `finish` makes of it."""
@@ -61,7 +64,7 @@ class Sheet:
     def drawing_width(self, low: np.ndarray, high: np.ndarray) -> float:
         """Width of the drawing of a piece of plane [points]."""
         wide, tall = high - low
-        share = BESIDE if self.legend and tall > TALL * wide else 1.0
+        share: float = BESIDE if self.legend and tall > TALL * wide else 1.0
         inner = POINTS * self.width - 2.0 * EDGE
         return float(min(share * inner, MOST_HEIGHT * inner * wide / tall))
 
@@ -85,16 +88,17 @@ class Sheet:
         wide, tall = figure.get_size_inches()
         # narrow charts are higher in proportion: their type is not smaller
         figure.set_size_inches(self.width, self.width * tall / wide * (WIDTH / self.width) ** 0.2)
-        figure.exact_size = True
+        if isinstance(figure, Picture):
+            figure.exact_size = True
         if not self.title:
-            if figure._suptitle is not None:
+            if getattr(figure, "_suptitle", None) is not None:
                 figure.suptitle("")
             for axes in figure.axes:
                 axes.set_title("")
         if not self.legend:
             for axes in figure.axes:
-                if axes.get_legend() is not None:
-                    axes.get_legend().remove()
+                if (legend := axes.get_legend()) is not None:
+                    legend.remove()
         return figure
 
     def finish(self, figure: Figure, axes: Axes, title: str = "", entries: Sequence[Artist] = ()) -> Figure:
@@ -133,9 +137,16 @@ class Sheet:
         return figure
 
 
+def renderer_of(figure: Figure) -> RendererBase:
+    """What measures the texts of a figure."""
+    canvas: Any = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
+    renderer: RendererBase = canvas.get_renderer()
+    return renderer
+
+
 def overhang(figure: Figure, axes: Axes) -> tuple[float, float, float, float]:
     """How far marks and texts reach beyond their axes: left, below, right and above [points]."""
-    renderer = figure.canvas.get_renderer()
+    renderer = renderer_of(figure)
     axes.apply_aspect()
     box, whole = axes.get_position().transformed(figure.transFigure), axes.get_tightbbox(renderer)
     if whole is None:
@@ -149,7 +160,7 @@ def overhang(figure: Figure, axes: Axes) -> tuple[float, float, float, float]:
 def text_size(figure: Figure, words: str, type_size: float) -> tuple[float, float]:
     """Width and height of a text [points]."""
     text = figure.text(0.0, 0.0, words, fontsize=type_size, linespacing=1.15)
-    box = text.get_window_extent(figure.canvas.get_renderer())
+    box = text.get_window_extent(renderer_of(figure))
     text.remove()
     return box.width * POINTS / figure.dpi, box.height * POINTS / figure.dpi
 
@@ -168,7 +179,7 @@ def wrapped(figure: Figure, line: str, width: float, type_size: float) -> str:
 
 def make_legend(
     figure: Figure, entries: Sequence[Artist], width: float, type_size: float, height: float, most_columns: int
-) -> tuple[Artist, tuple[float, float]]:
+) -> tuple[Legend, tuple[float, float]]:
     """The legend in that number of columns which makes it lowest, and its size [points].
 
     Its type is smaller than that of the picture, and becomes smaller still where it would be higher than the drawing.
@@ -183,7 +194,7 @@ def make_legend(
                 handles=entries, labels=names, ncols=columns, fontsize=size, loc="lower left", borderpad=0.0,
                 borderaxespad=0.0, labelspacing=0.35, handlelength=2.0, handletextpad=0.6, columnspacing=1.2,
                 bbox_to_anchor=(0.0, 0.0))
-            box = legend.get_window_extent(figure.canvas.get_renderer())
+            box = legend.get_window_extent(renderer_of(figure))
             found = (box.height * POINTS / figure.dpi, columns, names, box.width * POINTS / figure.dpi)
             legend.remove()
             if found[3] <= 1.001 * width and (best is None or found[0] < 0.95 * best[0]):

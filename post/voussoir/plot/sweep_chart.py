@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 
@@ -195,7 +196,7 @@ def legend_below(axes: Axes, columns: int, entries: list[Patch] | None = None, t
         **chosen, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=axes.transAxes + drop, ncols=columns,
         fontsize="small", columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
     if title:
-        legend.set_title(title, {"size": "small"})
+        legend.set_title(title, FontProperties(size="small"))
 
 
 def note(axes: Axes, lost: int, count: int, column: str) -> None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["Block", "DamagedTable", "Frame", "Results", "Table", "read"]
 
 
-class Table(Mapping):
+class Table(Mapping[str, np.ndarray]):
     """Columns of equal length by their names.
 
     As of a data frame, `len` is the number of rows, and iteration gives the names of the columns.
@@ -64,7 +64,7 @@ class Table(Mapping):
             return False
         return all(map(_equal, self.values(), other.values()))
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return _table_view.as_text(self.columns, len(self))
@@ -72,15 +72,15 @@ class Table(Mapping):
     def _repr_html_(self) -> str:
         return _table_view.as_html(self.columns, len(self))
 
-    def keys(self) -> KeysView:
+    def keys(self) -> KeysView[str]:
         """Names of the columns."""
         return self.columns.keys()
 
-    def values(self) -> ValuesView:
+    def values(self) -> ValuesView[np.ndarray]:
         """The columns."""
         return self.columns.values()
 
-    def items(self) -> ItemsView:
+    def items(self) -> ItemsView[str, np.ndarray]:
         """Names and columns."""
         return self.columns.items()
 
@@ -363,7 +363,8 @@ def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:
     from voussoir.plot.figure_style import house_style
 
     with house_style():
-        return draw(*arguments, **options)
+        picture: Picture = draw(*arguments, **options)
+    return picture
 
 
 def _equal(left: np.ndarray, right: np.ndarray) -> bool:

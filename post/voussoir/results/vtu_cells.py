@@ -18,9 +18,10 @@ def cell_field(path: Path, name: str) -> np.ndarray:
     head, _, data = whole.partition(_DATA)
     cells = re.search(r"<CellData.*?</CellData>", head.decode(), re.DOTALL)
     entry = re.search(rf'<DataArray[^>]*Name="{name}"[^>]*>', cells[0]) if cells else None
-    if entry is None:
+    offset = re.search(r'offset="(\d+)"', entry[0]) if entry else None
+    if entry is None or offset is None:
         raise ValueError(f"{path}: expected a field {name} of the cells, got none")
-    start = int(re.search(r'offset="(\d+)"', entry[0])[1])
+    start = int(offset[1])
     columns = int((re.search(r'NumberOfComponents="(\d+)"', entry[0]) or (0, 1))[1])
     data = data[data.index(b"_") + 1 :]
     length = int(np.frombuffer(data, "<u8", 1, start)[0])

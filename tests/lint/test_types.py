@@ -1,0 +1,34 @@
+"""Types of the packages that users call are complete: mypy in its strict mode finds nothing."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+POST = Path(__file__).resolve().parents[2] / "post"
+#: Packages whose types are complete
+COMPLETE = ("campaign", "command", "deck", "imports", "plot", "results")
+
+
+def has_typed_packages() -> bool:
+    """Whether mypy is there, and packages with stubs of their own: older ones leave types out."""
+    if not all(importlib.util.find_spec(name) for name in ("mypy", "numpy", "matplotlib")):
+        return False
+    import matplotlib
+    import numpy
+
+    versions = [tuple(int(part) for part in module.__version__.split(".")[:2]) for module in (numpy, matplotlib)]
+    return versions[0] >= (2, 2) and versions[1] >= (3, 8)
+
+
+def test_types_are_complete() -> None:
+    if not has_typed_packages():
+        pytest.skip("mypy with numpy 2.2 and matplotlib 3.8 is not installed")
+    words = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", "/dev/null"]
+    done = subprocess.run([*words, "-p", "voussoir"], cwd=POST, capture_output=True, text=True)
+    places = tuple(f"voussoir/{name}/" for name in COMPLETE)
+    assert [line for line in done.stdout.splitlines() if line.startswith(places) and ": error: " in line] == []
