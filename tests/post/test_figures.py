@@ -111,6 +111,24 @@ def test_all_stands_on_the_sheet_and_the_legend_is_lower_than_the_drawing(arch, 
             assert box.y0 >= whole.y0 - 1.0 and box.y1 <= whole.y1 + 1.0
 
 
+@pytest.mark.parametrize(("height", "width"), [(12, 80), (12, 40), (2, 40), (2, 80)])
+def test_tall_drawings_have_their_legend_beside_where_there_is_room(tmp_path: Path, height: int, width: int) -> None:
+    column = wall(0, 3) + "".join(f"block\n1 {n}\n2 {n}\n2 {n + 1}\n1 {n + 1}\n" for n in range(height))
+    (tmp_path / "column.blocks").write_text(column)
+    run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'column.blocks' /\n"
+                            "&search parameter = 'horizontal_coefficient' /\n")
+    with house_style(7.0):
+        figure = draw_case(run, 1, sheet=Sheet(width / 25.4))
+    figure.draw_without_rendering()
+    renderer = figure.canvas.get_renderer()
+    boxes = [figure.axes[0].get_tightbbox(renderer), figure.legends[0].get_window_extent(renderer),
+             figure._suptitle.get_window_extent(renderer)]
+    for number, box in enumerate(boxes):
+        assert box.x0 >= -1.0 and box.x1 <= figure.bbox.x1 + 1.0
+        assert box.y0 >= -1.0 and box.y1 <= figure.bbox.y1 + 1.0
+        assert not any(box.shrunk(0.98, 0.98).overlaps(other) for other in boxes[:number])
+
+
 def test_type_has_the_size_asked_for_and_legends_are_smaller(arch) -> None:
     with house_style(7.0):
         figure = draw_case(arch, 1, sheet=Sheet(80 / 25.4))

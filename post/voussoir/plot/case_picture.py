@@ -219,7 +219,7 @@ def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray, pen: float = 1.0) 
     """Draw a bar of a round length below the picture."""
     length = rounded(0.2 * float(high[0] - low[0]))
     room = 0.02 * float((high - low).max())
-    start, level = low[0] + room, low[1]
+    start, level = low[0] + room, low[1] - room
     axes.plot(
         [start, start + length], [level, level], color=INK[0], linewidth=1.8 * pen, solid_capstyle="butt",
         clip_on=False, zorder=9)

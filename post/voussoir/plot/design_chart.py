@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.field_chart import draw_field
-from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.figure_style import INK, Picture, legend_below
 from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Results, Table
@@ -117,7 +117,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
         axes.plot(
             [], [], color=INK[0], linestyle="none", marker="+", markersize=9, markeredgewidth=0.9,
             label="limit analysis, same polygons")
-    axes.legend()
+    legend_below(axes, 1 if len(groups) == 1 else 2)
     return figure
 
 

@@ -9,8 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.transforms import ScaledTranslation
 
 from voussoir.files import fresh
 
@@ -69,6 +72,17 @@ def house_style(font: float = 10.0) -> Iterator[None]:
     settings: Any = {**_SETTINGS, "font.size": font, "axes.labelsize": 1.1 * font}
     with plt.rc_context(settings):
         yield
+
+
+def legend_below(axes: Axes, columns: int, entries: list[Artist] | None = None, title: str = "") -> None:
+    """A legend in small type below the label of the axis."""
+    drop = ScaledTranslation(0.0, -4.3 * plt.rcParams["font.size"] / 72.0, axes.figure.dpi_scale_trans)
+    chosen = {"handles": entries} if entries else {}
+    legend = axes.legend(
+        **chosen, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=axes.transAxes + drop, ncols=columns,
+        fontsize="small", columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
+    if title:
+        legend.set_title(title, FontProperties(size="small"))
 
 
 #: What files say of their making, left out for equal bytes at every run

@@ -26,6 +26,8 @@ TALL = 1.15
 MOST_HEIGHT = 1.1
 #: Share of the width for a drawing with its legend beside it
 BESIDE = 0.58
+#: Least width of a legend beside a drawing over the size of the type
+LEAST_COLUMN = 11.0
 #: Least height of a drawing over the width of its picture
 LEAST_HEIGHT = 0.16
 #: Room at the edges, and between drawing and texts [points]
@@ -107,11 +109,14 @@ class Sheet:
         low, high = (np.array(ends) for ends in zip(axes.get_xlim(), axes.get_ylim()))
         left, below, right, above = overhang(figure, axes)
         wide = self.drawing_width(low, high)
+        inner = full - 2.0 * EDGE
         beside = self.legend and bool(entries) and high[1] - low[1] > TALL * (high[0] - low[0])
-        room = (BESIDE if beside else 1.0) * (full - 2.0 * EDGE) - left - right
-        wide = min(wide, room)
+        beside = beside and inner - wide - left - right - 2.0 * GAP >= LEAST_COLUMN * type_size
+        if not beside:
+            wide = min(inner, MOST_HEIGHT * inner * float((high[0] - low[0]) / (high[1] - low[1])))
+        wide = min(wide, (BESIDE if beside else 1.0) * inner - left - right)
         tall = max(wide * float((high[1] - low[1]) / (high[0] - low[0])), LEAST_HEIGHT * full)
-        column = full - 2.0 * EDGE - (wide + left + right + 2.0 * GAP if beside else 0.0)
+        column = inner - (wide + left + right + 2.0 * GAP if beside else 0.0)
         legend, legend_size = None, (0.0, 0.0)
         if self.legend and entries:
             most = tall + above + below
@@ -125,12 +130,13 @@ class Sheet:
         height = body + title_height + 2.0 * EDGE
         figure.set_size_inches(self.width, height / POINTS)
         top = height - EDGE - title_height
-        across = EDGE + left + (0.0 if beside else 0.5 * (full - 2.0 * EDGE - left - right - wide))
-        axes.set_position((across / full, (top - above - tall) / height, wide / full, tall / height))
+        across = EDGE + left + (0.0 if beside else 0.5 * (inner - left - right - wide))
+        sink = 0.5 * (body - drawn) if beside else 0.0
+        axes.set_position((across / full, (top - sink - above - tall) / height, wide / full, tall / height))
         if words:
             figure.suptitle(words, x=0.5, y=1.0 - EDGE / height, va="top", fontsize=type_size, linespacing=1.15)
         if legend:
-            place = (1.0 - (EDGE + legend_size[0]) / full, (top - 0.5 * (drawn + legend_size[1])) / height)
+            place = (1.0 - (EDGE + legend_size[0]) / full, (top - 0.5 * (body + legend_size[1])) / height)
             if not beside:
                 place = (0.5 * (1.0 - legend_size[0] / full), EDGE / height)
             legend.set_bbox_to_anchor(place, transform=figure.transFigure)

@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from voussoir.deck.study import Study
-from voussoir.plot.figure_style import INK, Picture
-from voussoir.plot.sweep_chart import legend_below
+from voussoir.plot.figure_style import INK, Picture, legend_below
 from voussoir.plot.units import axis_label
 
 _MARKERS = "osD^vP*X"

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
-from matplotlib.transforms import ScaledTranslation
 
 from voussoir.plot.design_chart import MOST_CURVES, ChartError, groups_of, swept_columns
-from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.figure_style import INK, Picture, legend_below
 from voussoir.plot.units import axis_label, name_of
 from voussoir.results import Results, Table
 
@@ -186,17 +183,6 @@ def linked(run: Results, name: str, key: str) -> bool:
     """Whether a column is a function of a swept key, as in a linked sweep."""
     pairs = set(zip(run.cases[key].tolist(), run.cases[name].tolist()))
     return len(pairs) == len(set(run.cases[key].tolist()))
-
-
-def legend_below(axes: Axes, columns: int, entries: list[Patch] | None = None, title: str = "") -> None:
-    """A legend in small type below the label of the axis."""
-    drop = ScaledTranslation(0.0, -3.6 * plt.rcParams["font.size"] / 72.0, axes.figure.dpi_scale_trans)
-    chosen = {"handles": entries} if entries else {}
-    legend = axes.legend(
-        **chosen, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=axes.transAxes + drop, ncols=columns,
-        fontsize="small", columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
-    if title:
-        legend.set_title(title, FontProperties(size="small"))
 
 
 def note(axes: Axes, lost: int, count: int, column: str) -> None:
