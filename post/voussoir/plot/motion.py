@@ -31,15 +31,20 @@ class Motion:
     def carried(self, points: np.ndarray, blocks: np.ndarray) -> np.ndarray:
         """Places in the picture of points of tables, each of one block: (n, 2) [m]."""
         moved = np.array(points, dtype=float)
-        for number in np.unique(blocks):
-            field = self.fields.get(int(number))
-            if field is None or self.shown == self.told:
-                continue
-            mine = blocks == number
-            # the table has p + told u(p): p is found from it
-            slope = np.eye(2) + self.told * field[:2]
-            first = (moved[mine] - self.told * field[2]) @ np.linalg.inv(slope)
-            moved[mine] = first + self.shown * (np.column_stack((first, np.ones(len(first)))) @ field)
+        if self.shown == self.told or not self.fields:
+            return moved
+        numbers = np.array(sorted(self.fields))
+        laws = np.array([self.fields[number] for number in numbers.tolist()])
+        row = np.minimum(np.searchsorted(numbers, blocks), len(numbers) - 1)
+        goes = numbers[row] == blocks
+        law, there = laws[row[goes]], moved[goes]
+        # the table has p + told u(p), with u = p A + c: p is found from it
+        a, b, c, d = (self.told * law[:, i, j] + (i == j) for i in (0, 1) for j in (0, 1))
+        x, y = (there - self.told * law[:, 2]).T
+        det = a * d - b * c
+        first = np.column_stack(((x * d - y * c) / det, (y * a - x * b) / det))
+        shift = first[:, :1] * law[:, 0] + first[:, 1:] * law[:, 1] + law[:, 2]
+        moved[goes] = first + self.shown * shift
         return moved
 
     def placed(self, point: tuple[float, float]) -> tuple[float, float]:
