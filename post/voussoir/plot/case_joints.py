@@ -25,8 +25,8 @@ FORCE_LENGTH, SLIP_LENGTH = 0.10, 0.03
 MOST_MARKS = 40
 #: Median distance of marks below which they run into one another, least and greatest size of marks [points]
 APART, SMALLEST, LARGEST = 5.0, 2.5, 6.5
-#: Least width of a thrust line [points]
-THINNEST_THRUST = 0.9
+#: Least widths of a thrust line and of coloured joints [points]
+THINNEST_THRUST, THINNEST_STATE = 0.9, 0.35
 #: More joints than these have no forces unless they are asked for
 MOST_FORCES = 150
 #: What the marks mean where nothing collapses
@@ -139,7 +139,7 @@ class JointMarks:
     def draw_states(self, axes: Axes) -> list[Artist]:
         """Draw the lines of joints in the colours of what they do; gives the entries of the legend."""
         entries: list[Artist] = []
-        width = max(0.8, 1.6 * self.pen)
+        width = float(np.clip(0.25 * self.thickness, THINNEST_STATE, max(0.8, 1.6 * self.pen)))
         kinds = (
             (self.opens & ~self.slides, INK[0], "joint that opens"),
             (self.slides, INK[2], "joint that slides" if self.collapses or self.scene.moves
