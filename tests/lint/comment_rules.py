@@ -14,20 +14,20 @@ SUBJECT = re.compile(r"^[a-z0-9_,/ -]+: ([a-z-]+) \S")
 SUBJECT_LENGTH = 65
 #: First words of a subject: what a change does. Other plain verbs join the list as they are needed
 VERBS = frozenset("""
-accept accumulate add adopt align allow apply assemble assert average avoid balance bound break build bump cache
-call cap change check choose clamp clean clear clip close collect combine compare compile compress compute condense
+accept accumulate add adopt align allow apply assemble assert average avoid balance bound break build bump cache call
+cap change check choose clamp clean clear clip close collect combine compare compile complete compress compute condense
 convert copy count cover cut damp decide decouple defer define delete derive describe detect disable document draw
-drop eliminate enable end ensure enter estimate evaluate exclude expect explain export expose extend extract factor
-fail find fit fix flatten fold follow format free generate group guard halve handle head hide hold ignore implement
-import improve include index infer initialise inline install integrate introduce invert join judge keep label lead
-lengthen lift limit link list load lock lower make map mark match measure mention merge mesh mirror model mount move
-name normalise note omit open order overwrite pack parse pass permit pin place plot port prefer prescribe preserve
-prevent print project propagate prove publish quote raise reach read rebuild record recover reduce refine refuse
-reject relax release remove rename reorder repair replace report require reset resolve restart restore restrict
-retain return reuse revert rewrite rotate round run sample save scale schedule search select separate set share
-shift shorten show shrink simplify sketch skip snap solve sort split spread stabilise start state step stop store
-strengthen strip structure substitute support suppress swap switch take terminate test tighten time title trace
-track translate trim truncate try turn unify update use validate verify view warn weaken weigh widen wrap write
+drive drop eliminate enable end ensure enter estimate evaluate exclude expect explain export expose extend extract
+factor fail find fit fix flatten fold follow format free generate group guard halve handle head hide hold ignore
+implement import improve include index infer initialise inline install integrate introduce invert join judge keep label
+lead lengthen lift limit link list load lock lower make map mark match measure mention merge mesh mirror model mount
+move name normalise note omit open order overwrite pack parse pass permit pin place plot port prefer prescribe preserve
+prevent print project propagate prove publish quote raise reach read rebuild record recover redraw reduce refine refuse
+reject relax release remove rename reorder repair replace report require reset resolve restart restore restrict retain
+return reuse revert rewrite rotate round run sample save scale schedule search select separate set share shift shorten
+show shrink simplify sketch skip snap solve sort split spread stabilise start state step stop store strengthen strip
+structure substitute support suppress swap switch take terminate test thin tighten time title trace track translate
+trim truncate try turn unify update use validate verify view warn weaken weigh widen wrap write
 """.split())
 
 

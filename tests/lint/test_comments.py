@@ -9,7 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: Doc comments of each folder that begin with a clause: these numbers may only become smaller
-CEILINGS = {"src": 752, "post": 106, "tests": 306}
+CEILINGS = {"src": 752, "post": 103, "tests": 306}
 #: Newest commits whose subjects are checked
 COMMITS = 8
 

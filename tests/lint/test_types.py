@@ -15,7 +15,7 @@ COMPLETE = ("campaign", "command", "deck", "imports", "plot", "results")
 
 
 def has_typed_packages() -> bool:
-    """Whether mypy is there, and packages with stubs of their own: older ones leave types out."""
+    """Return true if mypy is there, and packages with stubs of their own: older ones leave types out."""
     if not all(importlib.util.find_spec(name) for name in ("mypy", "numpy", "matplotlib")):
         return False
     import matplotlib

@@ -1,4 +1,4 @@
-"""What an assessment of an arch computes: verdicts, safety numbers, the worst position, load cases, assumptions."""
+"""Assessment of an arch: verdicts, safety numbers, the worst position, load cases, assumptions."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def least_of(factor: Row | None, cases: Table | None) -> Row | None:
 
 
 def slides(run: Results) -> bool:
-    """Whether rings slide on one another, so that a loading path for every position takes too long."""
+    """Return true if rings slide on one another: a loading path for every position would take too long."""
     return int(run.setting("arch%rings") or 1) > 1
 
 

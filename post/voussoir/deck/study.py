@@ -140,7 +140,7 @@ class Study:
         return 1.0 / values if self.key.rpartition("%")[2] in FINER_UP else values
 
     def notes(self) -> list[str]:
-        """What limits the study."""
+        """Limits of the study."""
         grows = self.steps[1:] / np.maximum(self.steps[:-1], 1)
         if self.key == "analysis%time_step" and len(grows) and grows.min() < 1.5:
             return ["the number of steps does not double: max_displacement_ratio limits the steps, too; raise it"]

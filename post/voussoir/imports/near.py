@@ -1,4 +1,4 @@
-"""What is near to what in large drawings: points near edges, and curves near points, by cells of a grid."""
+"""Near pairs in large drawings: points near edges, and curves near points, by cells of a grid."""
 
 from __future__ import annotations
 

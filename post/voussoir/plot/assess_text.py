@@ -1,4 +1,4 @@
-"""What an assessment assumes, and what its numbers mean, in sentences."""
+"""Assumptions of an assessment and meanings of its numbers, in sentences."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NONE = ("0", "0.0")
 
 
 def assumptions_of(found: Assessment) -> list[str]:
-    """What holds for a deck, each in a sentence."""
+    """Assumptions of a deck, each in a sentence."""
     value = found.value
     lune = value("arch%lune_deg")
     lines = [
@@ -43,7 +43,7 @@ def assumptions_of(found: Assessment) -> list[str]:
 
 
 def fill_of(found: Assessment) -> list[str]:
-    """What holds for the fill."""
+    """Assumptions about the fill."""
     value = found.value
     height = found.own.setting("fill%height")
     if height is None:

@@ -1,4 +1,4 @@
-"""What the joints of a case do, as its picture shows it: thrust line, forces, hinges, openings, slips."""
+"""Joints of a case as its picture shows them: thrust line, forces, hinges, openings, slips."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ TOUCHES = {
 
 
 def roles_of(joints: Table) -> np.ndarray:
-    """What each joint does: in the collapse if there is one, else at the end of the run."""
+    """Motion of each joint: in the collapse if there is one, else at the end of the run."""
     mechanism = joints["mechanism"]
     return mechanism if np.any(mechanism != "none") else joints["state"]
 

@@ -48,7 +48,7 @@ class Picture(Figure):
 
 
 def box_of(figure: Figure) -> str | None:
-    """What of a figure is written: all, or with "tight" what is drawn on it."""
+    """Part of a figure that is written: all, or with "tight" the area that has marks."""
     return None if getattr(figure, "exact_size", False) else "tight"
 
 

@@ -40,7 +40,7 @@ THINNEST = 0.35
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a picture is drawn on.
+    """Sheet of a picture.
 
     Attributes
     ----------
@@ -144,14 +144,14 @@ class Sheet:
 
 
 def renderer_of(figure: Figure) -> RendererBase:
-    """What measures the texts of a figure."""
+    """Renderer that measures the texts of a figure."""
     canvas: Any = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
     renderer: RendererBase = canvas.get_renderer()
     return renderer
 
 
 def overhang(figure: Figure, axes: Axes) -> tuple[float, float, float, float]:
-    """How far marks and texts reach beyond their axes: left, below, right and above [points]."""
+    """Reach of marks and texts beyond their axes: left, below, right and above [points]."""
     renderer = renderer_of(figure)
     axes.apply_aspect()
     box, whole = axes.get_position().transformed(figure.transFigure), axes.get_tightbbox(renderer)

@@ -99,7 +99,7 @@ def entries_of(text: str) -> Iterator[tuple[list[str], list[list[float]]]]:
 
 
 def read_source(text: str) -> Source:
-    """What a file of blocks says."""
+    """Contents of a file of blocks."""
     source = Source()
     _read(text, source)
     return source

@@ -180,7 +180,7 @@ def column_label(run: Results, column: str) -> str:
 
 
 def linked(run: Results, name: str, key: str) -> bool:
-    """Whether a column is a function of a swept key, as in a linked sweep."""
+    """Return true if a column is a function of a swept key, as in a linked sweep."""
     pairs = set(zip(run.cases[key].tolist(), run.cases[name].tolist()))
     return len(pairs) == len(set(run.cases[key].tolist()))
 
