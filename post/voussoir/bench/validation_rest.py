@@ -56,7 +56,7 @@ def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
     friction = [limit - 1.0, limit + 1.0]
     exact = [foot_acceleration(b, h, slope * DEGREE, math.tan(phi * DEGREE)) for phi in friction]
     what = "acceleration of the foot, friction {:.4f} deg [m/s2]"
-    checks = tuple(Check(what.format(friction[k]), exact[k], foot, 1e-2, k + 1, scale=exact[0]) for k in range(2))
+    checks = tuple(Check(what.format(friction[k]), exact[k], foot, 5e-3, k + 1, scale=exact[0]) for k in range(2))
     return benchmark(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", *checks, rate=True)
 
 
