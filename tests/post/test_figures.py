@@ -271,7 +271,7 @@ def test_files_of_blocks_are_drawn_without_a_run(tmp_path: Path, capsys) -> None
     assert len(drawn) == 1 + 4 + 5 + 4
     areas = sorted(0.5 * abs(np.cross(shape, np.roll(shape, -1, axis=0)).sum()) for shape in drawn)
     assert areas == pytest.approx([0.25] * 2 + [0.5] * 11 + [3.0])
-    assert "live load" in names(figure) and "bar" in names(figure) and "point held along x" in names(figure)
+    assert "live load" in names(figure) and "bar" in names(figure) and "restraint along x" in names(figure)
     assert {"1", "14"} <= {text.get_text() for text in figure.axes[0].texts}
     assert main(["plot", str(file), "--out", str(tmp_path / "out"), "--width", "80mm", "--format", "png"]) == 0
     assert capsys.readouterr().out.split() == [str(tmp_path / "out" / "wall.png")]

@@ -139,8 +139,8 @@ def test_joints_that_slide_in_the_collapse_are_marked(searches: results.Results)
         ("dry_wall_2x4", (), ("hinge", "open joint", "contact forces")),
         ("slope", (), ("sliding joint: which way its sides move",)),
         ("four_corners", (), ("touches at this corner only",)),
-        ("momentum", (), ("at the beginning; true scale", "measured points and their ways")),
-        ("projectile", (), ("measured points and their ways",)),
+        ("momentum", (), ("at the beginning; true scale", "monitoring points, trajectories")),
+        ("projectile", (), ("monitoring points, trajectories",)),
     ],
 )
 def test_any_scene_of_blocks_is_drawn(tmp_path: Path, deck: str, settings, words) -> None:
@@ -156,7 +156,7 @@ def test_any_scene_of_blocks_is_drawn(tmp_path: Path, deck: str, settings, words
 
 
 def test_search_along_a_path_is_drawn_where_the_blocks_come_to_rest(tmp_path: Path) -> None:
-    """A lintel whose right support is led away until it falls: support, lintel and held points are drawn there."""
+    """A lintel whose right support is led away until it falls: support, lintel and restraints are drawn there."""
     boxes = ((-1.0, -1.0, 0.0, 0.0, "fixed"), (1.0, -1.0, 2.0, 0.0, ""), (-0.2, 0.0, 1.2, 0.3, ""))
     (tmp_path / "x.blocks").write_text("".join(
         f"block {words}\n{a} {b}\n{c} {b}\n{c} {d}\n{a} {d}\n" for a, b, c, d, words in boxes)
@@ -305,8 +305,8 @@ def test_loads_held_points_materials_and_numbers_are_drawn_where_they_are(tmp_pa
     with house_style():
         figure = draw_case(run, 1, numbers=True, coordinates=True)
     axes, legend = figure.axes[0], legend_of(figure)
-    for words in ("load | ", "live load, before its factor", "point held along x",
-                  "blocks of material 2 held by points"):
+    for words in ("load | ", "live load, before its factor", "restraint along x",
+                  "blocks of material 2 with restraints"):
         assert words in legend
     texts = {text.get_text(): text for text in axes.texts}
     assert {"500 N/m", "250 N/m", "1", "2", "3"} <= set(texts)
@@ -331,7 +331,7 @@ def test_water_is_drawn_at_the_end_of_its_rise(tmp_path: Path) -> None:
         (heads,) = [line for line in figure.axes[0].lines if line.get_linestyle() == "-."]
         assert heads.get_xydata().tolist() == [[-30, 0.875], [0, 0.875], [90, 0.625]]
         assert figure.axes[0].get_xlim()[1] < 20  # what is beside the blocks is not shown
-        assert "line of heads" in legend_of(figure) and "face that lets waves out" in legend_of(figure)
+        assert "piezometric line" in legend_of(figure) and "face that lets waves out" in legend_of(figure)
         swept = compute(tmp_path, head + "&sweep parameter = 'water_rise', values = 0, 0.1 /\n")
         assert "not drawn: the rise of the water, which varies" in legend_of(draw_case(swept, 2))
 
@@ -351,7 +351,7 @@ def test_file_of_blocks_that_is_not_there_is_reported(tmp_path: Path) -> None:
     run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'two.blocks' /\n")
     (tmp_path / "two.blocks").unlink()
     with house_style():
-        assert "not drawn: loads and held points of two.blocks" in legend_of(draw_case(run, 1))
+        assert "not drawn: loads and restraints of two.blocks" in legend_of(draw_case(run, 1))
 
 
 def test_chart_shows_critical_and_exact_values(searches, tmp_path: Path) -> None:

@@ -77,5 +77,9 @@ def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
         help="width of the picture with its unit, mm, cm, in or pt (default: 132mm)")
     parser.add_argument(
         "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
-    parser.add_argument("--no-title", dest="title", action="store_false", default=True, help="leave the title out")
-    parser.add_argument("--no-legend", dest="legend", action="store_false", default=True, help="leave the legend out")
+    parser.add_argument(
+        "--no-title", dest="title", action="store_false", default=True,
+        help="leave the title out (default: draw it)")
+    parser.add_argument(
+        "--no-legend", dest="legend", action="store_false", default=True,
+        help="leave the legend out (default: draw it)")

@@ -27,9 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
         "Draw the cases of a folder that dda run has written, arches and blocks alike: thrust line, hinges, slips, "
-        "contact forces, loads, held points, ways of measured points; chart a sweep; or draw a file of blocks or lines "
-        "without a run. With more than 40 marked joints their state is the colour of their lines, and blocks are "
-        "shaded by how far they move."
+        "contact forces, loads, restraints, trajectories of monitoring points; chart a sweep; or draw a file of blocks "
+        "or lines without a run. With more than 40 marked joints their state is the colour of their lines, and blocks "
+        "are shaded by how far they move."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results, or FILE.blocks, FILE.geo")
     parser.add_argument(
@@ -52,7 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     forces.add_argument(
         "--forces", action="store_true", default=None,
         help="draw the contact forces (default: where no thrust line is drawn, of up to 150 joints)")
-    forces.add_argument("--no-forces", dest="forces", action="store_false", help="leave the contact forces out")
+    forces.add_argument(
+        "--no-forces", dest="forces", action="store_false",
+        help="leave the contact forces out (default: as under --forces)")
 
 
 def add_charts(parser: argparse.ArgumentParser) -> None:

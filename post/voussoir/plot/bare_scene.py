@@ -125,7 +125,7 @@ def cut_blocks(file: Path) -> tuple[list[Block], list[int], str]:
         held += state == "held"
         blocks.append(Block(int(row["block"]), state, corners, np.full_like(corners, np.nan)))
         materials.append(int(row["material"]))
-    return blocks, materials, counted(len(blocks), "block") + f", {held} of them held by points"
+    return blocks, materials, counted(len(blocks), "block") + f", {held} of them with restraints"
 
 
 def loose_lines(lines: list[np.ndarray], blocks: list[Block]) -> list[np.ndarray]:

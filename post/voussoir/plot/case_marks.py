@@ -1,4 +1,4 @@
-"""What acts on the blocks of a case, as its picture shows it: loads, held points, bars, numbers, coordinates."""
+"""What acts on the blocks of a case, as its picture shows it: loads, restraints, bars, numbers, coordinates."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from voussoir.plot.units import force_text
 LOAD_LENGTH, MOST_VALUES = 0.12, 12
 #: Colours of bars and of live loads
 BAR, LIVE = "#7a3b8f", "#1b7a3d"
-#: Marks of points that are held along both directions, x or y
+#: Marks of restraints along both directions, x or y
 _HELD: dict[str, tuple[dict[str, Any], str]] = {
-    "": ({"marker": "^", "markerfacecolor": INK[0]}, "held point"),
-    "x": ({"marker": ">", "markerfacecolor": "white"}, "point held along x"),
-    "y": ({"marker": "^", "markerfacecolor": "white"}, "point held along y"),
+    "": ({"marker": "^", "markerfacecolor": INK[0]}, "restraint"),
+    "x": ({"marker": ">", "markerfacecolor": "white"}, "restraint along x"),
+    "y": ({"marker": "^", "markerfacecolor": "white"}, "restraint along y"),
 }
 
 
@@ -87,7 +87,7 @@ def draw_water(axes: Axes, source: Source) -> list[Artist]:
     """Draw lines of heads, and faces that let waves out; gives the entries of the legend."""
     limits = axes.axis()
     styles: tuple[tuple[Any, str, dict[str, Any]], ...] = (
-        (source.water, "line of heads", {"color": "#1f77b4", "linewidth": 1.6, "linestyle": "-."}),
+        (source.water, "piezometric line", {"color": "#1f77b4", "linewidth": 1.6, "linestyle": "-."}),
         (source.absorbing, "face that lets waves out", {"color": INK[0], "linewidth": 2.2, "linestyle": ":"}),
     )
     entries: list[Artist] = []
@@ -96,7 +96,7 @@ def draw_water(axes: Axes, source: Source) -> list[Artist]:
             axes.plot(*zip(*points), zorder=6, **style)
         if lines:
             entries.append(entry(words, **style))
-    # a line of heads may run far beyond the blocks
+    # a piezometric line may run far beyond the blocks
     axes.axis(limits)
     return entries
 

@@ -164,7 +164,7 @@ def draw_blocks(
         }
         axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
         name = f"blocks of material {material}" if several else "blocks" if held else words
-        entries.append(Patch(**style, label=name + (" held by points" if held else "")))
+        entries.append(Patch(**style, label=name + (" with restraints" if held else "")))
     return [*entries, entry(words)] if several and words != "blocks" else entries
 
 
@@ -194,14 +194,14 @@ def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> flo
 
 
 def places_of(way: Table, motion: Motion) -> np.ndarray:
-    """Where the picture shows a measured point after each step: (n, 2) [m]."""
+    """Place of a monitoring point in the picture after each step: (n, 2) [m]."""
     moves = np.column_stack((way["u"], way["v"]))
     start = np.array([way["x"][0], way["y"][0]]) - moves[0]
     return np.asarray(start + motion.shown * moves)
 
 
 def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -> list[Artist]:
-    """Draw the ways of the measured points as the blocks are drawn; gives the entries."""
+    """Draw the trajectories of the monitoring points as the blocks are drawn; gives the entries."""
     for way in ways:
         points = places_of(way, motion)
         axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
@@ -211,7 +211,7 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -
             color=INK[1], zorder=8)
     if not ways:
         return []
-    words = "measured points and their ways" if motion.shown > 0.0 else "measured points"
+    words = "monitoring points, trajectories" if motion.shown > 0.0 else "monitoring points"
     return [entry(words, linestyle=(0, (4, 1.5)), color=INK[1], marker="D", markersize=4, linewidth=1.1)]
 
 

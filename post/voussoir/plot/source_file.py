@@ -1,4 +1,4 @@
-"""What a file of blocks or lines says of loads, held points, bars and materials, for pictures."""
+"""What a file of blocks or lines says of loads, restraints, bars and materials, for pictures."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ def source_of(run: Results) -> Source:
     if run.kind not in ("blocks", "lines") or not name:
         return source
     if run.setting("scene%analysis"):
-        source.missing.append(f"loads and held points of {run.setting('scene%analysis')}")
+        source.missing.append(f"loads and restraints of {run.setting('scene%analysis')}")
     files = [folder / name for folder in (run.folder, run.folder.absolute().parent)]
     file = next(filter(Path.is_file, files), None)
     if file is None:
-        source.missing.append(f"{'bolts' if run.kind == 'lines' else 'loads and held points'} of {name}")
+        source.missing.append(f"{'bolts' if run.kind == 'lines' else 'loads and restraints'} of {name}")
         return source
     text = read_text(file)
     if run.kind == "blocks":
