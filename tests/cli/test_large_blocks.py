@@ -212,7 +212,7 @@ def test_a_tunnel_stands_by_its_bolts_in_time(tmp_path: Path) -> None:
 
 
 def test_a_tunnel_of_many_blocks_begins_to_move_with_its_bolts(tmp_path: Path) -> None:
-    """2001 blocks that rest on one another: as the few of the roof begin to fall, impacts take what weight has done."""
+    """2001 rigid blocks: less moves than a fiftieth of them in free fall, for only the roof has no support."""
     maps = (
         "&lines seed = 11 /\n"
         "&outline left = -15, right = 15, bottom = -12, top = 15, fixed = 'left', 'right', 'bottom' /\n"
@@ -220,7 +220,8 @@ def test_a_tunnel_of_many_blocks_begins_to_move_with_its_bolts(tmp_path: Path) -
         "&joint_set dip_deg = 70, spacing = 0.62, spacing_law = 'uniform', spacing_randomness = 0.3 /\n"
         "&bolts number = 17, from_deg = 0, to_deg = 180, length = 6, stiffness = 1e8, strength = 1e6 /\n"
     )
-    motion = "duration = 0.02 /\n&output energy = .true."
+    motion = "unknowns = 3, duration = 0.02 /\n&output energy = .true."
     assert run_tunnel(tmp_path, maps, motion)["verdict"] == "completed"
     for row in rows_of(tmp_path / "out" / "energy.csv"):
-        assert float(row["kinetic"]) < 0.1 * -float(row["gravity"])
+        free_fall = 30.0 * 27.0 * 2600.0 * (9.81 * float(row["time"])) ** 2 / 2.0
+        assert float(row["kinetic"]) < free_fall / 50.0

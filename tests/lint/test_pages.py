@@ -93,7 +93,7 @@ WORDS = " ".join(["word"] * 19)
 def test_faults_are_found_with_their_line(tmp_path: Path, text: str, found: str) -> None:
     (tmp_path / "a.md").write_text(f"# A page\n\n{text}\n")
     (offence,) = page_rules.offences(tmp_path / "a.md")
-    assert offence.startswith(("a.md:1: ", "a.md:3: ")) and found in offence
+    assert re.search(r"\ba\.md:[13]: ", offence) and found in offence
 
 
 @pytest.mark.parametrize(
