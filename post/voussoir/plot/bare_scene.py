@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 
 from voussoir.dda_program import DdaError, find_dda, path_word
 from voussoir.files import plain, read_text
-from voussoir.plot.case_marks import draw_held, draw_loads, draw_numbers, entry, load_arrows, show_coordinates
-from voussoir.plot.case_picture import draw_blocks, draw_scale, draw_supports
+from voussoir.plot.case_marks import draw_held, draw_loads, entry, load_arrows
+from voussoir.plot.case_picture import draw_blocks, draw_guides, draw_supports
 from voussoir.plot.case_scene import CaseScene, view
 from voussoir.plot.figure_style import INK
 from voussoir.plot.motion import motion_of
@@ -73,12 +73,7 @@ def draw_file(file: Path, sheet: Sheet = Sheet(), numbers: bool = False, coordin
             lines, colors=INK[1], linewidths=style["linewidth"], linestyles=[style["linestyle"]], zorder=1.2))
         entries.append(entry("lines that end off the blocks' edges", color=INK[1], **style))
     entries += draw_loads(axes, source, size, motion, pen) + draw_held(axes, source, motion, pen)
-    if numbers:
-        draw_numbers(axes, scene, shapes)
-    if coordinates:
-        show_coordinates(axes)
-    else:
-        draw_scale(axes, low, high, pen)
+    draw_guides(axes, scene, shapes, (low, high), pen, numbers, coordinates)
     return sheet.finish(figure, axes, f"{file.name}: {title}", entries)
 
 

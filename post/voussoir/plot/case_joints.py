@@ -21,7 +21,7 @@ from voussoir.results import Table
 
 #: Longest force and length of slip marks in the picture, over its size
 FORCE_LENGTH, SLIP_LENGTH = 0.10, 0.03
-#: More marked joints than these are told apart by the colours of their lines
+#: Number of marked joints above which colours of lines replace symbols
 MOST_MARKS = 40
 #: Median distance of marks below which they run into one another, least and greatest size of marks [points]
 APART, SMALLEST, LARGEST = 5.0, 2.5, 6.5

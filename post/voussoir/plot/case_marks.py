@@ -1,4 +1,4 @@
-"""What acts on the blocks of a case, as its picture shows it: loads, restraints, bars, numbers, coordinates."""
+"""Marks of a picture: loads, restraints, bars, numbers of blocks, coordinates."""
 
 from __future__ import annotations
 

@@ -61,11 +61,11 @@ def draw_case(
     scene, source = scene_of(run, number), source_of(run)
     joints = run.joints_of(number) if run.joints is not None else None
     ways = run.points_of(number)
-    told = 1.0 if scene.moves else 0.0
+    written = 1.0 if scene.moves else 0.0
     supports = [block.corners for block in scene.supports]
-    size = float(np.subtract(*view(scene.shapes(0.0) + scene.shapes(told), supports)[::-1]).max())
+    size = float(np.subtract(*view(scene.shapes(0.0) + scene.shapes(written), supports)[::-1]).max())
     factor = factor_of(scene, magnify, size)
-    motion = motion_of(scene.blocks, scene.supports, factor or told, told)
+    motion = motion_of(scene.blocks, scene.supports, factor or written, written)
     shapes, beginning = scene.shapes(motion.shown), scene.shapes(0.0)
     low, high = view([*beginning, *shapes, *(places_of(way, motion) for way in ways if scene.moves),
                       *load_arrows(source, size, motion)], supports)
@@ -83,12 +83,7 @@ def draw_case(
     if marks is not None:
         entries += marks.draw(axes, with_forces)
     entries += draw_loads(axes, source, size, motion, pen) + draw_held(axes, source, motion, pen)
-    if numbers:
-        draw_numbers(axes, scene, shapes)
-    if coordinates:
-        show_coordinates(axes)
-    else:
-        draw_scale(axes, low, high, pen)
+    draw_guides(axes, scene, shapes, (low, high), pen, numbers, coordinates)
     return sheet.finish(figure, axes, title, entries)
 
 
@@ -213,6 +208,17 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -
         return []
     words = "monitoring points, trajectories" if motion.shown > 0.0 else "monitoring points"
     return [entry(words, linestyle=(0, (4, 1.5)), color=INK[1], marker="D", markersize=4, linewidth=1.1)]
+
+
+def draw_guides(axes: Axes, scene: CaseScene, shapes: list[np.ndarray], view: tuple[np.ndarray, np.ndarray],
+                pen: float, numbers: bool, coordinates: bool) -> None:
+    """Draw numbers of blocks where asked, and axes with coordinates or a scale bar of the view (low, high)."""
+    if numbers:
+        draw_numbers(axes, scene, shapes)
+    if coordinates:
+        show_coordinates(axes)
+    else:
+        draw_scale(axes, *view, pen)
 
 
 def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray, pen: float = 1.0) -> None:
