@@ -85,7 +85,7 @@ def _signature(node: ast.FunctionDef | ast.ClassDef, name: str) -> str:
 
 
 def _decorated(node: ast.FunctionDef, word: str) -> bool:
-    """Whether a function has a decorator such as property, or x.setter."""
+    """Return True if a function has a decorator such as property, or x.setter."""
     return any(ast.unparse(decorator).rpartition(".")[2] == word for decorator in node.decorator_list)
 
 
