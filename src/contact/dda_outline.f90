@@ -3,6 +3,7 @@
 module dda_outline
    use dda_block_system, only : block_system_t
    use dda_kinds, only : wp
+   use dda_sort, only : sorted_order
    use dda_vector, only : along, cross, right_normal
    implicit none
    private
@@ -13,6 +14,8 @@ module dda_outline
    type :: outline_t
       integer, allocatable :: block(:)     !! Block that owns the corner
       logical, allocatable :: turns(:)     !! Whether the outline turns there; otherwise no corner
+      !> Edges between two fixed blocks, which no other block can reach: (n_vertex)
+      logical, allocatable :: covered(:)
       integer, allocatable :: next(:)      !! The next corner of the block, counter-clockwise
       integer, allocatable :: previous(:)  !! The corner before
       !> Unit vector along each edge where the corners are, once it is measured: (2, n_vertex)
@@ -36,6 +39,10 @@ module dda_outline
    real(wp), parameter :: dip = 0.05_wp
    !> Sine of the bend below which a corner is flat
    real(wp), parameter :: flat = 1.0e-9_wp
+   !> Distance between the ends of two edges that are one, over their length
+   real(wp), parameter :: same = 1.0e-9_wp
+   !> Edges at one place that are compared; where there are more, blocks overlap and are refused
+   integer, parameter :: most_at_place = 16
 
 contains
 
@@ -62,7 +69,39 @@ contains
             outline%convex(b) = outline%convex(b) .and. is_convex(outline, system%vertex, v)
          end do
       end do
+      call find_covered_edges(system, outline)
    end function outline_of
+
+   !> Find edges that two fixed blocks share, among edges with the same middle
+   pure subroutine find_covered_edges(system, outline)
+      type(block_system_t), intent(in) :: system
+      type(outline_t), intent(inout) :: outline
+      integer, allocatable :: edge(:), order(:)
+      real(wp), allocatable :: middle(:)
+      real(wp) :: tolerance
+      integer :: i, k, v
+
+      allocate (outline%covered(size(outline%block)), source=.false.)
+      edge = pack([(v, v=1, size(outline%block))], system%equation(outline%block) == 0 &
+         & .and. outline%turns)
+      ! along a line that no row of blocks is likely to be normal to
+      middle = matmul([1.0_wp, 0.618_wp], system%vertex(:, edge) &
+         & + system%vertex(:, outline%next(edge)))
+      order = sorted_order(0*edge, middle)
+      edge = edge(order)
+      middle = middle(order)
+      do i = 1, size(edge)
+         associate (a => system%vertex(:, edge(i)), b => system%vertex(:, outline%next(edge(i))))
+            tolerance = same*norm2(b - a)
+            do k = i + 1, min(i + most_at_place, size(edge))
+               if (middle(k) - middle(i) > 4.0_wp*tolerance) exit
+               if (norm2(b - system%vertex(:, edge(k))) <= tolerance .and. &
+                  & norm2(a - system%vertex(:, outline%next(edge(k)))) <= tolerance) &
+                  & outline%covered(edge([i, k])) = .true.
+            end do
+         end associate
+      end do
+   end subroutine find_covered_edges
 
    !> Whether the outline of a block turns at a vertex
    pure logical function turns_at(outline, vertex, v)

@@ -90,7 +90,7 @@ contains
       integer, intent(in) :: edge_pair(:, :)
       real(wp), intent(in) :: reach  !! Blocks farther from one another than this are no matter [m]
       type(line_t) :: best
-      type(line_t) :: line, held, widest
+      type(line_t) :: free, line, held, widest
       integer :: i, side
 
       do side = 1, 2
@@ -98,15 +98,34 @@ contains
             if (any(edge_pair(side, :i - 1) == edge_pair(side, i))) cycle
             line = line_of(near, edge_pair(side, i), near%outline%block(edge_pair(3 - side, i)))
             if (line%gap > widest%gap) widest = line
-            if (line%time > best%time .or. .not. line%time < best%time .and. line%gap > best%gap) &
-               & best = line
+            if (is_later(line, best)) best = line
+            if (is_later(line, free) .and. .not. is_covered(near, line)) free = line
             if (was_closed(near, line%corner, line%edge) .and. line%gap > held%gap) held = line
          end do
       end do
+      ! blocks meet by no edge that another one covers while they can meet by another
+      if (free%time > -huge(1.0_wp)) best = free
       if (widest%gap > reach) best = widest
       if (held%edge == 0) return
       if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
    end function parting_line
+
+   !> Whether a line is crossed later than another one, or at the same time and is farther
+   pure logical function is_later(line, other)
+      type(line_t), intent(in) :: line, other
+
+      is_later = line%time > other%time &
+         & .or. .not. line%time < other%time .and. line%gap > other%gap
+   end function is_later
+
+   !> Whether the edge of a line, or the one that faces it, lies between two fixed blocks
+   pure logical function is_covered(near, line)
+      type(neighbourhood_t), intent(in) :: near
+      type(line_t), intent(in) :: line
+
+      is_covered = near%outline%covered(line%edge) &
+         & .or. near%outline%covered(facing_edge(near, line))
+   end function is_covered
 
    !> One edge and the other block
    pure type(line_t) function line_of(near, edge, block) result(line)
