@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.optimize import brentq, nnls
 from states import State, properties
 
 Array = NDArray[np.float64]
@@ -24,6 +24,8 @@ Point = tuple[float, float]
 DEPTH, TOUCH = 1e-9, 1e-7
 #: Speed that counts as none, and slack of laws of contact, over the largest speed or acceleration
 SLOW, SLACK = 1e-8, 1e-7
+#: Force beyond the cones of friction that ends a state, over the largest
+FORCE = 1e-6
 #: Largest turn of a body in a step [rad], longest step [s], and most steps of a run
 TURN, STEP, MOST_STEPS = 0.02, 4e-3, 3000
 #: States of a frictional contact
@@ -103,11 +105,9 @@ class World:
 
     def energy(self) -> float:
         """Energy of motion and of height."""
-        total = 0.0
-        for body, (x, y, _), (vx, vy, spin) in zip(self.bodies, self.place, self.speed):
-            motion = (vx**2 + vy**2 + body.inertia * spin**2) / 2.0
-            total += body.mass * (motion - self.gravity[0] * x - self.gravity[1] * y)
-        return total
+        mass, inertia = np.array([(body.mass, body.inertia) for body in self.bodies]).T
+        twice = (self.speed[:, :2] ** 2).sum(axis=1) + inertia * self.speed[:, 2] ** 2
+        return float(mass @ (twice / 2.0 - self.place[:, :2] @ self.gravity))
 
     @property
     def size(self) -> float:
@@ -243,9 +243,13 @@ class World:
             direction = {SLIP_LEFT: -1.0, SLIP_RIGHT: 1.0, STICK: 0.0, OPEN: known}[state]
             if direction != known if known != 0.0 else direction != 0.0 and direction * slip < slack:
                 return False
+        return self.beyond(rows, states, rate - free) <= slack
+
+    def beyond(self, rows: tuple[Array, Array], states: Sequence[int], change: Array) -> float:
+        """Part of a change of rates that no forces within the cones of friction give."""
         moves, root = self.inverse_mass > 0.0, np.sqrt(self.inverse_mass)
         rays = (self.rays(rows, states, sticks=True) * root).T[moves]
-        return not rays.size or nnls(rays, (rate - free)[moves] / root[moves])[1] <= slack
+        return float(nnls(rays, change[moves] / root[moves])[1]) if rays.size else 0.0
 
     def acceleration(self, contacts: list[Contact], place: Array, speed: Array, slips: Array | None = None) -> Array:
         """Accelerations under gravity and forces of contacts: (bodies, 3).
@@ -301,10 +305,16 @@ class World:
         return q + h * v + h * h / 6.0 * (a1 + a2 + a3), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
 
     def events(self, contacts: list[Contact], slips: Array, moved: tuple[Array, Array]) -> Array:
-        """Depths, ways off edges and reversals of slips over their tolerances, less 1: positive after an event."""
+        """What ends a step, positive after it: depths, ways off edges, and forces beyond the cones of friction, over
+        their tolerances, less 1, and slips that have slowed down to half of what counts as one."""
         deep = [*(d / DEPTH for d in self.depths(moved[0])), *(self.off_edge(c, moved[0]) / TOUCH for c in contacts)]
-        back = -self.rows(contacts, *moved)[1] @ moved[1].ravel() * slips if slips.any() else np.zeros(0)
-        return np.append(np.array(deep) / self.size, back / (SLOW * self.fastest)) - 1.0
+        normal, tangent, _ = self.rows(contacts, *moved)
+        if self.friction > 0.0 and contacts:
+            change = (self.acceleration(contacts, *moved) - self.acceleration([], *moved)).ravel()
+            states = [self.last[c] for c in contacts]
+            deep.append(self.beyond((normal, tangent), states, change) / (FORCE * np.abs(change).max() + 1e-12) * self.size)
+        slow = -tangent @ moved[1].ravel() * slips if slips.any() else np.zeros(0)
+        return np.append(np.array(deep) / self.size - 1.0, slow / (SLOW * self.fastest) + 0.5)
 
     def off_edge(self, contact: Contact, place: Array) -> float:
         """How far a corner is beyond an end of its edge; negative between the ends."""
@@ -312,25 +322,14 @@ class World:
         return float(max(-way @ edge, (way - edge) @ edge)) / float(np.hypot(*edge))
 
     def until_event(self, contacts: list[Contact], slips: Array, h: float) -> tuple[float, tuple[Array, Array]]:
-        """The step, or its part until just past the first event, by regula falsi with Illinois' weights."""
-        moved = self.step(contacts, h)
-        at_low, at_high = self.events(contacts, slips, (self.place, self.speed)), self.events(contacts, slips, moved)
-        at_low = np.minimum(at_low, 0.0)
-        low, high, weight, was_late = 0.0, h, 1.0, None
-        while at_high.max() > 0.1 and high - low > 1e-15 * h:
-            late = at_high > 0.0
-            share = float((weight * at_low[late] / (weight * at_low[late] - at_high[late])).min())
-            middle = low + (high - low) * min(max(share, 1e-9), 1.0 - 1e-9)
-            trial = self.step(contacts, middle)
-            value = self.events(contacts, slips, trial)
-            is_late = bool(value.max() > 0.0)
-            if is_late:
-                high, at_high, moved = middle, value, trial
-            else:
-                low, at_low = middle, value
-            weight = 1.0 if is_late is not was_late else weight * (0.5 if is_late else 2.0)
-            was_late = is_late
-        return high, moved
+        """The step, or its part until just past the first event."""
+
+        def past(part: float) -> float:
+            # nothing has happened at the start: the last event lies just behind
+            return float(self.events(contacts, slips, self.step(contacts, part)).max()) - 0.1 if part > 0.0 else -1.0
+
+        part = brentq(past, 0.0, h, xtol=1e-15 * h) if past(h) > 0.0 else h
+        return part, self.step(contacts, part)
 
     def project(self) -> None:
         """Take the errors of integration from gaps and velocities of contacts that are kept."""
@@ -373,10 +372,10 @@ class World:
             most = float(np.abs(self.acceleration(contacts, self.place, self.speed, slips)).max())
             turning = [float(s) for c in contacts for s in np.abs(self.speed[[c.one, c.other], 2]) if s > 1e-6]
             self.rolled = max([self.rolled, *turning])
+            self.project()
             part, (self.place, self.speed) = self.until_event(contacts, slips, h)
             self.lost = max([self.lost, *(most for c in contacts if self.off_edge(c, self.place) > TOUCH * self.size)])
             self.time += part
-            self.project()
             steps += 1
             if steps > MOST_STEPS:
                 raise Ambiguous("events without end")

@@ -129,6 +129,20 @@ def test_block_that_rolls_over_a_corner_keeps_its_energy() -> None:
     assert world.energy() == pytest.approx(before, rel=1e-8)
 
 
+def test_corner_that_rolls_begins_to_slip_where_friction_is_used_up() -> None:
+    """A block falls over its corner; the answer does not depend on how often states are found anew."""
+    states = []
+    for pieces in (1, 500):
+        world = floor(0.0, 0.3)
+        world.add(turned(rectangle(0.0, 0.0, 0.5, 1.0), 0.6))
+        for _ in range(pieces):
+            world.run(0.5 / pieces)
+        states.append(world.state(1))
+    assert abs(states[0].vx) > 0.1
+    assert [states[0].x, states[0].vx, states[0].spin] == pytest.approx(
+        [states[1].x, states[1].vx, states[1].spin], abs=1e-7)
+
+
 def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
     """Two free blocks turn towards one another: a corner slides along an edge that turns, and off its end."""
     world = World((0.0, 0.0))
