@@ -228,10 +228,12 @@ contains
             do k = 1, run%contacts%joint(j)%n_contact
                if (.not. meets(k, j)) cycle
                associate (near => near_gap(run%system, run%contacts%joint(j)%block))
-                  if (start(k, j) <= near .or. gap(k, j) > -near) cycle
+                  if (start(k, j) <= near .or. gap(k, j) >= 0.0_wp) cycle
+                  acceleration = 2.0_wp*(gap(k, j) - start(k, j) - speed(k, j)*dt)/dt**2
+                  ! a contact that ends just open bears no force in the step
+                  time = falling_time(max(0.0_wp, start(k, j) - run%equations%gap_noise), &
+                     & -speed(k, j), -acceleration)
                end associate
-               acceleration = 2.0_wp*(gap(k, j) - start(k, j) - speed(k, j)*dt)/dt**2
-               time = falling_time(start(k, j), -speed(k, j), -acceleration)
                meeting = -speed(k, j) - acceleration*min(time, dt)
                if (meeting <= 0.0_wp .or. run%settings%restitution > 0.0_wp &
                   & .and. meeting <= run%step%slowest_impact) cycle
