@@ -57,7 +57,7 @@ contains
          step%is_solved = step%renews .and. in_time(run)
          if (outcome%beyond_margin) &
             & call widen_margins(run%system, step%state%motion, run%march%reach)
-         step%overshoot = outcome%overshoot
+         if (.not. step%renews) step%overshoot = outcome%overshoot
          step%ends_at_event = outcome%ends_at_event
          if (.not. outcome%wrong_axes) return
          step%choices = step%choices + 1
