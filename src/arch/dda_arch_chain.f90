@@ -7,13 +7,13 @@
 !> directions of the chord's ends, and s from -t/2 to t/2.
 module dda_arch_chain
    use dda_arch, only : arch_shape_t, left_directions, section_directions
-   use dda_chain, only : chain_t, new_chain, weigh
+   use dda_chain, only : chain_t, new_chain
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    implicit none
    private
 
-   public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain
+   public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain, join_voussoirs
 
    !> What an arch of one material is made from
    type :: arch_numbers_t
@@ -42,8 +42,8 @@ module dda_arch_chain
       integer, allocatable :: joint(:)
       !> Areas of the voussoirs over t: (n) [m]
       real(wp), allocatable :: area(:)
-      !> Their lengths along the arch, a keystone's in whole: (n) [m]
-      real(wp), allocatable :: length(:)
+      !> Stiffness of the joints over that of the blocks' material, per thickness: (n + 1) [1/m]
+      real(wp), allocatable :: stiffness(:)
       !> Their centres from the middles of their first joints: centre(:, 1) + centre(:, 2) t**2:
       !> (2, 2, n) [m, 1/m]
       real(wp), allocatable :: centre(:, :, :)
@@ -63,6 +63,7 @@ contains
       type(arch_numbers_t), intent(in) :: numbers
       type(arch_rays_t), intent(out) :: rays
       logical, allocatable :: is_joint(:)
+      real(wp), allocatable :: length(:)
       integer :: b, i, n
 
       if (numbers%halved) then
@@ -87,10 +88,16 @@ contains
       do b = 1, n
          call find_moments(numbers%shape%radius, rays, b)
       end do
-      rays%length = rays%area
-      if (.not. rays%keystone) return
-      rays%length(n) = 2.0_wp*rays%length(n)
-      rays%direction(:, rays%joint(n + 1)) = [0.0_wp, 1.0_wp]
+      allocate (rays%stiffness(n + 1))
+      length = rays%area
+      if (rays%keystone) then
+         length(n) = 2.0_wp*length(n)
+         rays%direction(:, rays%joint(n + 1)) = [0.0_wp, 1.0_wp]
+      end if
+      do b = 1, n + 1
+         rays%stiffness(b) = min(stiffest/maxval(length), &
+            & 1.0_wp/max(length(max(1, b - 1)), length(min(b, n))))
+      end do
    end subroutine arch_rays
 
    !> Let the left half of an arch end on its plane of symmetry, where the direction is the mean of
@@ -144,6 +151,41 @@ contains
       rays%gyration(:, b) = polar/area
    end subroutine find_moments
 
+   !> Join the voussoirs between some joints, as in a mechanism that no other joint takes part in.
+   !> Their moments of inertia are left out
+   pure subroutine join_voussoirs(radius, rays, joint, joined)
+      real(wp), intent(in) :: radius
+      type(arch_rays_t), intent(in) :: rays
+      integer, intent(in) :: joint(:)  !! Numbers of the joints, rising, first and last of all: (m)
+      type(arch_rays_t), intent(out) :: joined
+      real(wp) :: area, first(2, 2), from(2)
+      integer :: b, i, k, m
+
+      m = size(joint)
+      joined%keystone = rays%keystone
+      allocate (joined%direction(2, m), joined%point(2, m), joined%joint(m), joined%stiffness(m))
+      allocate (joined%area(m - 1), joined%centre(2, 2, m - 1))
+      allocate (joined%gyration(2, m - 1), source=0.0_wp)
+      do i = 1, m
+         k = rays%joint(joint(i))
+         joined%direction(:, i) = rays%direction(:, k)
+         joined%point(:, i) = rays%point(:, k)
+         joined%joint(i) = i
+         joined%stiffness(i) = rays%stiffness(joint(i))
+         if (i == m) exit
+         area = 0.0_wp
+         first = 0.0_wp
+         do b = joint(i), joint(i + 1) - 1
+            from = radius*(rays%point(:, rays%joint(b)) - rays%point(:, k)) + rays%centre(:, 1, b)
+            area = area + rays%area(b)
+            first(:, 1) = first(:, 1) + rays%area(b)*from
+            first(:, 2) = first(:, 2) + rays%area(b)*rays%centre(:, 2, b)
+         end do
+         joined%area(i) = area
+         joined%centre(:, :, i) = first/area
+      end do
+   end subroutine join_voussoirs
+
    !> The arch of one thickness ratio
    pure subroutine arch_chain(numbers, rays, thickness_ratio, chain)
       type(arch_numbers_t), intent(in) :: numbers
@@ -151,33 +193,30 @@ contains
       real(wp), intent(in) :: thickness_ratio  !! Thickness over radius
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
-      real(wp) :: area, centre(2), give, most, radius, spring, square, thickness, way(2)
-      integer :: b, first, last, n
+      real(wp) :: area, centre(2), radius, square, stiffness, thickness, way(2)
+      integer :: b, first, n
 
       n = size(rays%joint) - 1
       call new_chain(n, chain)
       radius = numbers%shape%radius
       thickness = thickness_ratio*radius
       square = thickness**2
-      give = 1.0_wp/(numbers%young*thickness)
-      spring = numbers%penalty_ratio*numbers%young*thickness
-      most = stiffest*(spring/maxval(rays%length))
+      stiffness = numbers%penalty_ratio*numbers%young*thickness
       do b = 1, n + 1
          associate (joint => chain%joint(b))
             joint%tangent = rays%direction(:, rays%joint(b))
             joint%middle = radius*rays%point(:, rays%joint(b))
             joint%half = thickness/2.0_wp
-            joint%stiffness = min(most, &
-               & spring/max(rays%length(max(1, b - 1)), rays%length(min(b, n))))
+            joint%stiffness = stiffness*rays%stiffness(b)
             joint%compliance = 0.0_wp
             joint%friction = numbers%law%friction
             joint%no_slip = numbers%law%no_slip
             joint%arm = 0.0_wp
+            chain%reach = max(chain%reach, abs(joint%middle(1)), abs(joint%middle(2)))
          end associate
       end do
       do b = 1, n
          first = rays%joint(b)
-         last = rays%joint(b + 1)
          area = rays%area(b)*thickness
          centre = rays%centre(:, 1, b) + rays%centre(:, 2, b)*square
          associate (block => chain%block(b), before => chain%joint(b), behind => chain%joint(b + 1))
@@ -186,22 +225,43 @@ contains
             block%inertia = block%mass*(rays%gyration(1, b) + rays%gyration(2, b)*square &
                & - centre(1)**2 - centre(2)**2)
             block%weight = area*numbers%body_force
-            way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
+            chain%whole_load = chain%whole_load + abs(block%weight(1)) + abs(block%weight(2))
+            way = radius*(rays%point(:, rays%joint(b + 1)) - rays%point(:, first)) - centre
             call find_arms(-centre, before%tangent, before%arm(:, 2))
             call find_arms(way, behind%tangent, behind%arm(:, 1))
-            if (rays%keystone .and. b == n) cycle
+         end associate
+      end do
+      if (.not. numbers%law%no_slip) call add_compliances(numbers, rays, thickness, chain)
+      if (numbers%no_slip_springing) chain%joint([1, n + 1])%no_slip = .true.
+      if (numbers%halved) call add_plane(rays, chain)
+   end subroutine arch_chain
+
+   !> Add the compliances of the voussoirs, which tell whether joints slide on the way to the load
+   pure subroutine add_compliances(numbers, rays, thickness, chain)
+      type(arch_numbers_t), intent(in) :: numbers
+      type(arch_rays_t), intent(in) :: rays
+      real(wp), intent(in) :: thickness  !! Thickness of the arch [m]
+      type(chain_t), intent(inout) :: chain
+      real(wp) :: area, give
+      integer :: b, first, n
+
+      n = size(chain%block)
+      give = 1.0_wp/(numbers%young*thickness)
+      do b = 1, n - merge(1, 0, rays%keystone)
+         area = rays%area(b)*thickness
+         associate (before => chain%joint(b), behind => chain%joint(b + 1))
             call add_compliance(give, area, before%arm(2, 2), thickness, before%compliance)
             call add_compliance(give, area, behind%arm(2, 1), thickness, behind%compliance)
          end associate
       end do
-      if (rays%keystone) call add_compliance(give, 2.0_wp*area, radius &
-         & *(rays%direction(2, first)*rays%point(1, first)) - rays%direction(1, first) &
-         & *(radius*rays%point(2, first) - chain%block(n)%centroid(2)), thickness, &
-         & chain%joint(n)%compliance)
-      if (numbers%no_slip_springing) chain%joint([1, n + 1])%no_slip = .true.
-      if (numbers%halved) call add_plane(rays, chain)
-      call weigh(chain)
-   end subroutine arch_chain
+      if (.not. rays%keystone) return
+      first = rays%joint(n)
+      associate (radius => numbers%shape%radius)
+         call add_compliance(give, 2.0_wp*rays%area(n)*thickness, radius*(rays%direction(2, first) &
+            & *rays%point(1, first)) - rays%direction(1, first)*(radius*rays%point(2, first) &
+            & - chain%block(n)%centroid(2)), thickness, chain%joint(n)%compliance)
+      end associate
+   end subroutine add_compliances
 
    !> Add the half of a block at a joint to its compliance
    pure subroutine add_compliance(give, area, across, thickness, compliance)

@@ -1,6 +1,6 @@
 !> One case of a deck, ready to be computed
 module dda_case
-   use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
+   use dda_arch_scene, only : arch_resolution, search_start
    use dda_deck, only : deck_t, file_beside, has_group, parameter_name, parameter_t, source_of
    use dda_deck_check_case, only : search_bracket
    use dda_deck_scene, only : deck_family_t, new_family
@@ -102,7 +102,8 @@ contains
          if (source_of(deck) == "arch") search%resolution = arch_resolution(deck)
          search%start = search%low
          if (searched /= "thickness_ratio" .or. plan%velocities) return
-         if (family%decides_chains) search%resolution = chain_resolution(deck)
+         ! a chain keeps its digits
+         if (family%decides_chains) search%resolution = 0.0_wp
          if (.not. family%decides_chains) search%resolution_at = &
             & deck%value(arch_thickness_ratio)%number
          search%start = search_start(deck)

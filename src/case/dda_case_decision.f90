@@ -1,6 +1,5 @@
 !> Decision of a case: as a chain, by stages, or from a restart; and its frames
 submodule (dda_compute_case) dda_case_decision
-   use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_decision, only : decide_in_stages, enter_stage
    use dda_deck, only : source_of
@@ -11,7 +10,7 @@ submodule (dda_compute_case) dda_case_decision
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
-   use dda_settings, only : settings_t
+   use dda_scene, only : link_once
    use dda_verdict, only : outcome_t
    implicit none
 
@@ -19,20 +18,24 @@ contains
 
    !> Decide the scene
    module procedure compute_decision
-      type(settings_t) :: settings
-      type(chain_t) :: chain
+      type(decision_t) :: proof
       type(scene_t) :: begun
       real(wp) :: last
       logical :: decided
 
       ! tables tell displacements, which a chain does not keep
       decided = this%family%decides_chains .and. .not. this%tells_tables
-      if (decided) call this%family%link(this%family%deck%value(arch_thickness_ratio)%number, &
-         & settings, chain, decided)
-      if (decided) call decide_chain(settings, chain, this%decision, decided)
-      ! a chain proves that it falls; how it does is told by all of its blocks
-      if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
-      if (decided) return
+      associate (critical => this%critical)
+         if (decided) call link_once(this%family, &
+            & this%family%deck%value(arch_thickness_ratio)%number, critical%link)
+         if (decided) decided = critical%link%known
+         if (decided) call decide_chain(this%family%chain_settings, critical%link%chain, this%decision, &
+            & decided, critical%deficit)
+      end associate
+      if (decided) then
+         if (this%decision%outcome%verdict /= verdict%collapsed) return
+         proof = this%decision
+      end if
       call deck_scene(this%family%deck, this%scene)
       call plan_fall(this)
       associate (scene => this%scene, boundary => this%scene%settings%boundary)
@@ -50,6 +53,8 @@ contains
          if (allocated(boundary%change)) &
             & call enter_stage(scene%settings, last, scene%system, scene%contacts)
       end associate
+      ! a chain proves that it collapses; how it does is told by all of its blocks, if they can
+      if (decided .and. this%decision%outcome%verdict /= verdict%collapsed) this%decision = proof
    end procedure compute_decision
 
    !> What the album of the case is to hold

@@ -4,7 +4,7 @@ module dda_chain
    implicit none
    private
 
-   public :: chain_t, new_chain, weigh
+   public :: chain_t, new_chain
 
    !> A block of a chain
    type :: chain_block_t
@@ -44,12 +44,10 @@ module dda_chain
       type(chain_block_t), allocatable :: block(:)
       !> Its joints: (n + 1)
       type(chain_joint_t), allocatable :: joint(:)
-      !> Mean mass of its blocks [kg/m]
-      real(wp) :: mean_mass = 0.0_wp
       !> Sum of the sizes of the loads' components [N/m]
       real(wp) :: whole_load = 0.0_wp
-      !> Largest acceleration of a block that falls freely [m/s2]
-      real(wp) :: free_acceleration = 0.0_wp
+      !> Farthest that the middle of a joint is from the origin, along one axis [m]
+      real(wp) :: reach = 0.0_wp
    end type chain_t
 
 contains
@@ -62,31 +60,11 @@ contains
 
       chain%halved = .false.
       chain%keystone = .false.
+      chain%whole_load = 0.0_wp
+      chain%reach = 0.0_wp
       if (allocated(chain%block)) then
          if (size(chain%block) /= n) deallocate (chain%block, chain%joint)
       end if
       if (.not. allocated(chain%block)) allocate (chain%block(n), chain%joint(n + 1))
    end subroutine new_chain
-
-   !> Set the sums and bounds that depend on all blocks and joints, from these
-   pure subroutine weigh(chain)
-      type(chain_t), intent(inout) :: chain
-      real(wp) :: mass, load, fastest
-      integer :: b, n
-
-      n = size(chain%block)
-      mass = 0.0_wp
-      load = 0.0_wp
-      fastest = 0.0_wp
-      do b = 1, n
-         associate (block => chain%block(b))
-            mass = mass + block%mass
-            load = load + abs(block%weight(1)) + abs(block%weight(2))
-            fastest = max(fastest, (block%weight(1)**2 + block%weight(2)**2)/block%mass**2)
-         end associate
-      end do
-      chain%mean_mass = mass/real(n, wp)
-      chain%whole_load = load
-      chain%free_acceleration = sqrt(fastest)
-   end subroutine weigh
 end module dda_chain

@@ -25,7 +25,7 @@ module dda_arch_scene
    private
 
    public :: arch_scene, arch_numbers, joint_angles_deg, half_joints_deg, exact_thickness
-   public :: search_start, arch_resolution, chain_resolution
+   public :: search_start, arch_resolution
    public :: joint_law, material_of, set_loads, settings_of, unit_weight
 
    !> Friction angle from which no joint slides [deg]
@@ -261,17 +261,4 @@ contains
       arch_resolution = &
          & 8.0_wp*square/8.0_wp*epsilon(1.0_wp)/deck%value(arch_thickness_ratio)%number**2
    end function arch_resolution
-
-   !> The same for a chain, whose voussoirs are seen from their own joints: masses are wrong by some
-   !> eps n, the place of the thrust by alpha^2/8 of that, to be compared with alpha^4/48; and an
-   !> arch that lacks as much of its thickness, and accelerates by 0.4 alpha^2 of that, must not
-   !> pass for one at rest, which it may at 16 eps n/alpha (n joints in half an arch)
-   pure real(wp) function chain_resolution(deck)
-      type(deck_t), intent(in) :: deck
-      real(wp) :: angle
-
-      angle = degree*deck%value(arch_half_angle_deg)%number
-      chain_resolution = 100.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp) &
-         & /min(angle**2, angle**3)
-   end function chain_resolution
 end module dda_arch_scene

@@ -1,10 +1,8 @@
 !> The scene of a deck of any kind, and scenes that differ by one number
 module dda_deck_scene
-   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, set_loads, settings_of, &
       & unit_weight
    use dda_block_input, only : block_plan_t
-   use dda_chain, only : chain_t
    use dda_deck, only : deck_t, parameter_t, put_number, source_of
    use dda_deck_keys, only : deck_key
    use dda_error, only : error_t, fatal_error
@@ -16,7 +14,7 @@ module dda_deck_scene
    use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : load_direction, settings_t
+   use dda_settings, only : load_direction
    implicit none
    private
 
@@ -27,15 +25,7 @@ module dda_deck_scene
       type(deck_t), allocatable :: deck  !! The deck of one case
       !> The parameter
       type(parameter_t) :: parameter
-      !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
-      logical :: chains = .false.
-      type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
-      type(settings_t) :: settings     !! Settings of their runs
-      !> What does not depend on the thickness; made by the one who searches
-      type(arch_rays_t) :: rays
    contains
-      !> Make the chain of one value
-      procedure :: link => link_arch
       !> Make the scene of one value
       procedure :: build => build_deck_scene
       !> Make the scene of one value from that of another one
@@ -108,29 +98,13 @@ contains
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
       associate (deck => family%deck)
-         family%settings = settings_of(deck, degree*deck%value(arch_half_angle_deg)%number, &
+         family%chain_settings = settings_of(deck, degree*deck%value(arch_half_angle_deg)%number, &
             & size(half_joints_deg(deck)))
          family%numbers = arch_numbers(deck)
-         family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
-         family%numbers%halved = family%decides_chains .and. plan%halved
+         family%numbers%body_force = unit_weight(deck)*load_direction(family%chain_settings)
+         family%numbers%halved = plan%halved
       end associate
    end subroutine new_family
-
-   !> Make the chain of one thickness ratio
-   pure subroutine link_arch(family, value, settings, chain, linked)
-      class(deck_family_t), intent(in) :: family
-      real(wp), intent(in) :: value  !! The thickness ratio
-      type(settings_t), intent(out) :: settings
-      !> Any chain in, whose arrays are used again where they fit
-      type(chain_t), intent(inout) :: chain
-      logical, intent(out) :: linked  !! Whether the scenes are chains, and one has this value
-
-      linked = family%chains
-      if (linked) linked = number_fits(deck_key(family%parameter%key), value)
-      if (.not. linked) return
-      settings = family%settings
-      call arch_chain(family%numbers, family%rays, value, chain)
-   end subroutine link_arch
 
    !> Put one value of the parameter into a deck
    pure subroutine put_value(family, value, deck, error)

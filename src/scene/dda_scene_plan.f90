@@ -7,9 +7,9 @@ module dda_scene_plan
    use dda_block_system, only : n_unknown
    use dda_deck, only : deck_t, has_group, source_of
    use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
-      & analysis_unknowns, arch_half_angle_deg, joint_cohesion, joint_residual_deg, &
-      & joint_tension, live_group, load_gravity_direction_deg, load_horizontal_coefficient, &
-      & output_condition, output_joints, search_group, vehicle_group
+      & analysis_unknowns, joint_cohesion, joint_residual_deg, joint_tension, live_group, &
+      & load_gravity_direction_deg, load_horizontal_coefficient, output_condition, output_joints, &
+      & search_group, vehicle_group
    use dda_kinds, only : wp
    implicit none
    private
@@ -18,10 +18,6 @@ module dda_scene_plan
 
    !> Unknowns of a rigid block: u0, v0, r0
    integer, parameter :: n_rigid = 3
-
-   !> Below this half angle the steps of a chain near critical are moved by rounding, which passes
-   !> for rest sooner or later [deg]
-   real(wp), parameter :: shallow_deg = 3.0_wp
 
    !> Why blocks have strains or not
    type :: strain_reason_enum
@@ -59,7 +55,7 @@ module dda_scene_plan
       !> Whether the blocks are a chain: rigid, unmoved, each touching its two neighbours alone,
       !> which flat arrays without pattern and search can hold
       logical :: chain = .false.
-      !> Whether the left half of the chain will do, as the loads are upright
+      !> Whether the left half of the row will do, as the loads are upright
       logical :: halved = .false.
    end type scene_plan_t
 
@@ -92,11 +88,10 @@ contains
       plan%row = source_of(deck) == "arch" .and. deck%value(analysis_mode)%text == "static" &
          & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, live_group) &
          & .or. has_group(deck, vehicle_group))
-      if (plan%row) plan%row = deck%value(arch_half_angle_deg)%number >= shallow_deg
       plan%chain = plan%row .and. plan%unknowns == n_rigid &
          & .and. .not. (deck%value(output_condition)%flag &
          & .or. deck%value(analysis_collapse_displacement)%given)
-      plan%halved = plan%chain &
+      plan%halved = plan%row &
          & .and. .not. abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp &
          & .and. .not. abs(deck%value(load_horizontal_coefficient)%number) > 0.0_wp
    end function plan_scene

@@ -4,10 +4,9 @@
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_bracket
    use dda_chain_decision, only : decide_chain
-   use dda_collapse_trace, only : proposal_t, trace
+   use dda_collapse_trace, only : proposal_t, trace, trace_chain
    use dda_decision, only : decide
    use dda_error, only : error_t
-   use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, link_once, scene_t
    use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
@@ -29,20 +28,6 @@ module dda_bracket
    !> Largest relative bracket of a result, unless the tolerance is larger
    real(wp), parameter :: widest = 1.0e-4_wp
 
-   interface
-
-      !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-      pure module subroutine foresee(family, search, critical, proposal, face)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         type(critical_t), intent(inout) :: critical  !! New in; its chain and their forces out
-         type(proposal_t), intent(out) :: proposal    !! Where it stops, usable if that is known
-         !> Faces of the joints of that collapse, where it is known: (n + 1)
-         type(joint_face_t), allocatable, intent(out) :: face(:)
-      end subroutine foresee
-
-   end interface
-
 contains
 
    !> Close the bracket around the value
@@ -51,12 +36,12 @@ contains
       type(search_t), intent(in) :: search
       type(critical_t), intent(out) :: critical  !! What was found; chains may be halves
       type(proposal_t) :: proposal
-      type(joint_face_t), allocatable :: foreseen(:)
       real(wp) :: limit, start, value
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      if (family%decides_chains) call foresee(family, search, critical, proposal, foreseen)
+      if (family%decides_chains) call trace_chain(family, search, search%start, search%high, .false., &
+         & critical, proposal)
       start = search%start
       if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
       call find_collapse(family, search, start, limit, critical)
@@ -79,10 +64,8 @@ contains
             may_turn = .false.
          end if
          if (answer == verdict%collapsed) then
-            if (.not. (proved(search, limit, critical, proposal) &
-               & .and. is_foreseen(critical%fallen, foreseen))) &
+            if (.not. proved(search, limit, critical, proposal)) &
                & call trace(family, search, limit, critical, proposal)
-            if (allocated(foreseen)) deallocate (foreseen)
          end if
          in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
@@ -211,22 +194,6 @@ contains
          & - proposal%half) < 1.0e-3_wp*proposal%half
    end function proved
 
-   !> Whether a collapse is the one that was foreseen, if one was
-   pure logical function is_foreseen(fallen, foreseen)
-      type(decision_t), intent(in) :: fallen
-      !> Faces of its joints: (n), if it was
-      type(joint_face_t), allocatable, intent(in) :: foreseen(:)
-
-      is_foreseen = .not. allocated(foreseen)
-      if (is_foreseen) return
-      if (size(fallen%contacts%face) /= size(foreseen)) return
-      associate (face => fallen%contacts%face)
-         is_foreseen = all(face%slip == foreseen%slip) &
-            & .and. all(face%open(1) .eqv. foreseen%open(1)) &
-            & .and. all(face%open(2) .eqv. foreseen%open(2))
-      end associate
-   end function is_foreseen
-
    !> Whether the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)
       type(search_t), intent(in) :: search
@@ -259,8 +226,8 @@ contains
       decided = family%decides_chains
       if (decided) call link_once(family, value, critical%link)
       if (decided) decided = critical%link%known
-      if (decided) call decide_chain(critical%link%settings, critical%link%chain, decision, &
-         & decided, critical%reaction)
+      if (decided) call decide_chain(family%chain_settings, critical%link%chain, decision, &
+         & decided, critical%deficit)
       if (.not. decided) then
          call family%build(value, scene, error)
          if (allocated(error)) then

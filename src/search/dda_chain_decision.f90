@@ -2,10 +2,9 @@
 !> is, a mechanism on which the loads do work that it is not; and a half model as the whole
 module dda_chain_decision
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : carry_forces, cone_of, holds, influence, rounding_of_forces
-   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
+   use dda_chain_balance, only : cone_of
    use dda_chain_path, only : stick_all_along
-   use dda_chain_thrust, only : approach_cones, find_thrust, thrust_t
+   use dda_chain_programme, only : deficit_t, find_deficit, mechanism_of_bounds
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
    use dda_search, only : decision_t
@@ -13,164 +12,88 @@ module dda_chain_decision
    implicit none
    private
 
-   public :: decide_chain, doubtful, unfold
-
-   !> Forces beyond the cones by less than so many times their rounding prove nothing
-   real(wp), parameter :: doubtful = 4.0_wp
-   !> Joints that fail as much as their neighbours except for this share do so by rounding
-   real(wp), parameter :: tie = 1.0e-6_wp
+   public :: decide_chain, unfold
 
 contains
 
    !> Decide a chain
-   pure subroutine decide_chain(settings, chain, decision, decided, reaction)
+   pure subroutine decide_chain(settings, chain, decision, decided, deficit)
       type(settings_t), intent(in) :: settings
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
       !> Whether it counts: not where joints of what stands may have slid on the way to its loads,
-      !> nor where the forces have come neither into the cones nor to a mechanism
+      !> nor where the programme has no solution
       logical, intent(out) :: decided
-      !> What its left springing bears, or the plane of symmetry of a half: that of a chain much
-      !> like it in, or 0, its own out: (3) [N/m, N/m, N]
-      real(wp), intent(inout), optional :: reaction(3)
-      type(thrust_t) :: thrust
-      real(wp) :: beyond(3, size(chain%joint)), force(3, size(chain%joint)), noise, worst
-      real(wp) :: load(3, size(chain%joint))
-      integer :: j, n, passes
+      !> What a chain much like it lacks, or nothing, in; what this one lacks out
+      type(deficit_t), intent(inout) :: deficit
+      integer :: j, n
 
-      if (present(reaction)) thrust%reaction = reaction
-      call find_thrust(chain, thrust, load)
-      if (present(reaction)) reaction = thrust%reaction
-      call carry_forces(chain, load, thrust%reaction, force)
-      noise = rounding_of_forces(chain, force)
-      call approach_cones(chain, thrust, noise, force, beyond, passes)
-      worst = maxval(abs(beyond))
-      decided = .true.
+      n = size(chain%joint)
+      decision%flow = flow_rule%associated
+      decision%halved = chain%halved
+      decision%keystone = chain%keystone
       associate (outcome => decision%outcome, contacts => decision%contacts)
-         allocate (contacts%face(size(chain%joint)), contacts%gap(3, size(chain%joint)))
-         allocate (contacts%force(3, size(chain%joint)))
-         do j = 1, size(chain%joint)
-            contacts%force(:, j) = force(:, j) - beyond(:, j)
-            contacts%gap(:, j) = -force(:, j)*(1.0_wp/chain%joint(j)%stiffness)
+         allocate (contacts%face(n), contacts%gap(3, n), contacts%force(3, n))
+         call find_deficit(chain, deficit, contacts%force)
+         outcome%steps = 1
+         outcome%passes = deficit%exchanges
+         decided = deficit%known
+         if (.not. decided) return
+         do j = 1, n
+            contacts%gap(:, j) = contacts%force(:, j)*(-1.0_wp/chain%joint(j)%stiffness)
          end do
-         if (worst > noise .and. .not. closes_row(chain, beyond)) then
-            decided = .false.
-         else if (worst > doubtful*noise) then
+         if (deficit%least > deficit%noise) then
             outcome%verdict = verdict%collapsed
-            call show_mechanism(chain, force, beyond, decision)
-            ! slower motions drown in rounding
-            outcome%rest_tolerance = outcome%acceleration_ratio*doubtful*noise/worst
-         else if (worst > noise) then
+            call show_mechanism(chain, deficit, decision)
+         else if (deficit%least >= -deficit%noise) then
             outcome%verdict = verdict%undecided
             outcome%reason = "joint forces exceed their limits by no more than round-off"
          else
             outcome%verdict = verdict%stable
             ! the plane of symmetry is smooth
-            n = size(chain%joint) - merge(1, 0, chain%halved)
+            n = n - merge(1, 0, chain%halved)
             if (settings%verdict_flow == flow_rule%coulomb &
                & .and. .not. all(chain%joint(:n)%no_slip)) &
                & call stick_all_along(chain, settings%tilt, contacts%face, decided)
          end if
-         if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &
-            & = sqrt(2.0_wp*thrust%elastic_motion/chain%free_acceleration)
-         outcome%steps = 1
-         outcome%passes = thrust%passes + passes
       end associate
-      decision%flow = flow_rule%associated
-      decision%halved = chain%halved
-      decision%keystone = chain%keystone
    end subroutine decide_chain
 
-   !> Whether openings close the row again at its end: no forces in balance do work on them
-   pure logical function closes_row(chain, beyond)
+   !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall;
+   !> of its forces, what the cones let pass
+   pure subroutine show_mechanism(chain, deficit, decision)
       type(chain_t), intent(in) :: chain
-      !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
-      real(wp), intent(in) :: beyond(:, :)
-      real(wp) :: g(3, 3), left(3), whole(3)
-      integer :: j
-
-      left = 0.0_wp
-      whole = 0.0_wp
-      do j = 1, size(beyond, 2)
-         if (.not. any(abs(beyond(:, j)) > 0.0_wp)) cycle
-         g = influence(chain, j)/chain%joint(j)%stiffness
-         left = left + matmul(beyond(:, j), g)
-         whole = whole + matmul(abs(beyond(:, j)), abs(g))
-      end do
-      if (chain%halved) left(2) = 0.0_wp
-      closes_row = all(abs(left) <= tie*whole)
-   end function closes_row
-
-   !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall
-   pure subroutine show_mechanism(chain, force, beyond, decision)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(:, :)  !! Forces in balance with the loads: (3, n + 1) [N/m]
-      !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
-      real(wp), intent(in) :: beyond(:, :)
+      type(deficit_t), intent(in) :: deficit
       type(decision_t), intent(inout) :: decision
-      real(wp) :: admissible(3), fastest, inertia, power, spinning, speed
+      type(joint_face_t) :: ignored
+      real(wp) :: force(3), fastest, free, inertia, power, spinning, speed
       integer :: b, j, n
 
       n = size(chain%block)
-      allocate (decision%contacts%increment(3, n + 1))
-      do j = 1, n + 1
-         if (.not. holds(chain, force(:, j), j)) &
-            & call project(cone_of(chain, j), force(:, j), admissible, decision%contacts%face(j))
-         decision%contacts%increment(:, j) = -beyond(:, j)/chain%joint(j)%stiffness
-      end do
-      power = -sum(force*decision%contacts%increment)
-      call concentrate(chain, beyond, decision%contacts%face, decision%contacts%increment, power)
-      call move_blocks(chain, decision%contacts%increment, decision%outcome%motion)
-      inertia = 0.0_wp
-      fastest = 0.0_wp
-      associate (d => decision%outcome%motion)
+      associate (contacts => decision%contacts, outcome => decision%outcome)
+         allocate (contacts%increment(3, n + 1))
+         call mechanism_of_bounds(chain, deficit, contacts%face, contacts%increment, power)
+         call move_blocks(chain, contacts%increment, outcome%motion)
+         do j = 1, n + 1
+            force = contacts%force(:, j)
+            call project(cone_of(chain, j), force, contacts%force(:, j), ignored)
+         end do
+         inertia = 0.0_wp
+         fastest = 0.0_wp
+         free = 0.0_wp
          do b = 1, n
-            speed = norm2(d(1:2, b))
-            spinning = sqrt(chain%block(b)%inertia/chain%block(b)%mass)*abs(d(3, b))
+            speed = norm2(outcome%motion(1:2, b))
+            spinning = sqrt(chain%block(b)%inertia/chain%block(b)%mass)*abs(outcome%motion(3, b))
             inertia = inertia + chain%block(b)%mass*(speed**2 + spinning**2)
             fastest = max(fastest, speed + spinning)
+            free = max(free, norm2(chain%block(b)%weight)/chain%block(b)%mass)
          end do
+         outcome%acceleration_ratio = power*fastest/(inertia*free)
+         ! slower motions drown in rounding
+         outcome%rest_tolerance = outcome%acceleration_ratio*deficit%noise/deficit%least
       end associate
-      decision%outcome%acceleration_ratio = power*fastest/(inertia*chain%free_acceleration)
    end subroutine show_mechanism
-
-   !> Let only those joints open that fail more than their neighbours, where that is a mechanism: a
-   !> structure opens joint by joint
-   pure subroutine concentrate(chain, beyond, face, opening, power)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: beyond(:, :)
-      type(joint_face_t), intent(inout) :: face(:)  !! The faces: (n + 1)
-      !> Opening 1, opening 2 and slip of each joint: (3, n + 1) [m]
-      real(wp), intent(inout) :: opening(:, :)
-      real(wp), intent(inout) :: power  !! Power of the loads on them
-      type(chain_mechanism_t) :: mechanism
-      type(joint_face_t) :: admissible_face, few(size(face))
-      real(wp) :: admissible(3), gap(0:size(face) + 1), all_power, noise
-      integer :: i, j
-      logical :: usable
-
-      gap = 0.0_wp
-      do j = 1, size(face)
-         gap(j) = sum(beyond(:, j)**2)
-      end do
-      do j = 1, size(face)
-         if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - tie)*max(gap(j - 1), gap(j + 1))) &
-            & few(j) = face(j)
-      end do
-      call freeze_mechanism(chain, few, mechanism)
-      call chain_power(mechanism, chain, all_power, noise, usable)
-      if (.not. (usable .and. all_power > noise)) return
-      do i = 1, size(mechanism%joint)
-         j = mechanism%joint(i)
-         call project(cone_of(chain, j), -mechanism%opening(:, i), admissible, admissible_face)
-         if (maxval(abs(admissible)) > tie) return
-      end do
-      face = few
-      opening = 0.0_wp
-      opening(:, mechanism%joint) = mechanism%opening
-      power = all_power*chain%mean_mass*real(size(chain%block), wp)
-   end subroutine concentrate
 
    !> Motion of the blocks from the left springing on, one joint after the other; the last joint
    !> gets the openings that close the row
@@ -255,9 +178,11 @@ contains
 
       if (.not. allocated(value)) return
       allocate (whole(3, n))
-      do j = 1, m
-         whole(:, n + 1 - j) = sign*value(:, j)
-         whole(:, j) = value(:, j)
+      whole(:, :m) = value(:, :m)
+      do j = n - m + 1, n
+         whole(1, j) = sign(1)*value(1, n + 1 - j)
+         whole(2, j) = sign(2)*value(2, n + 1 - j)
+         whole(3, j) = sign(3)*value(3, n + 1 - j)
       end do
       call move_alloc(whole, value)
    end subroutine mirror

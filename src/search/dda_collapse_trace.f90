@@ -4,20 +4,19 @@ module dda_collapse_trace
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : begin_motion, block_system_t
-   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_contact_types, only : joint_springs_t, joint_t, new_joint_springs, same_joint
    use dda_contacts, only : joint_place
    use dda_error, only : error_t
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, link_once, scene_t
-   use dda_search, only : critical_t, search_t
+   use dda_search, only : critical_t, decision_t, search_t
    use dda_settings, only : flow_rule, settings_t
    use dda_step_state, only : equations_t
    implicit none
    private
 
-   public :: frozen_mechanism_t, proposal_t, mechanism_power, trace
+   public :: frozen_mechanism_t, proposal_t, least_half, mechanism_power, trace, trace_chain
 
    !> A collapse to be traced from one value of the parameter to another
    type :: frozen_mechanism_t
@@ -42,13 +41,6 @@ module dda_collapse_trace
       real(wp) :: reach = 0.0_wp
    end type proposal_t
 
-   !> A collapse whose joints keep to their faces
-   type :: frozen_t
-      logical :: linked = .false.         !! Whether it is that of a chain
-      type(chain_mechanism_t) :: chain    !! The mechanism of a chain
-      type(frozen_mechanism_t) :: blocks  !! The mechanism of any blocks
-   end type frozen_t
-
    !> Share of the value by which moving blocks are first looked for beyond frozen ones
    real(wp), parameter :: first_reach = 1.0e-3_wp
    !> Half a bracket is no narrower than this share of its value
@@ -67,10 +59,29 @@ module dda_collapse_trace
    !> Free fall over elastic motion in the step that traces a mechanism
    real(wp), parameter :: free_fall = 1.0e6_wp
 
+   interface
+
+      !> Trace a chain to where it ceases to collapse, by the secant method on the deficit of chains
+      !> in which only some of its joints part
+      pure module subroutine trace_chain(family, search, from, limit, frozen, critical, proposal)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         real(wp), intent(in) :: from     !! Where to begin
+         real(wp), intent(in) :: limit    !! The end of the range on the side that stands
+         !> Whether the mechanism at the beginning is kept: all values before the one proposed then
+         !> collapse
+         logical, intent(in) :: frozen
+         type(critical_t), intent(inout) :: critical
+         type(proposal_t), intent(out) :: proposal
+      end subroutine trace_chain
+
+   end interface
+
 contains
 
    !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
-   !> from the third value on the parabola through three tells what the secant leaves
+   !> from the third value on the parabola through three tells what the secant leaves. A chain is
+   !> traced by its deficit
    pure subroutine trace(family, search, limit, critical, proposal)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
@@ -78,13 +89,14 @@ contains
       !> What was found so far; the factorisations are counted
       type(critical_t), intent(inout) :: critical
       type(proposal_t), intent(out) :: proposal  !! Where the collapse stops
-      type(frozen_t) :: mechanism
+      type(frozen_mechanism_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
-      real(wp) :: bend, last_slope, near, x_before
+      real(wp) :: bend, last_slope, least, near, x_before
       integer :: pass
       logical :: usable, stopped, only_noise
 
-      proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
+      least = least_half(search, critical%falls, size(critical%fallen%contacts%face))
+      proposal%half = least*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
       ! what is crushed takes power that the loads alone do not tell, and so does a bar that yields
       if (allocated(critical%fallen%system%bar)) then
@@ -95,7 +107,12 @@ contains
             if (any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp))) return
          end associate
       end if
-      call freeze(family, critical, mechanism)
+      call link_once(family, critical%falls, critical%link)
+      if (critical%link%known) then
+         call trace_chain(family, search, critical%falls, limit, .true., critical, proposal)
+         return
+      end if
+      call freeze(critical%fallen, mechanism)
       x(1) = critical%falls
       call power_at(family, mechanism, x(1), critical, power(1), noise, usable)
       if (.not. usable) return
@@ -118,7 +135,7 @@ contains
             & /(x(2) - x_before)
          next = next - bend
          if (next < search%low .or. next > search%high) return
-         near = 0.02_wp*least_half(search, critical)*abs(next)
+         near = 0.02_wp*least*abs(next)
          stopped = abs(next - x(2)) <= near .or. pass > 1 &
             & .and. abs(bend*(x(2) - x(1)))*curving < near*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
@@ -128,14 +145,16 @@ contains
          x = [x(2), next]
          power(1) = power(2)
       end do
-      call propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+      call propose(family, search, mechanism, least, next, coarse_slope, noise, critical, proposal)
    end subroutine trace
 
    !> Where a mechanism stops, and how near to that to decide
-   pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+   pure subroutine propose(family, search, mechanism, least, next, coarse_slope, noise, critical, &
+      & proposal)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      real(wp), intent(in) :: least         !! Least half width of the bracket over the value
       real(wp), intent(in) :: next          !! Where it stops
       real(wp), intent(in) :: coarse_slope  !! Change of its power with the value
       real(wp), intent(inout) :: noise      !! Noise of the power; raised where rounding shows
@@ -146,14 +165,14 @@ contains
       proposal%value = next
       if (critical%current) then
          proposal%reach = first_reach*abs(next)
-         proposal%half = least_half(search, critical)*abs(next)
+         proposal%half = least*abs(next)
          return
       end if
-      if (.not. mechanism%linked) call refine_noise(family, mechanism, next, critical, noise)
+      call refine_noise(family, mechanism, next, critical, noise)
       ! the stop may be off by the one; beside it, by the other, a mechanism becomes too slow for a
       ! decision to tell it from rest
       associate (outcome => critical%fallen%outcome)
-         proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope) &
+         proposal%half = max(least*abs(next), abs(noise/coarse_slope) &
             & + 2.0_wp*abs(next - critical%falls)*outcome%rest_tolerance/outcome%acceleration_ratio)
       end associate
       proposal%reach = proposal%half
@@ -161,52 +180,36 @@ contains
          & call average_root(family, mechanism, coarse_slope, critical, proposal)
    end subroutine propose
 
-   !> Freeze the last collapse
-   pure subroutine freeze(family, critical, mechanism)
-      class(family_t), intent(in) :: family
-      !> What was found so far, a collapse among it; keeps its chain
-      type(critical_t), intent(inout) :: critical
-      type(frozen_t), intent(out) :: mechanism
-      type(joint_face_t), allocatable :: face(:)
+   !> Freeze a collapse
+   pure subroutine freeze(fallen, mechanism)
+      type(decision_t), intent(in) :: fallen
+      type(frozen_mechanism_t), intent(out) :: mechanism
 
-      call link_once(family, critical%falls, critical%link)
-      mechanism%linked = critical%link%known
-      associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome, &
-         & chain => critical%link%chain)
-         if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
-            ! of a collapse that was decided as a whole, the left half
-            face = contacts%face(:size(chain%joint))
-            if (chain%keystone) face(size(face)) = joint_face_t()
-            call freeze_mechanism(chain, face, mechanism%chain)
-         else if (mechanism%linked) then
-            call freeze_mechanism(chain, contacts%face, mechanism%chain)
-         else
-            mechanism%blocks%joint = contacts%joint
-            mechanism%blocks%face = contacts%face
-            mechanism%blocks%motion = outcome%motion(:3, :)
-            mechanism%blocks%dt = sqrt(free_fall)*outcome%elastic_time
-         end if
-      end associate
+      mechanism%joint = fallen%contacts%joint
+      mechanism%face = fallen%contacts%face
+      mechanism%motion = fallen%outcome%motion(:3, :)
+      mechanism%dt = sqrt(free_fall)*fallen%outcome%elastic_time
    end subroutine freeze
 
    !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
-   pure real(wp) function least_half(search, critical)
+   pure real(wp) function least_half(search, value, n)
       type(search_t), intent(in) :: search
-      type(critical_t), intent(in) :: critical
+      real(wp), intent(in) :: value  !! A value near the critical one
+      integer, intent(in) :: n       !! Number of joints
       real(wp) :: resolution
 
       resolution = search%resolution
       if (search%resolution_at > 0.0_wp) &
-         & resolution = resolution*(search%resolution_at/critical%falls)**2
+         & resolution = resolution*(search%resolution_at/value)**2
       least_half = max(search%tolerance/2.0_wp, resolution, &
-         & least_share + share_of_joint*real(size(critical%fallen%contacts%face), wp))
+         & least_share + share_of_joint*real(n, wp))
    end function least_half
 
    !> Where rounding leaves more than the tolerance: the mean of many roots, as each value of the
    !> parameter rounds the coordinates otherwise
    pure subroutine average_root(family, mechanism, slope, critical, proposal)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
       real(wp), intent(in) :: slope                !! Change of the power with the value
       type(critical_t), intent(inout) :: critical
       type(proposal_t), intent(inout) :: proposal  !! The proposal; its value is set
@@ -228,18 +231,18 @@ contains
    !> Rounding in the solution of the equations: what another length of the step makes of the power
    pure subroutine refine_noise(family, mechanism, value, critical, noise)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
       real(wp), intent(in) :: value  !! The value
       type(critical_t), intent(inout) :: critical
       real(wp), intent(inout) :: noise
-      type(frozen_t) :: other
+      type(frozen_mechanism_t) :: other
       real(wp) :: power(3), ignored
       logical :: usable
       integer :: i
 
       other = mechanism
       do i = 1, 3
-         other%blocks%dt = mechanism%blocks%dt*0.7_wp**(i - 2)
+         other%dt = mechanism%dt*0.7_wp**(i - 2)
          call power_at(family, other, value, critical, power(i), ignored, usable)
          if (.not. usable) return
       end do
@@ -249,7 +252,7 @@ contains
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
       real(wp), intent(out) :: power  !! The power
@@ -260,17 +263,11 @@ contains
 
       power = 0.0_wp
       noise = 0.0_wp
-      if (mechanism%linked) then
-         call link_once(family, value, critical%link)
-         usable = critical%link%known
-         if (usable) call chain_power(mechanism%chain, critical%link%chain, power, noise, usable)
-         return
-      end if
       call family%build(value, scene, error)
       usable = .not. allocated(error)
       if (.not. usable) return
       call begin_motion(scene%system)
-      call mechanism_power(mechanism%blocks, scene, power, noise, usable)
+      call mechanism_power(mechanism, scene, power, noise, usable)
       critical%factorisations = critical%factorisations + 1
    end subroutine power_at
 

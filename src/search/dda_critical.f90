@@ -71,8 +71,8 @@ contains
       if (family%load /= searched_load%none .and. allocated(critical%fallen)) then
          if (.not. critical%fallen%by_graph) call tell_whole(family, verdict%collapsed, critical)
       end if
-      if (allocated(critical%standing) .and. .not. family%decides_chains) &
-         & call tell_whole(family, verdict%stable, critical)
+      if (allocated(critical%standing) .and. .not. (family%decides_chains &
+         & .and. allocated(critical%fallen))) call tell_whole(family, verdict%stable, critical)
       if (allocated(critical%fallen)) call unfold(critical%fallen)
       if (allocated(critical%standing)) call unfold(critical%standing)
    end subroutine find_critical

@@ -1,5 +1,6 @@
 !> A scene ready to run, and families of scenes that differ by one number
 module dda_scene
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_block_system, only : block_system_t, move_system
    use dda_chain, only : chain_t
    use dda_contacts, only : contacts_t, move_contacts
@@ -23,6 +24,9 @@ module dda_scene
    !> Their names
    type(searched_load_enum), parameter :: searched_load = searched_load_enum()
 
+   !> Thickness ratio of an arch without intrados
+   real(wp), parameter :: thickest = 2.0_wp
+
    !> Blocks and contacts at the beginning, and how to run them
    type :: scene_t
       type(settings_t) :: settings    !! Settings of the run
@@ -40,12 +44,17 @@ module dda_scene
    type :: link_t
       logical :: known = .false.    !! Whether there is one
       real(wp) :: value = 0.0_wp    !! Its value of the parameter
-      type(settings_t) :: settings  !! Settings of its run
       type(chain_t) :: chain        !! The chain
    end type link_t
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
+      !> Whether they are chains but for strain, arches that differ by their thickness ratio alone
+      logical :: chains = .false.
+      type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
+      type(settings_t) :: chain_settings  !! Settings of their runs
+      !> What does not depend on the thickness; made by the one who searches
+      type(arch_rays_t) :: rays
       !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them
       logical :: decides_chains = .false.
@@ -54,8 +63,6 @@ module dda_scene
       procedure(build_scene), deferred :: build  !! Make the scene of one value
       !> Make the scene of one value from that of another one
       procedure :: turn => turn_anew
-      !> Make the scene of one value as a chain of rigid blocks, where it is one but for strain
-      procedure :: link => link_nothing
    end type family_t
 
    abstract interface
@@ -114,21 +121,8 @@ contains
       type(link_t), intent(inout) :: link  !! The last chain, whose arrays are used again
 
       if (link%known .and. .not. abs(value - link%value) > 0.0_wp) return
-      call family%link(value, link%settings, link%chain, link%known)
+      link%known = family%chains .and. value > 0.0_wp .and. value < thickest
+      if (link%known) call arch_chain(family%numbers, family%rays, value, link%chain)
       link%value = value
    end subroutine link_once
-
-   !> Scenes that are no chains
-   pure subroutine link_nothing(family, value, settings, chain, linked)
-      class(family_t), intent(in) :: family
-      real(wp), intent(in) :: value
-      type(settings_t), intent(out) :: settings
-      !> Any chain in, whose arrays are used again where they fit
-      type(chain_t), intent(inout) :: chain
-      logical, intent(out) :: linked  !! Whether there is one
-
-      chain = chain_t()
-      ! what is asked of the arguments cannot be
-      linked = .not. same_type_as(family, family) .and. value > 0.0_wp
-   end subroutine link_nothing
 end module dda_scene

@@ -2,6 +2,7 @@
 module dda_search
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
+   use dda_chain_programme, only : deficit_t
    use dda_contact_types, only : joint_springs_t
    use dda_contacts, only : contacts_t, place_all_joints
    use dda_kinds, only : wp
@@ -60,8 +61,7 @@ module dda_search
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
       type(link_t) :: link  !! The chain that was looked at last
-      !> Unknowns of its forces, where the next decision begins: (3) [N/m, N/m, N]
-      real(wp) :: reaction(3) = 0.0_wp
+      type(deficit_t) :: deficit  !! What its forces lack, where the next one begins
       real(wp) :: other = 0.0_wp      !! Value at which it falls in the other direction
       logical :: has_other = .false.  !! Whether it does so within the range
       integer :: others = 0           !! Values that a search in time has run beside its bracket

@@ -6,11 +6,7 @@ module dda_chain_balance
    implicit none
    private
 
-   public :: cone_of, sum_loads, joint_force, influence, holds, carry_forces, rounding_of_forces
-   public :: add_reaction
-
-   !> Relative error of a force that is carried from joint to joint
-   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
+   public :: cone_of, sum_loads, joint_force, influence, carry_forces, add_reaction
 
 contains
 
@@ -83,16 +79,6 @@ contains
       g(3, :) = [chain%joint(j)%tangent, 0.0_wp]
    end function influence
 
-   !> Whether a force lies inside the cone of a joint
-   pure logical function holds(chain, force, j)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(3)  !! N1, N2, T [N/m]
-      integer, intent(in) :: j
-
-      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp .and. (chain%joint(j)%no_slip &
-         & .or. abs(force(3)) <= chain%joint(j)%friction*(force(1) + force(2)))
-   end function holds
-
    !> Forces of all joints after a change of the unknowns
    pure subroutine add_reaction(chain, change, before, after)
       type(chain_t), intent(in) :: chain
@@ -115,49 +101,40 @@ contains
 
    !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
    !> moment of a shallow arch, seen from afar, would lose its digits
-   pure subroutine carry_forces(chain, load, reaction, force)
+   pure subroutine carry_forces(chain, reaction, force, magnitude)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: load(:, :), reaction(3)
+      real(wp), intent(in) :: reaction(3)
       real(wp), intent(out) :: force(:, :)  !! The forces N1, N2, T: (3, n + 1) [N/m]
+      !> Largest force of a corner by one component of the thrust alone: the rounding of coordinates
+      !> changes forces by a share of it [N/m]
+      real(wp), intent(out) :: magnitude
       real(wp) :: s(2), normal, along, moment
-      integer :: b, from, ahead, n, side
+      integer :: ahead, i, j, side
 
-      n = size(chain%block)
-      from = merge(n + 1, 1, chain%halved)
+      j = merge(size(chain%joint), 1, chain%halved)
       ahead = merge(-1, 1, chain%halved)
       side = merge(1, 2, chain%halved)
-      force(:, from) = joint_force(chain, load, reaction, from)
-      moment = (force(1, from) - force(2, from))*chain%joint(from)%half
-      s = reaction(1:2) + load(1:2, from)
-      normal = force(1, from) + force(2, from)
-      along = force(3, from)
-      do b = merge(n, 1, chain%halved), merge(1, n, chain%halved), ahead
-         from = from + ahead
-         moment = moment + chain%joint(from - ahead)%arm(1, side)*normal &
-            & + chain%joint(from - ahead)%arm(2, side)*along
-         s = s + real(ahead, wp)*chain%block(b)%weight
-         associate (joint => chain%joint(from))
+      s = reaction(1:2)
+      magnitude = 0.0_wp
+      do i = 0, size(chain%block)
+         if (i > 0) then
+            moment = moment + chain%joint(j)%arm(1, side)*normal + chain%joint(j)%arm(2, side)*along
+            j = j + ahead
+            s = s + real(ahead, wp)*chain%block(j + 1 - side)%weight
+         end if
+         associate (joint => chain%joint(j))
             normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
             along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
-            moment = moment - joint%arm(1, 3 - side)*normal - joint%arm(2, 3 - side)*along
-            force(:, from) = [(normal + moment/joint%half)/2.0_wp, &
+            if (i == 0) then
+               moment = reaction(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1)
+            else
+               moment = moment - joint%arm(1, 3 - side)*normal - joint%arm(2, 3 - side)*along
+            end if
+            force(:, j) = [(normal + moment/joint%half)/2.0_wp, &
                & (normal - moment/joint%half)/2.0_wp, along]
+            magnitude = max(magnitude, (abs(s(1)*joint%middle(2)) + abs(s(2)*joint%middle(1))) &
+               & /joint%half + abs(normal))
          end associate
       end do
    end subroutine carry_forces
-
-   !> Rounding of forces that are carried from joint to joint
-   pure real(wp) function rounding_of_forces(chain, force) result(noise)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(:, :)
-      integer :: j
-
-      noise = 0.0_wp
-      do j = 1, size(force, 2)
-         noise = noise + max(abs(chain%joint(j)%arm(2, 1)), abs(chain%joint(j)%arm(2, 2))) &
-            & *(abs(force(1, j)) + abs(force(2, j)) + abs(force(3, j)))
-      end do
-      noise = rounding*noise/minval(chain%joint%half)
-   end function rounding_of_forces
-
 end module dda_chain_balance

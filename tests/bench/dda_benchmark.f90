@@ -3,7 +3,7 @@
 module dda_benchmark
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
    use dda_arch, only : arch_blocks, equal_joints
-   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays, arch_rays_t
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays
    use dda_assembly, only : new_equations, solve_faces
    use dda_block_inertia, only : assemble_blocks
    use dda_band_reference, only : band_job_t, new_band_job
@@ -11,6 +11,7 @@ module dda_benchmark
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain, unfold
+   use dda_chain_programme, only : deficit_t
    use dda_contacts, only : contacts_t, find_contacts, raise_springs
    use dda_kinds, only : pi, wp
    use dda_critical, only : find_critical
@@ -33,13 +34,7 @@ module dda_benchmark
       integer :: voussoirs = 36
       !> Unknowns of a block; arches of 3 are chains, as where a deck asks for no more
       integer :: unknowns = 6
-      !> What the arches are made from
-      type(arch_numbers_t) :: numbers
-      !> What does not depend on their thickness
-      type(arch_rays_t) :: rays
    contains
-      !> Make the arch of one thickness ratio as a chain
-      procedure :: link => link_arch
       !> Make the arch of one thickness ratio
       procedure :: build => build_arch
    end type equal_arches_t
@@ -162,6 +157,7 @@ contains
 
       family%voussoirs = voussoirs
       family%unknowns = unknowns
+      family%chains = .true.
       family%decides_chains = unknowns == 3
       family%numbers = arch_numbers_t(family%numbers%shape, material%density, material%young, &
          & [0.0_wp, -unit_weight], settings%penalty_ratio, joint_law_t(no_slip=.true.), &
@@ -196,23 +192,6 @@ contains
       call find_contacts(scene%system, edge_pair, law, scene%contacts)
    end subroutine build_arch
 
-   !> Make the arch of one thickness ratio as a chain
-   pure subroutine link_arch(family, value, settings, chain, linked)
-      !> The family
-      class(equal_arches_t), intent(in) :: family
-      !> Thickness over radius
-      real(wp), intent(in) :: value
-      !> Settings of the run
-      type(settings_t), intent(out) :: settings
-      !> The chain
-      type(chain_t), intent(inout) :: chain
-      !> Always
-      logical, intent(out) :: linked
-
-      linked = .true.
-      call arch_chain(family%numbers, family%rays, value, chain)
-   end subroutine link_arch
-
    !> All figures but the memory
    subroutine measure(voussoirs, unknowns, figures)
       !> Number of voussoirs
@@ -227,8 +206,6 @@ contains
       type(discrete_solution_t) :: exact
       type(error_t), allocatable :: error
       real(wp), allocatable :: sample(:, :)
-      type(settings_t) :: settings
-      logical :: linked
       integer :: answer(4), i
 
       figures%voussoirs = voussoirs
@@ -239,8 +216,8 @@ contains
       call discrete_critical_equal(voussoirs, half_angle, pi, .true., exact)
       do i = 1, size(distance)
          call search%family%build(exact%eta*(1.0_wp + distance(i)), decisions%scene(i), error)
-         if (unknowns == 3) call search%family%link(exact%eta*(1.0_wp + distance(i)), settings, &
-            & decisions%chain(i), linked)
+         if (unknowns == 3) call arch_chain(search%family%numbers, search%family%rays, &
+            & exact%eta*(1.0_wp + distance(i)), decisions%chain(i))
       end do
       call decisions%run()
       call unfold(decisions%decision)
@@ -271,16 +248,17 @@ contains
       type(timed_job_t) :: timed(6)
       real(wp), allocatable :: sample(:, :)
       real(wp) :: solves, cost(2:6)
+      type(decision_t) :: decision
       integer :: j
 
       setup%scene = decisions%scene(1)
       call setup%run()
       solve%setup_job_t = setup
-      associate (decision => decisions%decision(1))
-         solve%contacts%face = decision%contacts%face
-         solve%motion = decision%outcome%motion
-         solve%dt = sqrt(free_fall)*decision%outcome%elastic_time
-      end associate
+      ! a chain knows no elastic motion
+      call decide(setup%scene, decision)
+      solve%contacts%face = decision%contacts%face
+      solve%motion = decision%outcome%motion
+      solve%dt = sqrt(free_fall)*decision%outcome%elastic_time
       call solve%prepare()
       call solve%run()
       factorising%solve_job_t = solve
@@ -327,12 +305,14 @@ contains
    subroutine run_decisions(job)
       !> The job
       class(decisions_job_t), intent(inout) :: job
+      type(deficit_t) :: deficit
       logical :: decided
       integer :: i
 
       do i = 1, size(job%scene)
          if (allocated(job%chain)) then
-            call decide_chain(job%scene(i)%settings, job%chain(i), job%decision(i), decided)
+            deficit = deficit_t()
+            call decide_chain(job%scene(i)%settings, job%chain(i), job%decision(i), decided, deficit)
             if (decided) cycle
          end if
          call decide(job%scene(i), job%decision(i))
