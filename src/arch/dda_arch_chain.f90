@@ -7,7 +7,7 @@
 !> directions of the chord's ends, and s from -t/2 to t/2.
 module dda_arch_chain
    use dda_arch, only : arch_shape_t, left_directions, section_directions
-   use dda_chain, only : chain_t, new_chain
+   use dda_chain, only : chain_block_t, chain_joint_t, chain_t, new_chain
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    implicit none
@@ -193,48 +193,82 @@ contains
       real(wp), intent(in) :: thickness_ratio  !! Thickness over radius
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
-      real(wp) :: area, centre(2), radius, square, stiffness, thickness, way(2)
-      integer :: b, first, n
+      real(wp) :: thickness
+      integer :: m, n
 
-      n = size(rays%joint) - 1
-      call new_chain(n, chain)
-      radius = numbers%shape%radius
-      thickness = thickness_ratio*radius
-      square = thickness**2
-      stiffness = numbers%penalty_ratio*numbers%young*thickness
-      do b = 1, n + 1
-         associate (joint => chain%joint(b))
-            joint%tangent = rays%direction(:, rays%joint(b))
-            joint%middle = radius*rays%point(:, rays%joint(b))
-            joint%half = thickness/2.0_wp
-            joint%stiffness = stiffness*rays%stiffness(b)
-            joint%compliance = 0.0_wp
-            joint%friction = numbers%law%friction
-            joint%no_slip = numbers%law%no_slip
-            joint%arm = 0.0_wp
-            chain%reach = max(chain%reach, abs(joint%middle(1)), abs(joint%middle(2)))
-         end associate
-      end do
-      do b = 1, n
-         first = rays%joint(b)
-         area = rays%area(b)*thickness
-         centre = rays%centre(:, 1, b) + rays%centre(:, 2, b)*square
-         associate (block => chain%block(b), before => chain%joint(b), behind => chain%joint(b + 1))
-            block%centroid = before%middle + centre
-            block%mass = numbers%density*area
-            block%inertia = block%mass*(rays%gyration(1, b) + rays%gyration(2, b)*square &
-               & - centre(1)**2 - centre(2)**2)
-            block%weight = area*numbers%body_force
-            chain%whole_load = chain%whole_load + abs(block%weight(1)) + abs(block%weight(2))
-            way = radius*(rays%point(:, rays%joint(b + 1)) - rays%point(:, first)) - centre
-            call find_arms(-centre, before%tangent, before%arm(:, 2))
-            call find_arms(way, behind%tangent, behind%arm(:, 1))
-         end associate
-      end do
+      n = size(rays%joint)
+      m = size(rays%point, 2)
+      call new_chain(n - 1, chain)
+      thickness = thickness_ratio*numbers%shape%radius
+      call set_joints(numbers, thickness, n, m, rays%joint, rays%direction, rays%point, &
+         & rays%stiffness, chain%joint, chain%reach)
+      call set_blocks(numbers, thickness, n, m, rays%joint, rays%point, rays%area, rays%centre, &
+         & rays%gyration, chain%joint, chain%block, chain%whole_load)
       if (.not. numbers%law%no_slip) call add_compliances(numbers, rays, thickness, chain)
-      if (numbers%no_slip_springing) chain%joint([1, n + 1])%no_slip = .true.
+      if (numbers%no_slip_springing) chain%joint([1, n])%no_slip = .true.
       if (numbers%halved) call add_plane(rays, chain)
    end subroutine arch_chain
+
+   !> Set the joints but for their arms
+   pure subroutine set_joints(numbers, thickness, n, m, section, direction, point, stiffness, &
+      & joint, reach)
+      type(arch_numbers_t), intent(in) :: numbers
+      real(wp), intent(in) :: thickness  !! Thickness of the arch [m]
+      integer, intent(in) :: n, m        !! Numbers of joints and of sections
+      !> Of the rays: which sections are joints, directions and points of all, stiffness of joints
+      integer, intent(in) :: section(n)
+      real(wp), intent(in) :: direction(2, m), point(2, m), stiffness(n)
+      type(chain_joint_t), intent(inout) :: joint(n)
+      real(wp), intent(out) :: reach  !! Farthest coordinate of their middles [m]
+      type(chain_joint_t) :: this
+      real(wp) :: spring
+      integer :: b
+
+      reach = 0.0_wp
+      spring = numbers%penalty_ratio*numbers%young*thickness
+      this%half = thickness/2.0_wp
+      this%friction = numbers%law%friction
+      this%no_slip = numbers%law%no_slip
+      do b = 1, n
+         this%tangent = direction(:, section(b))
+         this%middle = numbers%shape%radius*point(:, section(b))
+         this%stiffness = spring*stiffness(b)
+         reach = max(reach, abs(this%middle(1)), abs(this%middle(2)))
+         joint(b) = this
+      end do
+   end subroutine set_joints
+
+   !> Set the blocks, and the arms of the joints
+   pure subroutine set_blocks(numbers, thickness, n, m, section, point, areas, centres, gyration, &
+      & joint, block, whole_load)
+      type(arch_numbers_t), intent(in) :: numbers
+      real(wp), intent(in) :: thickness
+      integer, intent(in) :: n, m
+      !> Of the rays: which sections are joints, their points, areas, centres and gyrations
+      integer, intent(in) :: section(n)
+      real(wp), intent(in) :: point(2, m), areas(n - 1), centres(2, 2, n - 1), gyration(2, n - 1)
+      type(chain_joint_t), intent(inout) :: joint(n)
+      type(chain_block_t), intent(inout) :: block(n - 1)
+      real(wp), intent(out) :: whole_load  !! Sum of the sizes of the loads [N/m]
+      real(wp) :: area, centre(2), square, way(2)
+      integer :: b
+
+      whole_load = 0.0_wp
+      square = thickness**2
+      do b = 1, n - 1
+         area = areas(b)*thickness
+         centre = centres(:, 1, b) + centres(:, 2, b)*square
+         block(b)%centroid = joint(b)%middle + centre
+         block(b)%mass = numbers%density*area
+         block(b)%inertia = block(b)%mass*(gyration(1, b) + gyration(2, b)*square &
+            & - centre(1)**2 - centre(2)**2)
+         block(b)%weight = area*numbers%body_force
+         whole_load = whole_load + abs(block(b)%weight(1)) + abs(block(b)%weight(2))
+         way = numbers%shape%radius*(point(:, section(b + 1)) - point(:, section(b))) - centre
+         call find_arms(-centre, joint(b)%tangent, joint(b)%arm(:, 2))
+         call find_arms(way, joint(b + 1)%tangent, joint(b + 1)%arm(:, 1))
+      end do
+   end subroutine set_blocks
 
    !> Add the compliances of the voussoirs, which tell whether joints slide on the way to the load
    pure subroutine add_compliances(numbers, rays, thickness, chain)

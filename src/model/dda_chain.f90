@@ -4,7 +4,7 @@ module dda_chain
    implicit none
    private
 
-   public :: chain_t, new_chain
+   public :: chain_block_t, chain_joint_t, chain_t, new_chain
 
    !> A block of a chain
    type :: chain_block_t

@@ -41,7 +41,7 @@ contains
          decided = deficit%known
          if (.not. decided) return
          do j = 1, n
-            contacts%gap(:, j) = contacts%force(:, j)*(-1.0_wp/chain%joint(j)%stiffness)
+            contacts%gap(:, j) = contacts%force(:, j)/(-chain%joint(j)%stiffness)
          end do
          if (deficit%least > deficit%noise) then
             outcome%verdict = verdict%collapsed
@@ -83,13 +83,15 @@ contains
          fastest = 0.0_wp
          free = 0.0_wp
          do b = 1, n
-            speed = norm2(outcome%motion(1:2, b))
-            spinning = sqrt(chain%block(b)%inertia/chain%block(b)%mass)*abs(outcome%motion(3, b))
-            inertia = inertia + chain%block(b)%mass*(speed**2 + spinning**2)
-            fastest = max(fastest, speed + spinning)
-            free = max(free, norm2(chain%block(b)%weight)/chain%block(b)%mass)
+            associate (block => chain%block(b), motion => outcome%motion(:, b))
+               speed = motion(1)**2 + motion(2)**2
+               spinning = block%inertia*motion(3)**2
+               inertia = inertia + block%mass*speed + spinning
+               fastest = max(fastest, sqrt(speed) + sqrt(spinning/block%mass))
+               free = max(free, (block%weight(1)**2 + block%weight(2)**2)/block%mass**2)
+            end associate
          end do
-         outcome%acceleration_ratio = power*fastest/(inertia*free)
+         outcome%acceleration_ratio = power*fastest/(inertia*sqrt(free))
          ! slower motions drown in rounding
          outcome%rest_tolerance = outcome%acceleration_ratio*deficit%noise/deficit%least
       end associate
@@ -174,16 +176,24 @@ contains
       !> (3, at least m), (3, n)
       real(wp), allocatable, intent(inout) :: value(:, :)
       real(wp), allocatable :: whole(:, :)
-      integer :: j
 
       if (.not. allocated(value)) return
       allocate (whole(3, n))
-      whole(:, :m) = value(:, :m)
-      do j = n - m + 1, n
-         whole(1, j) = sign(1)*value(1, n + 1 - j)
-         whole(2, j) = sign(2)*value(2, n + 1 - j)
-         whole(3, j) = sign(3)*value(3, n + 1 - j)
-      end do
+      call copy_columns(m, n, sign, value, whole)
       call move_alloc(whole, value)
    end subroutine mirror
+
+   !> Copy columns and their mirror images
+   pure subroutine copy_columns(m, n, sign, half, whole)
+      integer, intent(in) :: m, n
+      real(wp), intent(in) :: sign(3)
+      real(wp), intent(in) :: half(3, m)    !! Columns of the left half: (3, m)
+      real(wp), intent(out) :: whole(3, n)  !! All columns: (3, n)
+      integer :: j
+
+      do j = 1, m
+         whole(:, j) = half(:, j)
+         whole(:, n + 1 - j) = sign*half(:, j)
+      end do
+   end subroutine copy_columns
 end module dda_chain_decision

@@ -1,6 +1,6 @@
 !> Balance of the forces of a chain: those of all joints follow from three numbers at one of them
 module dda_chain_balance
-   use dda_chain, only : chain_t
+   use dda_chain, only : chain_block_t, chain_joint_t, chain_t
    use dda_friction_cone, only : cone_kind, cone_t
    use dda_kinds, only : wp
    implicit none
@@ -83,8 +83,9 @@ contains
    pure subroutine add_reaction(chain, change, before, after)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: change(3)     !! The change: (3)
-      real(wp), intent(in) :: before(:, :)  !! Forces: (3, n + 1) [N/m]
-      real(wp), intent(out) :: after(:, :)  !! Forces: (3, n + 1) [N/m]
+      !> Forces before and after it: (3, n + 1) [N/m]
+      real(wp), intent(in) :: before(3, size(chain%joint))
+      real(wp), intent(out) :: after(3, size(chain%joint))
       real(wp) :: normal, moment
       integer :: j
 
@@ -104,37 +105,49 @@ contains
    pure subroutine carry_forces(chain, reaction, force, magnitude)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: reaction(3)
-      real(wp), intent(out) :: force(:, :)  !! The forces N1, N2, T: (3, n + 1) [N/m]
+      !> The forces N1, N2, T: (3, n + 1) [N/m]
+      real(wp), intent(out) :: force(3, size(chain%joint))
       !> Largest force of a corner by one component of the thrust alone: the rounding of coordinates
       !> changes forces by a share of it [N/m]
       real(wp), intent(out) :: magnitude
-      real(wp) :: s(2), normal, along, moment
+
+      call carry_on(chain%halved, size(chain%block), chain%block, chain%joint, reaction, force, &
+         & magnitude)
+   end subroutine carry_forces
+
+   !> The same of arrays of known shapes
+   pure subroutine carry_on(halved, n, block, joint, reaction, force, magnitude)
+      logical, intent(in) :: halved  !! Whether the first joint is the last one
+      integer, intent(in) :: n       !! Number of blocks
+      type(chain_block_t), intent(in) :: block(n)
+      type(chain_joint_t), intent(in) :: joint(n + 1)
+      real(wp), intent(in) :: reaction(3)
+      real(wp), intent(out) :: force(3, n + 1), magnitude
+      real(wp) :: s(2), normal, along, moment, per_half
       integer :: ahead, i, j, side
 
-      j = merge(size(chain%joint), 1, chain%halved)
-      ahead = merge(-1, 1, chain%halved)
-      side = merge(1, 2, chain%halved)
+      j = merge(n + 1, 1, halved)
+      ahead = merge(-1, 1, halved)
+      side = merge(1, 2, halved)
       s = reaction(1:2)
+      moment = reaction(3) - joint(j)%middle(1)*s(2) + joint(j)%middle(2)*s(1)
       magnitude = 0.0_wp
-      do i = 0, size(chain%block)
+      do i = 0, n
          if (i > 0) then
-            moment = moment + chain%joint(j)%arm(1, side)*normal + chain%joint(j)%arm(2, side)*along
+            moment = moment + joint(j)%arm(1, side)*normal + joint(j)%arm(2, side)*along
             j = j + ahead
-            s = s + real(ahead, wp)*chain%block(j + 1 - side)%weight
+            s = s + real(ahead, wp)*block(j + 1 - side)%weight
          end if
-         associate (joint => chain%joint(j))
-            normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
-            along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
-            if (i == 0) then
-               moment = reaction(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1)
-            else
-               moment = moment - joint%arm(1, 3 - side)*normal - joint%arm(2, 3 - side)*along
-            end if
-            force(:, j) = [(normal + moment/joint%half)/2.0_wp, &
-               & (normal - moment/joint%half)/2.0_wp, along]
-            magnitude = max(magnitude, (abs(s(1)*joint%middle(2)) + abs(s(2)*joint%middle(1))) &
-               & /joint%half + abs(normal))
-         end associate
+         normal = joint(j)%tangent(2)*s(1) - joint(j)%tangent(1)*s(2)
+         along = joint(j)%tangent(1)*s(1) + joint(j)%tangent(2)*s(2)
+         if (i > 0) moment = moment - joint(j)%arm(1, 3 - side)*normal &
+            & - joint(j)%arm(2, 3 - side)*along
+         per_half = 1.0_wp/joint(j)%half
+         force(1, j) = (normal + moment*per_half)/2.0_wp
+         force(2, j) = (normal - moment*per_half)/2.0_wp
+         force(3, j) = along
+         magnitude = max(magnitude, (abs(s(1)*joint(j)%middle(2)) + abs(s(2)*joint(j)%middle(1))) &
+            & *per_half + abs(normal))
       end do
-   end subroutine carry_forces
+   end subroutine carry_on
 end module dda_chain_balance

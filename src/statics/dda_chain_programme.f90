@@ -15,7 +15,7 @@
 !> plus what the small change of the unknowns adds: the moments of a shallow arch, seen from afar,
 !> would lose their digits.
 module dda_chain_programme
-   use dda_chain, only : chain_t
+   use dda_chain, only : chain_joint_t, chain_t
    use dda_chain_balance, only : add_reaction, carry_forces, influence
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
@@ -72,7 +72,7 @@ contains
       !> Bounds and unknowns to begin with, of a chain much like this one, or none; the solution out
       type(deficit_t), intent(inout) :: deficit
       !> The forces N1, N2, T at the solution: (3, n + 1) [N/m]
-      real(wp), intent(out), optional :: force(:, :)
+      real(wp), intent(out), optional :: force(3, size(chain%joint))
       type(tableau_t) :: tableau
       real(wp) :: carried(3, size(chain%joint)), change(4), magnitude
       logical :: found
@@ -102,8 +102,9 @@ contains
       type(chain_t), intent(in) :: chain
       type(deficit_t), intent(in) :: deficit
       type(joint_face_t), intent(out) :: face(:)  !! The faces: (n + 1)
-      real(wp), intent(out) :: opening(:, :)      !! Opening 1, opening 2 and slip: (3, n + 1)
-      real(wp), intent(out) :: power              !! Power of the loads on it
+      !> Opening 1, opening 2 and slip: (3, n + 1)
+      real(wp), intent(out) :: opening(3, size(chain%joint))
+      real(wp), intent(out) :: power  !! Power of the loads on it
       real(wp) :: largest
       integer :: r
 
@@ -172,23 +173,26 @@ contains
    !> Exchange bounds until none is broken
    pure subroutine descend(chain, force, noise, deficit, tableau, place, found)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(:, :)  !! Forces of the estimate: (3, n + 1) [N/m]
-      real(wp), intent(in) :: noise        !! Their rounding error [N/m]
+      !> Forces of the estimate: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(3, size(chain%joint))
+      real(wp), intent(in) :: noise  !! Their rounding error [N/m]
       type(deficit_t), intent(inout) :: deficit
       type(tableau_t), intent(inout) :: tableau
       real(wp), intent(out) :: place(4)    !! Change of the unknowns, and s: (4)
       logical, intent(out) :: found
       real(wp) :: change(4)
-      integer :: bound, joint, leaving, r
+      integer :: bound, joint, leaving, n, r
 
       found = .false.
+      ! a plane of symmetry is smooth, and one through a block does not open
+      n = size(chain%joint)
       do r = 1, 4
          tableau%value(r) = value_of(chain, force, deficit, r, tableau%scale)
       end do
       do
          place = matmul(tableau%inverse, tableau%value)
-         call find_worst(chain, force, place, noise, deficit%exchanges >= greedy_exchanges, joint, &
-            & bound)
+         call find_worst(n - merge(1, 0, chain%keystone), n - merge(1, 0, chain%halved), &
+            & chain%joint, force, place, noise, deficit%exchanges >= greedy_exchanges, joint, bound)
          if (joint == 0) exit
          change = matmul(bound_row(chain, joint, bound), tableau%inverse)
          leaving = first_to_vanish(deficit, tableau%inverse(4, :), change)
@@ -207,7 +211,7 @@ contains
    !> Right-hand side of one row
    pure real(wp) function value_of(chain, force, deficit, r, scale) result(value)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in) :: force(3, size(chain%joint))
       type(deficit_t), intent(in) :: deficit
       integer, intent(in) :: r
       real(wp), intent(in) :: scale(3)
@@ -230,59 +234,43 @@ contains
    end function value_of
 
    !> The bound that is broken most, or by Bland's rule the first that is broken; joint 0 if none is
-   pure subroutine find_worst(chain, force, place, noise, first, joint, bound)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(:, :), noise
+   pure subroutine find_worst(n, rough, joint, force, place, noise, first, worst, bound)
+      integer, intent(in) :: n      !! Number of joints that can fail
+      integer, intent(in) :: rough  !! Number of those among which shear forces are bounded
+      type(chain_joint_t), intent(in) :: joint(n)
+      real(wp), intent(in) :: force(3, n), noise
       real(wp), intent(in) :: place(4)  !! Change of the unknowns, and s
       logical, intent(in) :: first      !! Whether the first will do
-      integer, intent(out) :: joint     !! Its joint
+      integer, intent(out) :: worst     !! Its joint
       integer, intent(out) :: bound     !! Which of its bounds
       real(wp) :: along, least, moment, normal, room
       integer :: j
 
       least = -place(4) - noise
-      joint = 0
+      worst = 0
       bound = 0
-      do j = 1, last_joint(chain)
-         associate (this => chain%joint(j))
-            normal = force(1, j) + force(2, j) + this%tangent(2)*place(1) - this%tangent(1)*place(2)
-            moment = force(1, j) - force(2, j) + (this%middle(2)*place(1) &
-               & - this%middle(1)*place(2) + place(3))/this%half
-            room = (normal - abs(moment))/2.0_wp
-            if (is_rough(chain, j)) then
-               along = force(3, j) + this%tangent(1)*place(1) + this%tangent(2)*place(2)
-               if (this%friction*normal - abs(along) < min(room, least)) then
-                  least = this%friction*normal - abs(along)
-                  joint = j
-                  bound = merge(3, 4, along > 0.0_wp)
-                  if (first) return
-                  cycle
-               end if
-            end if
-         end associate
+      do j = 1, n
+         normal = force(1, j) + force(2, j) + joint(j)%tangent(2)*place(1) &
+            & - joint(j)%tangent(1)*place(2)
+         moment = force(1, j) - force(2, j) + (joint(j)%middle(2)*place(1) &
+            & - joint(j)%middle(1)*place(2) + place(3))/joint(j)%half
+         room = (normal - abs(moment))/2.0_wp
+         if (room < least) then
+            least = room
+            worst = j
+            bound = merge(1, 2, moment < 0.0_wp)
+            if (first) return
+         end if
+         if (j > rough .or. joint(j)%no_slip) cycle
+         along = force(3, j) + joint(j)%tangent(1)*place(1) + joint(j)%tangent(2)*place(2)
+         room = joint(j)%friction*normal - abs(along)
          if (.not. room < least) cycle
          least = room
-         joint = j
-         bound = merge(1, 2, moment < 0.0_wp)
+         worst = j
+         bound = merge(3, 4, along > 0.0_wp)
          if (first) return
       end do
    end subroutine find_worst
-
-   !> The last joint that can fail: a plane of symmetry through a block does not open
-   pure integer function last_joint(chain)
-      type(chain_t), intent(in) :: chain
-
-      last_joint = size(chain%joint) - merge(1, 0, chain%keystone)
-   end function last_joint
-
-   !> Whether the shear force of a joint is bounded, and not zero as on a plane of symmetry
-   pure logical function is_rough(chain, j)
-      type(chain_t), intent(in) :: chain
-      integer, intent(in) :: j  !! Number of the joint
-
-      is_rough = .not. chain%joint(j)%no_slip &
-         & .and. .not. (chain%halved .and. j == size(chain%joint))
-   end function is_rough
 
    !> A bound as a row over the unknowns and s: (4)
    pure function bound_row(chain, joint, bound) result(row)
