@@ -215,10 +215,10 @@ contains
       type(arch_numbers_t), intent(in) :: numbers
       real(wp), intent(in) :: thickness  !! Thickness of the arch [m]
       integer, intent(in) :: n, m        !! Numbers of joints and of sections
-      !> Of the rays: which sections are joints, directions and points of all, stiffness of joints
-      integer, intent(in) :: section(n)
+      integer, intent(in) :: section(n)  !! Sections of the joints
+      !> Of the rays: directions and points of the sections, stiffness of the joints
       real(wp), intent(in) :: direction(2, m), point(2, m), stiffness(n)
-      type(chain_joint_t), intent(inout) :: joint(n)
+      type(chain_joint_t), intent(inout) :: joint(n)  !! The joints
       real(wp), intent(out) :: reach  !! Farthest coordinate of their middles [m]
       type(chain_joint_t) :: this
       real(wp) :: spring
@@ -244,11 +244,11 @@ contains
       type(arch_numbers_t), intent(in) :: numbers
       real(wp), intent(in) :: thickness
       integer, intent(in) :: n, m
-      !> Of the rays: which sections are joints, their points, areas, centres and gyrations
       integer, intent(in) :: section(n)
+      !> Of the rays: points of the sections; areas, centres and gyrations of the voussoirs
       real(wp), intent(in) :: point(2, m), areas(n - 1), centres(2, 2, n - 1), gyration(2, n - 1)
-      type(chain_joint_t), intent(inout) :: joint(n)
-      type(chain_block_t), intent(inout) :: block(n - 1)
+      type(chain_joint_t), intent(inout) :: joint(n)      !! The joints
+      type(chain_block_t), intent(inout) :: block(n - 1)  !! The blocks
       real(wp), intent(out) :: whole_load  !! Sum of the sizes of the loads [N/m]
       real(wp) :: area, centre(2), square, way(2)
       integer :: b

@@ -29,8 +29,8 @@ contains
          if (decided) call link_once(this%family, &
             & this%family%deck%value(arch_thickness_ratio)%number, critical%link)
          if (decided) decided = critical%link%known
-         if (decided) call decide_chain(this%family%chain_settings, critical%link%chain, this%decision, &
-            & decided, critical%deficit)
+         if (decided) call decide_chain(this%family%chain_settings, critical%link%chain, &
+            & this%decision, decided, critical%deficit)
       end associate
       if (decided) then
          if (this%decision%outcome%verdict /= verdict%collapsed) return

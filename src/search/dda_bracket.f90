@@ -40,8 +40,8 @@ contains
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      if (family%decides_chains) call trace_chain(family, search, search%start, search%high, .false., &
-         & critical, proposal)
+      if (family%decides_chains) call trace_chain(family, search, search%start, search%high, &
+         & .false., critical, proposal)
       start = search%start
       if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
       call find_collapse(family, search, start, limit, critical)

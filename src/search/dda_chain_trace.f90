@@ -15,9 +15,10 @@ submodule (dda_collapse_trace) dda_chain_trace
    integer, parameter :: coarse = 24
    !> Share of the value by which the second one differs from the first
    real(wp), parameter :: first_step = 0.05_wp
-   !> Product of the last two relative steps at which the next one would be rounding, and at which a
-   !> coarse chain tells no more
-   real(wp), parameter :: converged = 1.0e-14_wp, told = 1.0e-5_wp
+   !> Product of the last two relative steps at which the next one would be rounding
+   real(wp), parameter :: converged = 1.0e-14_wp
+   !> The same for a coarse chain, whose zero is an estimate
+   real(wp), parameter :: estimated = 1.0e-5_wp
    !> Largest ratio of two values in a row
    real(wp), parameter :: largest_ratio = 3.0_wp
    !> Relative change of the value after which the mechanism is taken for the last
@@ -34,13 +35,15 @@ contains
       integer :: i, n
       logical :: found
 
+      proposal%half = least_half(search, from, size(family%rays%joint))*abs(from)
       value = from
       slope = 0.0_wp
       if (.not. frozen) then
          if (.not. family%chains) return
          n = size(family%rays%joint)
          allocate (joint, source=[(i, i=1, n - 1, 1 + n/coarse), n])
-         call follow(family, search, limit, joint, told, critical%deficit, value, slope, found)
+         call follow(family, search, limit, joint, estimated, critical%deficit, value, slope, &
+            & found)
          if (.not. found) return
       end if
       associate (deficit => critical%deficit, link => critical%link)
@@ -92,15 +95,15 @@ contains
    pure subroutine follow(family, search, limit, joint, enough, deficit, value, slope, found)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      real(wp), intent(in) :: limit
+      real(wp), intent(in) :: limit             !! The end of the range on the side that stands
       integer, intent(in) :: joint(:)           !! The joints, rising
       !> Product of the last two relative steps at which to end
       real(wp), intent(in) :: enough
-      type(deficit_t), intent(inout) :: deficit !! Bounds of the chain itself
+      type(deficit_t), intent(inout) :: deficit  !! Bounds of the chain itself
       real(wp), intent(inout) :: value          !! Where to begin in, where they cease out
       !> Change of the deficit with the value; an estimate in, or 0
       real(wp), intent(inout) :: slope
-      logical, intent(out) :: found
+      logical, intent(out) :: found  !! Whether they cease to collapse
       type(arch_rays_t) :: joined
       type(chain_t) :: chain
       real(wp) :: before, last, next

@@ -98,15 +98,7 @@ contains
       least = least_half(search, critical%falls, size(critical%fallen%contacts%face))
       proposal%half = least*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
-      ! what is crushed takes power that the loads alone do not tell, and so does a bar that yields
-      if (allocated(critical%fallen%system%bar)) then
-         if (size(critical%fallen%system%bar) > 0) return
-      end if
-      if (allocated(critical%fallen%contacts%joint)) then
-         associate (contacts => critical%fallen%contacts)
-            if (any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp))) return
-         end associate
-      end if
+      if (takes_power(critical%fallen)) return
       call link_once(family, critical%falls, critical%link)
       if (critical%link%known) then
          call trace_chain(family, search, critical%falls, limit, .true., critical, proposal)
@@ -147,6 +139,19 @@ contains
       end do
       call propose(family, search, mechanism, least, next, coarse_slope, noise, critical, proposal)
    end subroutine trace
+
+   !> Whether a collapse takes power that the loads alone do not tell: what is crushed does, and a
+   !> bar that yields
+   pure logical function takes_power(fallen)
+      type(decision_t), intent(in) :: fallen
+
+      takes_power = .false.
+      if (allocated(fallen%system%bar)) takes_power = size(fallen%system%bar) > 0
+      if (takes_power .or. .not. allocated(fallen%contacts%joint)) return
+      associate (contacts => fallen%contacts)
+         takes_power = any(contacts%law(contacts%joint%law)%strength < huge(1.0_wp))
+      end associate
+   end function takes_power
 
    !> Where a mechanism stops, and how near to that to decide
    pure subroutine propose(family, search, mechanism, least, next, coarse_slope, noise, critical, &

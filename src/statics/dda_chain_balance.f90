@@ -83,8 +83,9 @@ contains
    pure subroutine add_reaction(chain, change, before, after)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: change(3)     !! The change: (3)
-      !> Forces before and after it: (3, n + 1) [N/m]
+      !> Forces before it: (3, n + 1) [N/m]
       real(wp), intent(in) :: before(3, size(chain%joint))
+      !> Forces after it: (3, n + 1) [N/m]
       real(wp), intent(out) :: after(3, size(chain%joint))
       real(wp) :: normal, moment
       integer :: j
@@ -119,10 +120,11 @@ contains
    pure subroutine carry_on(halved, n, block, joint, reaction, force, magnitude)
       logical, intent(in) :: halved  !! Whether the first joint is the last one
       integer, intent(in) :: n       !! Number of blocks
-      type(chain_block_t), intent(in) :: block(n)
-      type(chain_joint_t), intent(in) :: joint(n + 1)
+      type(chain_block_t), intent(in) :: block(n)      !! The blocks
+      type(chain_joint_t), intent(in) :: joint(n + 1)  !! The joints
       real(wp), intent(in) :: reaction(3)
-      real(wp), intent(out) :: force(3, n + 1), magnitude
+      real(wp), intent(out) :: force(3, n + 1)         !! The forces: (3, n + 1) [N/m]
+      real(wp), intent(out) :: magnitude
       real(wp) :: s(2), normal, along, moment, per_half
       integer :: ahead, i, j, side
 

@@ -1,7 +1,7 @@
 !> Equilibrium of a chain as a linear programme in four unknowns
 !>
-!> The forces of all joints follow from three unknowns at one of them. Minimised is the deficit s for
-!> which forces in balance with the loads exist that keep
+!> The forces of all joints follow from three unknowns at one of them. Minimised is the deficit s
+!> for which forces in balance with the loads exist that keep
 !>
 !>    N1 + s >= 0,  N2 + s >= 0,  friction*(N1 + N2) - |T| + s >= 0
 !>
@@ -11,9 +11,9 @@
 !>
 !> The dual simplex method exchanges bounds: the one that is broken most enters, the one whose
 !> multiplier vanishes first leaves; if that takes long, Bland's rule ends it. The inverse is made
-!> from its four rows at each exchange. Forces are those of an estimate, carried from joint to joint,
-!> plus what the small change of the unknowns adds: the moments of a shallow arch, seen from afar,
-!> would lose their digits.
+!> from its four rows at each exchange. Forces are those of an estimate, carried from joint to
+!> joint, plus what the small change of the unknowns adds: the moments of a shallow arch, seen from
+!> afar, would lose their digits.
 module dda_chain_programme
    use dda_chain, only : chain_joint_t, chain_t
    use dda_chain_balance, only : add_reaction, carry_forces, influence
@@ -178,8 +178,8 @@ contains
       real(wp), intent(in) :: noise  !! Their rounding error [N/m]
       type(deficit_t), intent(inout) :: deficit
       type(tableau_t), intent(inout) :: tableau
-      real(wp), intent(out) :: place(4)    !! Change of the unknowns, and s: (4)
-      logical, intent(out) :: found
+      real(wp), intent(out) :: place(4)  !! Change of the unknowns, and s: (4)
+      logical, intent(out) :: found      !! Whether the exchanges came to an end
       real(wp) :: change(4)
       integer :: bound, joint, leaving, n, r
 
@@ -214,7 +214,7 @@ contains
       real(wp), intent(in) :: force(3, size(chain%joint))
       type(deficit_t), intent(in) :: deficit
       integer, intent(in) :: r
-      real(wp), intent(in) :: scale(3)
+      real(wp), intent(in) :: scale(3)  !! As in the tableau: (3)
 
       if (deficit%joint(r) > 0) then
          associate (this => force(:, deficit%joint(r)))
@@ -237,8 +237,9 @@ contains
    pure subroutine find_worst(n, rough, joint, force, place, noise, first, worst, bound)
       integer, intent(in) :: n      !! Number of joints that can fail
       integer, intent(in) :: rough  !! Number of those among which shear forces are bounded
-      type(chain_joint_t), intent(in) :: joint(n)
-      real(wp), intent(in) :: force(3, n), noise
+      type(chain_joint_t), intent(in) :: joint(n)  !! The joints
+      real(wp), intent(in) :: force(3, n)  !! Forces of the estimate [N/m]
+      real(wp), intent(in) :: noise
       real(wp), intent(in) :: place(4)  !! Change of the unknowns, and s
       logical, intent(in) :: first      !! Whether the first will do
       integer, intent(out) :: worst     !! Its joint

@@ -80,7 +80,7 @@ def test_exact_value_beside_it_agrees_with_the_oracle(case: dict[str, str], resu
 
 
 @pytest.mark.parametrize(("half_angle_deg", "voussoirs"), [(1.0, 18), (1.0, 20), (1.2, 16), (1.5, 27), (1.8, 100)])
-def test_nearly_flat_arches_are_known_to_the_width_of_their_bracket(tmp_path: Path, half_angle_deg: float, voussoirs: int) -> None:
+def test_nearly_flat_arches_lie_inside_their_brackets(tmp_path: Path, half_angle_deg: float, voussoirs: int) -> None:
     (tmp_path / "flat.nml").write_text(
         f"&arch half_angle_deg = {half_angle_deg}, voussoirs = {voussoirs} /\n"
         "&joint friction_deg = 90.0 /\n&search parameter = 'thickness_ratio' /\n"
