@@ -188,7 +188,8 @@ contains
       type(critical_t), intent(in) :: critical
       type(proposal_t), intent(in) :: proposal  !! Where the collapse before the last stops
 
-      proved = proposal%usable
+      ! of a chain the mechanism that the proposal follows is that of this decision
+      proved = proposal%usable .and. critical%deficit%exchanges == 0
       if (proved) proved = proposal%half <= 0.5001_wp*search%tolerance*abs(proposal%value) &
          & .and. abs((proposal%value - critical%falls)*sign(1.0_wp, limit - critical%falls) &
          & - proposal%half) < 1.0e-3_wp*proposal%half

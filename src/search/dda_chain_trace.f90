@@ -15,10 +15,12 @@ submodule (dda_collapse_trace) dda_chain_trace
    integer, parameter :: coarse = 24
    !> Share of the value by which the second one differs from the first
    real(wp), parameter :: first_step = 0.05_wp
-   !> Product of the last two relative steps at which the next one would be rounding
-   real(wp), parameter :: converged = 1.0e-14_wp
+   !> Relative step, or product of the last two, at which the next one would be rounding
+   real(wp), parameter :: converged = 1.0e-13_wp
    !> The same for a coarse chain, whose zero is an estimate
    real(wp), parameter :: estimated = 1.0e-5_wp
+   !> Least relative distance of two values whose chord is a slope
+   real(wp), parameter :: apart = 1.0e-7_wp
    !> Largest ratio of two values in a row
    real(wp), parameter :: largest_ratio = 3.0_wp
    !> Relative change of the value after which the mechanism is taken for the last
@@ -97,7 +99,7 @@ contains
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: limit             !! The end of the range on the side that stands
       integer, intent(in) :: joint(:)           !! The joints, rising
-      !> Product of the last two relative steps at which to end
+      !> Relative step, or product of the last two, at which to end
       real(wp), intent(in) :: enough
       type(deficit_t), intent(inout) :: deficit  !! Bounds of the chain itself
       real(wp), intent(inout) :: value          !! Where to begin in, where they cease out
@@ -107,6 +109,7 @@ contains
       type(arch_rays_t) :: joined
       type(chain_t) :: chain
       real(wp) :: before, last, next
+      logical :: tells
       integer :: i
 
       found = .false.
@@ -121,10 +124,15 @@ contains
          if (i == 1 .and. .not. abs(slope) > 0.0_wp) then
             next = value*(1.0_wp + sign(first_step, limit - value))
          else
-            if (i > 1) slope = (deficit%least - last)/(value - before)
+            ! the chord of nearer values is rounding, that of two mechanisms no slope
+            tells = .false.
+            if (i > 1) tells = abs(value - before) > apart*value .and. deficit%exchanges == 0
+            if (tells .or. i == 2 .and. abs(value - before) > apart*value) &
+               & slope = (deficit%least - last)/(value - before)
             if (.not. abs(slope) > 0.0_wp) return
             next = value - deficit%least/slope
-            if (i > 1 .and. abs((next - value)*(next - before)) <= enough*value**2) exit
+            if (tells .and. abs((next - value)*(next - before)) <= enough*value**2) exit
+            if (abs(next - value) <= max(enough*value, deficit%noise/abs(slope))) exit
             next = min(max(next, value/largest_ratio), value*largest_ratio)
             next = min(max(next, search%low), search%high)
             if (.not. abs(next - value) > 0.0_wp) return

@@ -43,9 +43,9 @@ module dda_chain_programme
    integer, parameter :: max_exchanges = 400, greedy_exchanges = 30
    !> Most estimates of the forces
    integer, parameter :: max_estimates = 4
-   !> Rounding error of forces over the largest one by one component of the thrust; of 3000 arches
-   !> none had more than four tenths of it
-   real(wp), parameter :: rounding = epsilon(1.0_wp)
+   !> Rounding error of forces over the largest one by one component of the thrust; of 3381 random
+   !> arches none had more than eight tenths of it
+   real(wp), parameter :: rounding = 0.5_wp*epsilon(1.0_wp)
    !> Multipliers below this are none
    real(wp), parameter :: no_share = 1.0e-12_wp
    !> Smallest pivot
