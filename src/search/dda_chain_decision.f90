@@ -46,9 +46,6 @@ contains
          if (deficit%least > deficit%noise) then
             outcome%verdict = verdict%collapsed
             call show_mechanism(chain, deficit, decision)
-         else if (deficit%least >= -deficit%noise) then
-            outcome%verdict = verdict%undecided
-            outcome%reason = "joint forces exceed their limits by no more than round-off"
          else
             outcome%verdict = verdict%stable
             ! the plane of symmetry is smooth

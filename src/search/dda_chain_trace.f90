@@ -9,8 +9,8 @@ submodule (dda_collapse_trace) dda_chain_trace
    use dda_chain_programme, only : deficit_t, find_deficit
    implicit none
 
-   !> Most values of the secant method, and most mechanisms
-   integer, parameter :: max_values = 40, max_mechanisms = 20
+   !> Most values of the secant method in its bracket, and most mechanisms
+   integer, parameter :: max_values = 60, max_mechanisms = 20
    !> About as many joints are looked at first
    integer, parameter :: coarse = 24
    !> Share of the value by which the second one differs from the first
@@ -27,6 +27,24 @@ submodule (dda_collapse_trace) dda_chain_trace
    real(wp), parameter :: near = 3.0e-3_wp
    !> Half a bracket over the rounding of its middle
    real(wp), parameter :: noise_of_half = 3.0_wp
+
+   !> Values of the secant method
+   type :: secant_t
+      real(wp) :: value = 0.0_wp   !! The value looked at
+      real(wp) :: next = 0.0_wp    !! The next one
+      real(wp) :: before = 0.0_wp  !! The one before that tells of a slope
+      real(wp) :: last = 0.0_wp    !! Its deficit [N/m]
+      real(wp) :: slope = 0.0_wp   !! Change of the deficit with the value; 0 if unknown [N/m]
+      real(wp) :: other = 0.0_wp   !! The value that its chord came from
+      !> Nearest values that collapse and that stand, or the ends of the range: (2)
+      real(wp) :: bracket(2) = 0.0_wp
+      logical :: known(2) = .false.  !! Whether they have been looked at: (2)
+      integer :: side = 1            !! On which of the two sides the value is
+      logical :: steady = .false.    !! Whether the slope is that of its mechanism
+      !> Whether it stands at its limit, as through a range of values: that tells nothing of where
+      !> the range begins
+      logical :: at_limit = .false.
+   end type secant_t
 
 contains
 
@@ -93,7 +111,8 @@ contains
       joint = pack([(i, i=1, n)], takes_part)
    end function joints_of
 
-   !> Follow the chains in which only some joints part to where they cease to collapse
+   !> Follow the chains in which only some joints part to where they cease to collapse: by secants
+   !> of one mechanism, and by halves where these leave the bracket
    pure subroutine follow(family, search, limit, joint, enough, deficit, value, slope, found)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
@@ -108,8 +127,9 @@ contains
       logical, intent(out) :: found  !! Whether they cease to collapse
       type(arch_rays_t) :: joined
       type(chain_t) :: chain
-      real(wp) :: before, last, next
-      logical :: tells
+      type(deficit_t) :: collapsed
+      type(secant_t) :: secant
+      logical :: ended
       integer :: i
 
       found = .false.
@@ -117,35 +137,81 @@ contains
       do i = 1, 4
          if (deficit%joint(i) > 0) deficit%joint(i) = findloc(joint, deficit%joint(i), 1)
       end do
+      secant%bracket = [merge(search%low, search%high, limit > value), limit]
+      secant%slope = slope
+      secant%steady = abs(slope) > 0.0_wp
+      secant%value = value
+      secant%before = value
       do i = 1, max_values
-         call arch_chain(family%numbers, joined, value, chain)
+         call arch_chain(family%numbers, joined, secant%value, chain)
          call find_deficit(chain, deficit)
          if (.not. deficit%known) return
-         if (i == 1 .and. .not. abs(slope) > 0.0_wp) then
-            next = value*(1.0_wp + sign(first_step, limit - value))
+         call take_deficit(deficit, enough, secant, ended)
+         if (ended) exit
+         call keep_inside(secant)
+         if (.not. abs(secant%next - secant%value) > 0.0_wp) return
+         if (secant%at_limit) then
+            deficit = collapsed
          else
-            ! the chord of nearer values is rounding, that of two mechanisms no slope
-            tells = .false.
-            if (i > 1) tells = abs(value - before) > apart*value .and. deficit%exchanges == 0
-            if (tells .or. i == 2 .and. abs(value - before) > apart*value) &
-               & slope = (deficit%least - last)/(value - before)
-            if (.not. abs(slope) > 0.0_wp) return
-            next = value - deficit%least/slope
-            if (tells .and. abs((next - value)*(next - before)) <= enough*value**2) exit
-            if (abs(next - value) <= max(enough*value, deficit%noise/abs(slope))) exit
-            next = min(max(next, value/largest_ratio), value*largest_ratio)
-            next = min(max(next, search%low), search%high)
-            if (.not. abs(next - value) > 0.0_wp) return
+            if (deficit%least > deficit%noise) collapsed = deficit
+            secant%before = secant%value
+            secant%last = deficit%least
          end if
-         before = value
-         last = deficit%least
-         value = next
+         secant%value = secant%next
       end do
-      value = next
-      found = i <= max_values
+      value = secant%next
+      slope = secant%slope
+      found = ended .and. abs(slope) > 0.0_wp
       do i = 1, 4
          if (deficit%joint(i) > 0) deficit%joint(i) = joint(deficit%joint(i))
       end do
    end subroutine follow
+
+   !> Take the deficit of one value: on its side of the bracket, for the slope and the next value
+   pure subroutine take_deficit(deficit, enough, secant, ended)
+      type(deficit_t), intent(in) :: deficit
+      real(wp), intent(in) :: enough
+      type(secant_t), intent(inout) :: secant
+      logical, intent(out) :: ended  !! Whether the next value is the one sought
+
+      associate (value => secant%value, next => secant%next, least => deficit%least)
+         secant%side = merge(1, 2, least > deficit%noise)
+         secant%bracket(secant%side) = value
+         secant%known(secant%side) = .true.
+         secant%steady = secant%steady .and. deficit%exchanges == 0
+         secant%at_limit = secant%known(1) .and. .not. secant%steady &
+            & .and. abs(least) <= deficit%noise
+         ! the chord of nearer values is rounding, that of two mechanisms no slope
+         if (abs(value - secant%before) > apart*value .and. .not. secant%at_limit) then
+            secant%steady = deficit%exchanges == 0
+            if (secant%steady .or. .not. abs(secant%slope) > 0.0_wp) then
+               secant%slope = (least - secant%last)/(value - secant%before)
+               secant%other = secant%before
+            end if
+         end if
+         next = value*(1.0_wp + sign(first_step, secant%bracket(3 - secant%side) - value))
+         if (abs(secant%slope) > 0.0_wp) next = value - least/secant%slope
+         ended = abs(secant%bracket(2) - secant%bracket(1)) <= enough*value
+         if (secant%steady) ended = ended &
+            & .or. abs((next - value)*(next - secant%other)) <= enough*value**2 &
+            & .or. abs(next - value) <= max(enough*value, deficit%noise/abs(secant%slope))
+      end associate
+   end subroutine take_deficit
+
+   !> Keep the next value inside the bracket, and not too far from the last one
+   pure subroutine keep_inside(secant)
+      type(secant_t), intent(inout) :: secant
+
+      associate (next => secant%next, bracket => secant%bracket, value => secant%value)
+         if (secant%at_limit .and. .not. abs(secant%slope) > 0.0_wp) then
+            ! a slope is found on the side that collapses
+            next = secant%before*(1.0_wp - sign(first_step, value - secant%before))
+         else if (secant%at_limit .or. (next - bracket(1))*(bracket(2) - next) <= 0.0_wp) then
+            next = bracket(3 - secant%side)
+            if (all(secant%known)) next = sqrt(bracket(1)*bracket(2))
+         end if
+         next = min(max(next, value/largest_ratio), value*largest_ratio)
+      end associate
+   end subroutine keep_inside
 
 end submodule dda_chain_trace

@@ -5,7 +5,7 @@
 !>
 !>    N1 + s >= 0,  N2 + s >= 0,  friction*(N1 + N2) - |T| + s >= 0
 !>
-!> at all joints. A chain stands where s < 0: the forces prove it. It collapses where s > 0: the
+!> at all joints. A chain stands where s <= 0: the forces prove it. It collapses where s > 0: the
 !> multipliers of the four bounds that hold as equations are the openings and slips of a mechanism,
 !> and s is the power of the loads on it.
 !>

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 
 import pytest
@@ -91,3 +92,31 @@ def test_nearly_flat_arches_lie_inside_their_brackets(tmp_path: Path, half_angle
         (row,) = csv.DictReader(lines)
     assert row["verdict"] == "found"
     assert float(row["critical_low"]) <= float(row["exact"]) <= float(row["critical_high"])
+
+
+def search_on_steep_springings(folder: Path, friction_deg: float) -> dict[str, str]:
+    """Search an arch of four voussoirs whose springings slope 30 degrees outwards."""
+    deck = folder / "steep.nml"
+    deck.write_text(
+        "&arch half_angle_deg = 120, voussoirs = 4 /\n&search /\n"
+        f"&joint friction_deg = {friction_deg} /\n&output joints = .false. /\n"
+    )
+    run_dda("run", deck, "--out", folder / "out", "--quiet")
+    with (folder / "out" / "results.csv").open() as lines:
+        (row,) = csv.DictReader(lines)
+    return row
+
+
+def test_arch_on_springings_as_steep_as_its_friction_stands_at_the_limit_of_sliding(tmp_path: Path) -> None:
+    # thicker than 4 sqrt(3) - 6 it stands without thrust, at the limit of sliding on its springings
+    row = search_on_steep_springings(tmp_path, 30.0)
+    exact = 4.0 * math.sqrt(3.0) - 6.0
+    assert row["verdict"] == "found"
+    assert abs(float(row["critical"]) - exact) <= 1e-12 * exact
+
+
+@pytest.mark.parametrize("friction_deg", [30.5, 31.0, 31.5, 32.0, 32.5])
+def test_search_across_sliding_mechanisms_takes_two_decisions(tmp_path: Path, friction_deg: float) -> None:
+    row = search_on_steep_springings(tmp_path, friction_deg)
+    assert abs(float(row["critical"]) - float(row["exact"])) <= 1e-12 * float(row["exact"])
+    assert int(row["steps"]) == 2
