@@ -243,7 +243,7 @@ contains
       integer, intent(in) :: rough  !! Number of those among which shear forces are bounded
       type(chain_joint_t), intent(in) :: joint(n)  !! The joints
       real(wp), intent(in) :: force(3, n)  !! Forces of the estimate [N/m]
-      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: noise     !! By how much a corner may be broken [N/m]
       real(wp), intent(in) :: place(4)  !! Change of the unknowns, and s
       logical, intent(in) :: first      !! Whether the first will do
       integer, intent(out) :: worst     !! Its joint
@@ -268,7 +268,8 @@ contains
          end if
          if (j > rough .or. joint(j)%no_slip) cycle
          along = force(3, j) + joint(j)%tangent(1)*place(1) + joint(j)%tangent(2)*place(2)
-         room = joint(j)%friction*normal - abs(along)
+         ! friction multiplies the rounding of both corners
+         room = joint(j)%friction*(normal + 2.0_wp*noise) - abs(along)
          if (.not. room < least) cycle
          least = room
          worst = j
