@@ -130,16 +130,15 @@ contains
    !> A list of words, each in quotes
    pure function quoted_words(words) result(text)
       character(len=*), intent(in) :: words  !! Words parted by one blank
-      character(len=:), allocatable :: text  !! Such as: 'stress' or 'strain'
+      character(len=:), allocatable :: text  !! Such as: 'stress', 'strain' or 'shear'
       character(len=word_length), allocatable :: list(:)
       integer :: i
 
       list = listed_words(words)
-      text = ""
-      do i = 1, size(list)
-         text = text//" or '"//trim(list(i))//"'"
+      text = "'"//trim(list(1))//"'"
+      do i = 2, size(list)
+         text = text//trim(merge(" or", ",  ", i == size(list)))//" '"//trim(list(i))//"'"
       end do
-      text = text(5:)
    end function quoted_words
 
    !> Words one by one

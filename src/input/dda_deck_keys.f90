@@ -13,55 +13,50 @@ module dda_deck_keys
 
    !> All groups, in the order of the contract
    type(group_t), parameter :: deck_group(*) = [ &
-      group_t("scene", "what is studied"), &
-      group_t("arch", "the shape of an arch, its rings, spans and piers"), &
-      group_t("material", "the blocks' material"), &
-      group_t("joint", "the Mohr-Coulomb law of the joints"), &
-      group_t("load", "what acts on the blocks"), &
-      group_t("live", "forces on points that the load factor multiplies"), &
-      group_t("vehicle", "axles above the blocks, multiplied by the load factor, too"), &
-      group_t("fill", "what lies on an arch, up to a level surface"), &
-      group_t("tie", "bars between two points of the blocks of an arch"), &
-      group_t("ground", "how the ground moves, with mode = 'dynamic' only"), &
-      group_t("analysis", "how a single case is computed"), &
-      group_t("limerick", "Shi's scheme as it was: with mode = 'limerick' only"), &
-      group_t("search", "looks for the critical value of one parameter"), &
-      group_t("sweep", "runs one case a value; up to 8 such groups"), &
-      group_t("output", "what is written")]
+      group_t("scene", "subject of the study"), &
+      group_t("arch", "shape of an arch, with its rings, spans and piers"), &
+      group_t("material", "material of the blocks"), &
+      group_t("joint", "Mohr-Coulomb law of the joints"), &
+      group_t("load", "loads on all blocks"), &
+      group_t("live", "forces on points, multiplied by the load factor"), &
+      group_t("vehicle", "axle loads above the blocks, multiplied by the load factor"), &
+      group_t("fill", "fill and backing above an arch"), &
+      group_t("tie", "bars between two blocks of an arch"), &
+      group_t("ground", "ground motion, with mode = 'dynamic'"), &
+      group_t("analysis", "computation of a single case"), &
+      group_t("limerick", "Shi's scheme, with mode = 'limerick'"), &
+      group_t("search", "critical value of one parameter"), &
+      group_t("sweep", "one case per value; up to 8 such groups"), &
+      group_t("output", "tables and files of a run")]
 
    !> Keys of &scene
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t("scene", "title", kind=key_kind%text, default="''", varies=.false., &
-            meaning="One line that says what the deck is about."), &
+            meaning="Title of the deck, one line."), &
       key_t("scene", "kind", kind=key_kind%word, default="'arch'", words="arch lines blocks", &
             varies=.false., &
-            meaning="What the blocks are made from: the keys of &arch, lines of a file, or "// &
-            "polygons of a file."), &
+            meaning="Source of the blocks: &arch, a file of lines, or a file of blocks."), &
       key_t("scene", "geometry", kind=key_kind%text, without="an arch", varies=.false., &
-            meaning="File of lines or of blocks, beside the deck unless it begins with a slash."), &
+            meaning="File of lines or of blocks, relative to the deck or absolute."), &
       key_t("scene", "analysis", kind=key_kind%text, without="the keys of this deck", &
             varies=.false., &
-            meaning="File of materials and loads for kind = 'lines'; keys of the deck take "// &
-            "precedence."), &
+            meaning="File of materials and loads (.ana, plain or DDAML) for kind = 'lines'."), &
       key_t("scene", "contact_tolerance", default="1e-4", within=[1.0e-12_wp, 1.0e-2_wp], &
-            varies=.false., &
-            meaning="Edges of blocks nearer than this share of the smaller block's size form a "// &
-            "joint.")]
+            varies=.false., meaning="Largest gap of a joint over the size of the smaller block.")]
 
    !> Keys of &material
    type(key_t), parameter :: material_keys(*) = [ &
-      key_t("material", "density", unit="kg/m3", default="2240.0", &
-            within=[1.0e-12_wp, 1.0e30_wp], meaning="Mass per volume."), &
+      key_t("material", "density", unit="kg/m3", default="2240.0", within=[1.0e-12_wp, 1.0e30_wp], &
+            meaning="Mass per volume."), &
       key_t("material", "unit_weight", unit="N/m3", without="density times gravity", &
             within=[1.0e-12_wp, 1.0e30_wp], &
-            meaning="Weight per volume; where given, density times gravity is not used."), &
+            meaning="Weight per volume; replaces density times gravity."), &
       key_t("material", "young", unit="Pa", default="5e9", within=[1.0e-12_wp, 1.0e30_wp], &
             meaning="Young's modulus of the blocks."), &
       key_t("material", "poisson", default="0.2", within=[-1.0_wp, 0.5_wp], above=-1.0_wp, &
             below=0.5_wp, meaning="Poisson's ratio of the blocks."), &
-      key_t("material", "compressive_strength", unit="Pa", &
-            without="blocks that are never crushed", within=[1.0e-12_wp, 1.0e30_wp], &
-            meaning="Pressure that joints carry at most, on the strip that bears it."), &
+      key_t("material", "compressive_strength", unit="Pa", without="unlimited", &
+            within=[1.0e-12_wp, 1.0e30_wp], meaning="Compressive strength of the joints."), &
       key_t("material", "plane", kind=key_kind%word, default="'stress'", words="stress strain", &
             meaning="Plane stress or plane strain.")]
 
@@ -69,16 +64,15 @@ module dda_deck_keys
    type(key_t), parameter :: joint_keys(*) = [ &
       key_t("joint", "friction_deg", unit="deg", default="50.0", within=[0.0_wp, 90.0_wp], &
             search_low=0.0_wp, search_high=90.0_wp, &
-            meaning="Friction angle; 89.9 and more means that no joint can slide."), &
+            meaning="Friction angle; from 89.9 degrees no joint slides."), &
       key_t("joint", "cohesion", unit="Pa", default="0.0", within=[0.0_wp, 1.0e30_wp], &
             meaning="Shear strength without normal force."), &
       key_t("joint", "tension", unit="Pa", default="0.0", within=[0.0_wp, 1.0e30_wp], &
-            meaning="Tensile strength; at most cohesion/tan(friction_deg) counts."), &
-      key_t("joint", "residual_deg", unit="deg", without="friction_deg", &
-            within=[0.0_wp, 90.0_wp], &
-            meaning="Friction angle of joints that have slid or opened."), &
+            meaning="Tensile strength, at most the apex cohesion/tan(friction_deg)."), &
+      key_t("joint", "residual_deg", unit="deg", without="friction_deg", within=[0.0_wp, 90.0_wp], &
+            meaning="Residual friction angle of joints that have slid or opened."), &
       key_t("joint", "slip_length", unit="m", default="0.0", within=[0.0_wp, 1.0e9_wp], &
-            meaning="Slip over which strength goes to what remains; 0: the first slip takes all.")]
+            meaning="Slip over which strength decreases to its residual; 0 for the first slip.")]
 
    !> Keys of &load
    type(key_t), parameter :: load_keys(*) = [ &
@@ -86,215 +80,206 @@ module dda_deck_keys
             meaning="Acceleration of gravity."), &
       key_t("load", "gravity_direction_deg", unit="deg", default="-90.0", &
             within=[-360.0_wp, 360.0_wp], &
-            meaning="Direction in which the weight acts, anticlockwise from +x; -90 is down."), &
+            meaning="Direction of self-weight, anticlockwise from +x; -90 is down."), &
       key_t("load", "horizontal_coefficient", default="0.0", within=[-1.0e6_wp, 1.0e6_wp], &
             search_low=0.0_wp, search_high=1.0_wp, &
-            meaning="Force towards +x on each block, as a multiple of its weight."), &
+            meaning="Pseudo-static force towards +x on each block over its weight."), &
       key_t("load", "load_factor", default="1.0", within=[-1.0e12_wp, 1.0e12_wp], &
             search_low=0.0_wp, search_high=1.0e9_wp, &
-            meaning="What live loads are multiplied by; dead loads stay."), &
+            meaning="Factor of the live loads; dead loads are unchanged."), &
       key_t("load", "live_horizontal", kind=key_kind%flag, default=".false.", &
-            meaning="Whether the forces of horizontal_coefficient are live."), &
+            meaning="Treat the forces of horizontal_coefficient as live loads."), &
       key_t("load", "displacement_factor", default="1.0", within=[-1.0e12_wp, 1.0e12_wp], &
-            meaning="What prescribed displacements are multiplied by."), &
+            meaning="Factor of the prescribed displacements of a file of blocks."), &
       key_t("load", "water_rise", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
-            meaning="By how much the lines of heads of a file of blocks have risen.")]
+            meaning="Rise of the piezometric lines of a file of blocks.")]
 
    !> Keys of &live
    type(key_t), parameter :: live_keys(*) = [ &
       key_t("live", "x", kind=key_kind%numbers, unit="m", without="no live load", &
-            within=[-1.0e15_wp, 1.0e15_wp], &
-            meaning="Where live forces act: one number a force."), &
+            within=[-1.0e15_wp, 1.0e15_wp], meaning="x of each force."), &
       key_t("live", "y", kind=key_kind%numbers, unit="m", without="no live load", &
-            within=[-1.0e15_wp, 1.0e15_wp], meaning="Likewise, upwards."), &
+            within=[-1.0e15_wp, 1.0e15_wp], meaning="y of each force."), &
       key_t("live", "fx", kind=key_kind%numbers, unit="N/m", without="0 for each force", &
             within=[-1.0e30_wp, 1.0e30_wp], &
-            meaning="Their components towards +x, per metre of depth."), &
+            meaning="Component of each force towards +x, per metre of depth."), &
       key_t("live", "fy", kind=key_kind%numbers, unit="N/m", without="0 for each force", &
-            within=[-1.0e30_wp, 1.0e30_wp], meaning="Their components upwards.")]
+            within=[-1.0e30_wp, 1.0e30_wp], &
+            meaning="Component of each force upwards; -1000 acts down.")]
 
    !> Keys of &vehicle
    type(key_t), parameter :: vehicle_keys(*) = [ &
       key_t("vehicle", "axles", kind=key_kind%numbers, unit="N/m", without="no vehicle", &
-            within=[0.0_wp, 1.0e30_wp], above=0.0_wp, &
-            meaning="Weight of each axle per metre of depth, a live load."), &
+            within=[0.0_wp, 1.0e30_wp], above=0.0_wp, meaning="Axle loads, per metre of depth."), &
       key_t("vehicle", "spacings", kind=key_kind%numbers, unit="m", without="a single axle", &
             within=[0.0_wp, 1.0e9_wp], above=0.0_wp, &
-            meaning="Distances between the axles, from the first to the right."), &
+            meaning="Distances between the axles, from left to right."), &
       key_t("vehicle", "length", unit="m", default="0.3", within=[0.0_wp, 1.0e9_wp], &
-            meaning="Length over which an axle is spread; 0 for a point."), &
-      key_t("vehicle", "position", unit="m", without="must be given, or worst", &
-            within=[-1.0e15_wp, 1.0e15_wp], meaning="Where the first axle is, along x."), &
+            meaning="Loaded length per axle; 0 for a point."), &
+      key_t("vehicle", "position", unit="m", without="required, or worst", &
+            within=[-1.0e15_wp, 1.0e15_wp], meaning="x of the leftmost axle."), &
       key_t("vehicle", "worst", kind=key_kind%flag, default=".false.", &
-            meaning="Whether the position of the least load factor is sought."), &
+            meaning="Search the position of the least load factor."), &
       key_t("vehicle", "both_directions", kind=key_kind%flag, default=".true.", &
-            meaning="Whether worst tries both directions of travel.")]
+            meaning="Include both directions of travel in worst.")]
 
    !> Keys of &ground
    type(key_t), parameter :: ground_keys(*) = [ &
       key_t("ground", "scale", default="1.0", within=[-1.0e12_wp, 1.0e12_wp], &
-            meaning="What the motion of the ground is multiplied by."), &
+            meaning="Factor of the ground motion."), &
       key_t("ground", "pulse", kind=key_kind%word, without="a record, or the file of blocks", &
             words="rectangular sine", &
-            meaning="Acceleration that is constant for a time, or a sine."), &
+            meaning="Constant acceleration or sine, of given amplitude and duration."), &
       key_t("ground", "record", kind=key_kind%text, without="a pulse, or the file of blocks", &
-            meaning="File of the motion, beside the deck unless it begins with a slash."), &
-      key_t("ground", "amplitude", unit="m/s2", without="must be given for a pulse", &
+            meaning="Record file, relative to the deck or absolute."), &
+      key_t("ground", "amplitude", unit="m/s2", without="required for a pulse", &
             within=[-1.0e12_wp, 1.0e12_wp], &
-            meaning="Largest acceleration: of the pulse, or that the record is brought to."), &
+            meaning="Largest acceleration of the pulse; with a record, its scaled maximum."), &
       key_t("ground", "duration", unit="s", without="one period of a sine", &
-            within=[1.0e-12_wp, 1.0e12_wp], bare=.false., meaning="How long the pulse lasts."), &
-      key_t("ground", "frequency", unit="Hz", without="must be given for a sine", &
+            within=[1.0e-12_wp, 1.0e12_wp], bare=.false., &
+            meaning="Duration of the pulse, required for a rectangular one."), &
+      key_t("ground", "frequency", unit="Hz", without="required for a sine", &
             within=[1.0e-9_wp, 1.0e9_wp], meaning="Frequency of the sine."), &
       key_t("ground", "direction_deg", unit="deg", default="0.0", within=[-360.0_wp, 360.0_wp], &
-            meaning="Direction of a pulse, or by how much a record is turned, from +x."), &
+            meaning="Direction of the pulse, or rotation of the record, anticlockwise from +x."), &
       key_t("ground", "columns", kind=key_kind%text, default="'1 2'", varies=.false., &
-            meaning="Columns of time, x and y in the record: numbers, 0 for none, or names."), &
+            meaning="Columns of time, x and y: numbers from 1, 0 for none, or header names."), &
       key_t("ground", "quantity", kind=key_kind%word, default="'acceleration'", &
-            words="acceleration velocity displacement", meaning="What the record holds."), &
+            words="acceleration velocity displacement", meaning="Quantity of the record."), &
       key_t("ground", "unit", default="1.0", within=[1.0e-12_wp, 1.0e12_wp], &
-            meaning="One of the record's units in m/s2, m/s or m: 9.81 for accelerations in g.")]
+            meaning="Unit of the record in m/s2, m/s or m: 9.81 for g.")]
 
    !> Keys of &analysis
    type(key_t), parameter :: analysis_keys(*) = [ &
       key_t("analysis", "mode", kind=key_kind%word, default="'static'", &
             words="static dynamic limerick", &
-            meaning="Velocity put to zero at each step or carried on; or Shi's scheme."), &
+            meaning="Zero velocity at each step, velocity carried on, or Shi's scheme."), &
       key_t("analysis", "geometry", kind=key_kind%word, default="'reference'", &
             words="reference current", &
-            meaning="Small displacements on the undeformed shape, or blocks that move."), &
+            meaning="Small displacements (limit analysis), or large ones (classical DDA)."), &
       key_t("analysis", "flow", kind=key_kind%word, default="'coulomb'", &
             words="coulomb associated", &
-            meaning="Friction rule of a static verdict: sliding along the joint, or opening it."), &
+            meaning="Flow rule of a static verdict: Coulomb friction, or limit analysis."), &
       key_t("analysis", "steps", kind=key_kind%whole, default="400", within=[1.0_wp, 1.0e9_wp], &
-            meaning="Step limit of one run; a static run that reaches it is undecided."), &
+            meaning="Maximum number of steps per run."), &
       key_t("analysis", "max_displacement_ratio", default="0.05", within=[1.0e-12_wp, 1.0_wp], &
-            meaning="Largest vertex displacement of a step over the size of the smallest block."), &
+            meaning="Largest corner displacement per step over the size of the smallest block."), &
       key_t("analysis", "time_step", unit="s", without="chosen by the program", &
             within=[1.0e-15_wp, 1.0e15_wp], &
-            meaning="First time step of a static run, longest step of a dynamic one."), &
-      key_t("analysis", "duration", unit="s", without="the run ends with its last step", &
-            within=[1.0e-15_wp, 1.0e15_wp], meaning="Time at which a dynamic run ends."), &
+            meaning="First step of a static run; longest step of a dynamic run."), &
+      key_t("analysis", "duration", unit="s", without="until the step limit", &
+            within=[1.0e-15_wp, 1.0e15_wp], meaning="End time of a dynamic run."), &
       key_t("analysis", "restitution", default="0.0", within=[0.0_wp, 1.0_wp], &
-            meaning="Speed after an impact over that before it, where blocks move in time."), &
+            meaning="Speed after an impact over the speed before it (dynamic, current)."), &
       key_t("analysis", "damping", unit="1/s", default="0.0", within=[0.0_wp, 1.0e15_wp], &
-            meaning="Rate at which velocities decay in a dynamic run, whatever the block."), &
+            meaning="Decay rate of velocities, proportional to mass."), &
       key_t("analysis", "penalty_ratio", default="100.0", within=[1.0e-6_wp, 1.0e12_wp], &
-            meaning="Normal stiffness of a contact over the block's own across the joint."), &
-      key_t("analysis", "collapse_displacement", unit="m", without="a test without a length", &
+            meaning="Contact stiffness over the stiffness of the block across the joint."), &
+      key_t("analysis", "collapse_displacement", unit="m", without="no limit", &
             within=[1.0e-15_wp, 1.0e15_wp], &
-            meaning="Largest vertex displacement that means collapse."), &
+            meaning="Largest corner displacement that counts as collapse."), &
       key_t("analysis", "collapse_rotation_deg", unit="deg", without="45 in a search", &
             within=[0.0_wp, 360.0_wp], above=0.0_wp, &
-            meaning="Rotation of a block that means collapse, in a dynamic run."), &
+            meaning="Block rotation that counts as collapse (dynamic, current geometry)."), &
       key_t("analysis", "collapse_point", kind=key_kind%whole, without="any corner", &
             within=[1.0_wp, 1.0e7_wp], &
-            meaning="Measured point whose displacement means collapse, by its number."), &
+            meaning="Monitoring point whose collapse_displacement counts, by its number."), &
       key_t("analysis", "open_close_limit", kind=key_kind%whole, default="400", &
             within=[1.0_wp, 1.0e9_wp], &
-            meaning="Most open-close changes of a step before the line search takes over."), &
-      key_t("analysis", "restart", kind=key_kind%text, &
-            without="the run begins at the beginning", varies=.false., &
-            meaning="Restart file that a dynamic run continues; steps counts those before."), &
+            meaning="Open-close changes per step before the line search starts."), &
+      key_t("analysis", "restart", kind=key_kind%text, without="start at time 0", varies=.false., &
+            meaning="Restart file of an earlier dynamic run of the same blocks."), &
       key_t("analysis", "start", kind=key_kind%word, default="'unloaded'", &
             words="unloaded static", &
-            meaning="Forces that a dynamic run begins with: none, or those of a static one."), &
-      key_t("analysis", "unknowns", kind=key_kind%whole, without="what the scene needs", &
-            within=[3.0_wp, 6.0_wp], &
-            meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
+            meaning="Initial forces of a dynamic run: none, or those of a static run."), &
+      key_t("analysis", "unknowns", kind=key_kind%whole, without="chosen by the program", &
+            within=[3.0_wp, 6.0_wp], meaning="Unknowns per block: 6, or 3 without strain.")]
 
    !> Keys of &limerick
    type(key_t), parameter :: limerick_keys(*) = [ &
       key_t("limerick", "dynamic", kind=key_kind%flag, default=".false.", &
-            meaning="Whether the velocity is carried on instead of put to zero at each step."), &
+            meaning="Keep velocities between steps; the run ends completed."), &
       key_t("limerick", "auto_penalty", kind=key_kind%flag, default=".true.", &
-            meaning="Whether the contact stiffness follows the penetration."), &
+            meaning="Adapt the contact stiffness to the penetration."), &
       key_t("limerick", "penetration_ratio", default="4e-4", within=[1.0e-12_wp, 1.0_wp], &
-            meaning="g3: penetration over the half size that the automatic penalty aims at."), &
+            meaning="g3: target penetration of the automatic penalty over the half size."), &
       key_t("limerick", "close_ratio", default="2e-4", within=[0.0_wp, 1.0_wp], &
-            meaning="s0: penetration over the half size beyond which an open contact closes."), &
+            meaning="s0: penetration over the half size above which an open contact closes."), &
       key_t("limerick", "open_ratio", default="2e-7", within=[0.0_wp, 1.0_wp], &
-            meaning="f0: opening over the half size beyond which a closed contact opens."), &
+            meaning="f0: opening over the half size above which a closed contact opens."), &
       key_t("limerick", "overlap_deg", unit="deg", default="3.0", within=[0.0_wp, 45.0_wp], &
-            meaning="h1: overlap of two corners that is overlooked."), &
+            meaning="h1: permitted overlap angle of two corners in contact detection."), &
       key_t("limerick", "stiffness_ratio", default="2.5", within=[1.0e-6_wp, 1.0e6_wp], &
             meaning="h2: normal over shear stiffness of a contact."), &
-      key_t("limerick", "rotation", kind=key_kind%word, default="'linear'", &
-            words="linear exact", &
-            meaning="Whether vertices turn along the tangent or by sine and cosine."), &
+      key_t("limerick", "rotation", kind=key_kind%word, default="'linear'", words="linear exact", &
+            meaning="Rotation of corners along the tangent (blocks grow) or exact."), &
       key_t("limerick", "contact_damping", unit="Ns/m2", default="0.0", &
             within=[0.0_wp, 1.0e30_wp], &
-            meaning="Force of a closed contact over the speed of approach, with dynamic."), &
+            meaning="Contact force per speed of approach and locked slip, with dynamic."), &
       key_t("limerick", "gravity_steps", kind=key_kind%whole, default="0", &
             within=[0.0_wp, 1.0e6_wp], &
-            meaning="Most steps of the phase that turns gravity on; 0 for none.")]
+            meaning="Maximum number of steps of the gravity phase; 0 for none.")]
 
    !> Keys of &search
    type(key_t), parameter :: search_keys(*) = [ &
       key_t("search", "parameter", kind=key_kind%text, default="'thickness_ratio'", &
-            varies=.false., &
-            meaning="Name of the real-valued key whose critical value is sought."), &
-      key_t("search", "low", without="the parameter's own lower end", &
+            varies=.false., meaning="Real-valued key whose critical value is sought."), &
+      key_t("search", "low", without="lower end of the parameter", within=[-1.0e30_wp, 1.0e30_wp], &
+            meaning="Lower end of the search, in the unit of the parameter."), &
+      key_t("search", "high", without="upper end of the parameter", &
             within=[-1.0e30_wp, 1.0e30_wp], &
-            meaning="Where the search begins, in the parameter's unit."), &
-      key_t("search", "high", without="the parameter's own upper end", &
-            within=[-1.0e30_wp, 1.0e30_wp], &
-            meaning="Where the search ends, in the parameter's unit."), &
+            meaning="Upper end of the search, in the unit of the parameter."), &
       key_t("search", "tolerance", default="1e-8", within=[0.0_wp, 1.0_wp], above=0.0_wp, &
-            below=1.0_wp, &
-            meaning="Width of the bracket that ends the search, relative to the critical value.")]
+            below=1.0_wp, meaning="Relative width of the final bracket.")]
 
    !> Keys of &sweep
    type(key_t), parameter :: sweep_keys(*) = [ &
-      key_t("sweep", "parameter", kind=key_kind%text, without="must be given", varies=.false., &
-            meaning="Name of the key that takes one value after the other."), &
+      key_t("sweep", "parameter", kind=key_kind%text, without="required", varies=.false., &
+            meaning="Key that takes one value after the other."), &
       key_t("sweep", "values", kind=key_kind%numbers, without="texts, or first, last, count", &
-            varies=.false., meaning="The numbers it takes."), &
+            varies=.false., meaning="Numbers, in the unit of the parameter."), &
       key_t("sweep", "texts", kind=key_kind%texts, without="values, or first, last, count", &
-            varies=.false., meaning="The words it takes."), &
+            varies=.false., meaning="Words, each of at most 64 characters."), &
       key_t("sweep", "first", without="values or texts", within=[-1.0e30_wp, 1.0e30_wp], &
             varies=.false., meaning="First of count evenly spaced numbers."), &
       key_t("sweep", "last", without="values or texts", within=[-1.0e30_wp, 1.0e30_wp], &
             varies=.false., meaning="Last of count evenly spaced numbers."), &
       key_t("sweep", "count", kind=key_kind%whole, without="values or texts", &
             within=[1.0_wp, 1.0e7_wp], varies=.false., &
-            meaning="How many numbers from first to last, both included."), &
+            meaning="Number of values from first to last, both included."), &
       key_t("sweep", "linked", kind=key_kind%flag, default=".false.", varies=.false., &
-            meaning="Advance together with the &sweep before, instead of multiplying the cases.")]
+            meaning="Advance together with the previous &sweep.")]
 
    !> Keys of &output
    type(key_t), parameter :: output_keys(*) = [ &
       key_t("output", "vtu", kind=key_kind%flag, default=".true.", varies=.false., &
-            meaning="Write the frames for ParaView too."), &
-      key_t("output", "joints", kind=key_kind%flag, without="up to 100 cases", varies=.false., &
-            meaning="Write forces, openings and states of the joints to joints.csv."), &
-      key_t("output", "blocks", kind=key_kind%flag, without="up to 100 cases", varies=.false., &
-            meaning="Write corners and displacements of the blocks to blocks.csv."), &
+            meaning="Write the frames for ParaView, with stresses, forces and states."), &
+      key_t("output", "joints", kind=key_kind%flag, without="for up to 100 cases", varies=.false., &
+            meaning="Write joints.csv: forces, openings and states."), &
+      key_t("output", "blocks", kind=key_kind%flag, without="for up to 100 cases", varies=.false., &
+            meaning="Write blocks.csv: corners and displacements."), &
       key_t("output", "proof", kind=key_kind%flag, without="as joints, for up to 100 cases", &
-            varies=.false., &
-            meaning="Prove static verdicts in proof_forces.csv and proof_motion.csv."), &
+            varies=.false., meaning="Write the certificate of each static verdict."), &
       key_t("output", "thrust_bar", kind=key_kind%whole, without="none", &
             within=[1.0_wp, 1.0e7_wp], varies=.false., &
-            meaning="Bar whose least and greatest force are reported for stable cases, in "// &
-            "thrust_min and thrust_max."), &
-      key_t("output", "reactions", kind=key_kind%flag, without="as joints, of static runs", &
-            varies=.false., &
-            meaning="Write the forces of fixed blocks and held points to reactions.csv."), &
-      key_t("output", "thrust_joint", kind=key_kind%whole, &
-            without="the one nearest to the crown of an arch", within=[1.0_wp, 1.0e7_wp], &
-            varies=.false., meaning="Joint whose thrust range is reported for stable cases."), &
+            meaning="Bar with reported least and greatest force."), &
+      key_t("output", "reactions", kind=key_kind%flag, without="as joints, for static runs", &
+            varies=.false., meaning="Write reactions.csv: support forces."), &
+      key_t("output", "thrust_joint", kind=key_kind%whole, without="the one nearest to the crown", &
+            within=[1.0_wp, 1.0e7_wp], varies=.false., &
+            meaning="Joint with reported thrust range, by its number in joints.csv."), &
       key_t("output", "condition", kind=key_kind%flag, default=".false.", varies=.false., &
-            meaning="Estimate the condition number of the last equations of each case."), &
+            meaning="Estimate the condition number of the last equations."), &
       key_t("output", "frames", kind=key_kind%whole, default="0", within=[0.0_wp, 10000.0_wp], &
             varies=.false., &
-            meaning="Frames of moving blocks; a collapse is then followed for radius/10."), &
+            meaning="Approximate number of frames of the motion, with current geometry."), &
       key_t("output", "energy", kind=key_kind%flag, default=".false.", varies=.false., &
-            meaning="Write the energies after each step of a dynamic run to energy.csv."), &
+            meaning="Write energy.csv: energies after each step of a dynamic run."), &
       key_t("output", "restart", kind=key_kind%flag, default=".false.", varies=.false., &
-            meaning="Write the end of each dynamic case to case_N.restart, to continue it."), &
+            meaning="Write the end of each dynamic case N to case_N.restart."), &
       key_t("output", "max_cases", kind=key_kind%whole, default="100000", &
             within=[1.0_wp, 1.0e7_wp], varies=.false., &
-            meaning="Most cases that the &sweep groups may make; more is an error.")]
+            meaning="Upper limit on the number of cases.")]
 
    !> All keys, group by group, in the order of the groups
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &

@@ -46,173 +46,168 @@ module dda_map_keys
 
    !> All groups
    type(group_t), parameter :: map_group(*) = [ &
-      group_t("lines", "the file that is written"), &
-      group_t("outline", "the region that is cut into blocks"), &
-      group_t("slope", "the surface of the ground; without it the outline's top"), &
-      group_t("opening", "a tunnel; may be given again"), &
-      group_t("joint_set", "a set of joints; may be given again"), &
-      group_t("line", "lines placed by hand; may be given again"), &
-      group_t("point", "points placed by hand; may be given again"), &
-      group_t("bolts", "bolts around an opening; may be given again")]
+      group_t("lines", "the file of lines"), &
+      group_t("outline", "region that is cut into blocks"), &
+      group_t("slope", "ground surface; without it the top of the outline"), &
+      group_t("opening", "a tunnel; repeatable"), &
+      group_t("joint_set", "a set of joints; repeatable"), &
+      group_t("line", "single lines; repeatable"), &
+      group_t("point", "single points; repeatable"), &
+      group_t("bolts", "bolts around an opening; repeatable")]
 
    !> Keys of &lines and &outline
    type(key_t), parameter :: outline_keys(*) = [ &
       key_t("lines", "title", kind=key_kind%text, default="''", &
-            meaning="One line that says what the map is about."), &
+            meaning="Title of the map, one line."), &
       key_t("lines", "seed", kind=key_kind%whole, default="1", within=[0.0_wp, 1.0e8_wp], &
-            meaning="What chooses all random numbers; the same seed, the same lines."), &
+            meaning="Seed of all random numbers; equal seeds give equal lines."), &
       key_t("lines", "edge_node_ratio", default="0.001", within=[0.0_wp, 0.5_wp], &
-            meaning="Shi's e00: nodes closer than this, times the size of the model, become "// &
-            "one."), &
+            meaning="Shi's e00: largest distance of merged nodes over the model size."), &
       key_t("lines", "form", kind=key_kind%word, default="'plain'", words="plain ddaml", &
-            meaning="Form of the file."), &
+            meaning="Format of the file."), &
       key_t("outline", "left", unit="m", without="x and y", within=[-far, far], &
             meaning="Left side of a rectangle."), &
       key_t("outline", "right", unit="m", without="x and y", within=[-far, far], &
-            meaning="Right side of it."), &
+            meaning="Right side of a rectangle."), &
       key_t("outline", "bottom", unit="m", without="x and y", within=[-far, far], &
-            meaning="Its bottom."), &
+            meaning="Bottom of a rectangle."), &
       key_t("outline", "top", unit="m", without="&slope", within=[-far, far], &
-            meaning="Its top."), &
+            meaning="Top of a rectangle."), &
       key_t("outline", "x", kind=key_kind%numbers, unit="m", without="a rectangle", &
-            within=[-far, far], meaning="Corners of a polygon."), &
+            within=[-far, far], meaning="x of the corners of a polygon."), &
       key_t("outline", "y", kind=key_kind%numbers, unit="m", without="a rectangle", &
-            within=[-far, far], meaning="Corners of a polygon."), &
+            within=[-far, far], meaning="y of the corners of a polygon."), &
       key_t("outline", "fixed", kind=key_kind%texts, without="none", &
-            meaning="Sides whose blocks are held: 'left', 'right', 'bottom'."), &
-      key_t("outline", "hold_depth", unit="m", &
-            without="0.2 edge_node_ratio of the outline's size", within=[0.0_wp, far], &
-            above=0.0_wp, meaning="How far inside the side the line runs that holds them."), &
+            meaning="Sides with fixed blocks: 'left', 'right', 'bottom'."), &
+      key_t("outline", "hold_depth", unit="m", without="0.2 edge_node_ratio of the outline size", &
+            within=[0.0_wp, far], above=0.0_wp, &
+            meaning="Distance of the line that fixes the blocks from the side."), &
       key_t("outline", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
-            meaning="Joint material of its edges.")]
+            meaning="Joint material of the edges.")]
 
    !> Keys of &slope and &opening
    type(key_t), parameter :: surface_keys(*) = [ &
-      key_t("slope", "x", kind=key_kind%numbers, unit="m", without="benches", &
-            within=[-far, far], meaning="Points of the surface from left to right."), &
-      key_t("slope", "y", kind=key_kind%numbers, unit="m", without="benches", &
-            within=[-far, far], meaning="Points of the surface from left to right."), &
+      key_t("slope", "x", kind=key_kind%numbers, unit="m", without="benches", within=[-far, far], &
+            meaning="x of the surface, from left to right."), &
+      key_t("slope", "y", kind=key_kind%numbers, unit="m", without="benches", within=[-far, far], &
+            meaning="y of the surface, from left to right."), &
       key_t("slope", "foot_x", unit="m", without="x and y", within=[-far, far], &
-            meaning="Foot of a slope in benches that rises to the right."), &
+            meaning="x of the foot of a benched slope that rises to the right."), &
       key_t("slope", "foot_y", unit="m", without="x and y", within=[-far, far], &
-            meaning="Foot of that slope."), &
+            meaning="y of the foot of a benched slope."), &
       key_t("slope", "face_deg", unit="deg", default="60.0", within=[0.0_wp, 90.0_wp], &
             above=0.0_wp, meaning="Angle of each face."), &
       key_t("slope", "bench_height", unit="m", default="10.0", within=[near, far], &
             meaning="Height of each face."), &
       key_t("slope", "bench_width", unit="m", default="0.0", within=[0.0_wp, far], &
-            meaning="Width of the level part between two faces."), &
+            meaning="Width of the berm between two faces."), &
       key_t("slope", "benches", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
             meaning="Number of faces."), &
       key_t("opening", "shape", kind=key_kind%word, default="'circle'", &
             words="circle ellipse arch horseshoe polygon", &
-            meaning="Its shape: 'arch' is half an ellipse on walls, 'horseshoe' a half circle "// &
-            "on drawn-in walls."), &
+            meaning="Shape; 'arch' is a half ellipse on walls, 'horseshoe' narrows downwards."), &
       key_t("opening", "x", unit="m", default="0.0", within=[-far, far], &
-            meaning="Its centre; of 'arch' and 'horseshoe' the middle of the floor."), &
+            meaning="x of the centre, or of the middle of the floor ('arch', 'horseshoe')."), &
       key_t("opening", "y", unit="m", default="0.0", within=[-far, far], &
-            meaning="Its centre; of 'arch' and 'horseshoe' the middle of the floor."), &
+            meaning="y of the centre, or of the floor ('arch', 'horseshoe')."), &
       key_t("opening", "width", unit="m", default="5.0", within=[near, far], &
-            meaning="Its width: the diameter, twice the half axis, the distance of the walls."), &
+            meaning="Largest width."), &
       key_t("opening", "height", unit="m", without="the width", within=[near, far], &
             meaning="Height of an ellipse."), &
       key_t("opening", "wall", unit="m", default="0.0", within=[0.0_wp, far], &
-            meaning="Height of the walls, up to where the arch begins."), &
+            meaning="Height of the walls."), &
       key_t("opening", "rise", unit="m", without="half the width", within=[near, far], &
             meaning="Height of the arch above the walls."), &
       key_t("opening", "sides", kind=key_kind%whole, default="24", within=[3.0_wp, 10000.0_wp], &
-            meaning="Edges of a circle or an ellipse, or of the arch above the walls."), &
+            meaning="Number of chords of the curve."), &
       key_t("opening", "corner_x", kind=key_kind%numbers, unit="m", without="another shape", &
-            within=[-far, far], meaning="Corners of a polygon."), &
+            within=[-far, far], meaning="x of the corners of a polygon."), &
       key_t("opening", "corner_y", kind=key_kind%numbers, unit="m", without="another shape", &
-            within=[-far, far], meaning="Corners of a polygon."), &
+            within=[-far, far], meaning="y of the corners of a polygon."), &
       key_t("opening", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
-            meaning="Joint material of its edges."), &
+            meaning="Joint material of the edges."), &
       key_t("opening", "excavated", kind=key_kind%flag, default=".true.", &
-            meaning="Whether its rock is taken out; joints run through one whose rock is not.")]
+            meaning="Remove the rock inside; otherwise joints cross the outline.")]
 
    !> Keys of &joint_set
    type(key_t), parameter :: set_keys(*) = [ &
       key_t("joint_set", "dip_deg", unit="deg", default="0.0", within=[-180.0_wp, 180.0_wp], &
             meaning="Angle of the joints, anticlockwise from x."), &
       key_t("joint_set", "dip_spread_deg", unit="deg", default="0.0", within=[0.0_wp, 90.0_wp], &
-            meaning="Largest deviation of a joint from it, evenly spread."), &
+            meaning="Largest deviation from dip_deg, uniformly distributed."), &
       key_t("joint_set", "spacing", unit="m", default="1.0", within=[near, far], &
-            meaning="Mean distance of neighbours, across the joints."), &
+            meaning="Mean distance of neighbours, normal to the joints."), &
       key_t("joint_set", "spacing_law", kind=key_kind%word, default="'constant'", words=laws, &
             meaning=law_meaning), &
       key_t("joint_set", "spacing_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
             meaning=randomness_meaning), &
-      key_t("joint_set", "trace", unit="m", without="joints without end", within=[near, far], &
+      key_t("joint_set", "trace", unit="m", without="unlimited joints", within=[near, far], &
             meaning="Mean length of a trace."), &
       key_t("joint_set", "trace_law", kind=key_kind%word, default="'constant'", words=laws, &
             meaning=law_meaning), &
       key_t("joint_set", "trace_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
             meaning=randomness_meaning), &
       key_t("joint_set", "bridge", unit="m", default="0.0", within=[0.0_wp, far], &
-            meaning="Mean length of the rock between two traces of a joint."), &
+            meaning="Mean length of intact rock between two traces of a joint."), &
       key_t("joint_set", "bridge_law", kind=key_kind%word, default="'constant'", words=laws, &
             meaning=law_meaning), &
       key_t("joint_set", "bridge_randomness", default="0.0", within=[0.0_wp, 1.0_wp], &
             meaning=randomness_meaning), &
-      key_t("joint_set", "material", kind=key_kind%whole, default="1", &
-            within=[1.0_wp, 1000.0_wp], meaning="Joint material."), &
-      key_t("joint_set", "seed", kind=key_kind%whole, without="the number of the set", &
-            within=[0.0_wp, 1000.0_wp], meaning="Seed of its random numbers."), &
-      key_t("joint_set", "through_x", unit="m", without="a random place", within=[-far, far], &
-            meaning="A point that a joint of the set runs through."), &
-      key_t("joint_set", "through_y", unit="m", without="a random place", within=[-far, far], &
-            meaning="A point that a joint of the set runs through."), &
-      key_t("joint_set", "region_x", kind=key_kind%numbers, unit="m", &
-            without="the whole outline", within=[-far, far], &
-            meaning="Corners of the part of the outline that has the set."), &
-      key_t("joint_set", "region_y", kind=key_kind%numbers, unit="m", &
-            without="the whole outline", within=[-far, far], &
-            meaning="Corners of the part of the outline that has the set.")]
+      key_t("joint_set", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
+            meaning="Joint material."), &
+      key_t("joint_set", "seed", kind=key_kind%whole, without="number of the set", &
+            within=[0.0_wp, 1000.0_wp], meaning="Seed of the set."), &
+      key_t("joint_set", "through_x", unit="m", without="random", within=[-far, far], &
+            meaning="x of a point on one joint of the set."), &
+      key_t("joint_set", "through_y", unit="m", without="random", within=[-far, far], &
+            meaning="y of a point on one joint of the set."), &
+      key_t("joint_set", "region_x", kind=key_kind%numbers, unit="m", without="the whole outline", &
+            within=[-far, far], meaning="x of the corners of the region with the set."), &
+      key_t("joint_set", "region_y", kind=key_kind%numbers, unit="m", without="the whole outline", &
+            within=[-far, far], meaning="y of the corners of the region with the set.")]
 
    !> Keys of &line, &point and &bolts
    type(key_t), parameter :: hand_keys(*) = [ &
       key_t("line", "role", kind=key_kind%word, default="'joint'", &
             words="joint material fix bolt", &
-            meaning="A joint, a line that gives blocks their material or that holds them, or "// &
-            "a bolt."), &
-      key_t("line", "x", kind=key_kind%numbers, unit="m", without="an error", &
-            within=[-far, far], meaning="Points of the line, two or more."), &
-      key_t("line", "y", kind=key_kind%numbers, unit="m", without="an error", &
-            within=[-far, far], meaning="Points of the line, two or more."), &
+            meaning="Joint, boundary of a material, line that fixes blocks, or bolt."), &
+      key_t("line", "x", kind=key_kind%numbers, unit="m", without="required", within=[-far, far], &
+            meaning="x of two points or more."), &
+      key_t("line", "y", kind=key_kind%numbers, unit="m", without="required", within=[-far, far], &
+            meaning="y of two points or more."), &
       key_t("line", "material", kind=key_kind%whole, default="1", within=[1.0_wp, 1000.0_wp], &
             meaning="Joint material, or material of the blocks."), &
       key_t("line", "stiffness", unit="N/m", default="1e8", within=[0.0_wp, 1.0e30_wp], &
-            above=0.0_wp, meaning="Force of a bolt over its elongation."), &
+            above=0.0_wp, meaning="Force of a bolt per elongation."), &
       key_t("line", "strength", unit="N", default="1e30", within=[0.0_wp, 1.0e30_wp], &
             meaning="Largest force of a bolt."), &
       key_t("line", "prestress", unit="N", default="0.0", within=[0.0_wp, 1.0e30_wp], &
-            meaning="Force of a bolt at the beginning."), &
+            meaning="Initial force of a bolt."), &
       key_t("point", "role", kind=key_kind%word, default="'measure'", &
             words="measure fix load hole", &
-            meaning="What is done there: a hole takes its block out."), &
-      key_t("point", "x", kind=key_kind%numbers, unit="m", without="an error", &
-            within=[-far, far], meaning="The points."), &
-      key_t("point", "y", kind=key_kind%numbers, unit="m", without="an error", &
-            within=[-far, far], meaning="The points."), &
+            meaning="Monitoring point, restraint, load, or hole (the block is removed)."), &
+      key_t("point", "x", kind=key_kind%numbers, unit="m", without="required", within=[-far, far], &
+            meaning="x of the points."), &
+      key_t("point", "y", kind=key_kind%numbers, unit="m", without="required", within=[-far, far], &
+            meaning="y of the points."), &
       key_t("bolts", "opening", kind=key_kind%whole, default="1", within=[1.0_wp, 1.0e5_wp], &
-            meaning="Number of the opening that they stand around."), &
+            meaning="Number of the opening."), &
       key_t("bolts", "number", kind=key_kind%whole, default="1", within=[1.0_wp, 1.0e5_wp], &
-            meaning="How many there are."), &
+            meaning="Number of bolts."), &
       key_t("bolts", "from_deg", unit="deg", default="0.0", within=[-360.0_wp, 360.0_wp], &
-            meaning="Direction of the first, seen from the middle of the opening."), &
+            meaning="Direction of the first bolt from the middle of the opening."), &
       key_t("bolts", "to_deg", unit="deg", default="180.0", within=[-360.0_wp, 360.0_wp], &
-            meaning="Direction of the last; the others lie evenly between."), &
+            meaning="Direction of the last bolt; the others are evenly spaced."), &
       key_t("bolts", "length", unit="m", default="3.0", within=[near, far], &
-            meaning="Length of each."), &
+            meaning="Length of each bolt."), &
       key_t("bolts", "inset", unit="m", default="0.05", within=[near, far], &
-            meaning="How deep in the rock each begins."), &
+            meaning="Depth of the inner end of a bolt in the rock."), &
       key_t("bolts", "stiffness", unit="N/m", default="1e8", within=[0.0_wp, 1.0e30_wp], &
-            above=0.0_wp, meaning="Force of a bolt over its elongation."), &
+            above=0.0_wp, meaning="Force of a bolt per elongation."), &
       key_t("bolts", "strength", unit="N", default="1e30", within=[0.0_wp, 1.0e30_wp], &
             meaning="Largest force of a bolt."), &
       key_t("bolts", "prestress", unit="N", default="0.0", within=[0.0_wp, 1.0e30_wp], &
-            meaning="Force of a bolt at the beginning.")]
+            meaning="Initial force of a bolt.")]
 
    !> All keys
    type(key_t), parameter :: map_key(*) = [outline_keys, surface_keys, set_keys, hand_keys]

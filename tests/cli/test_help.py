@@ -250,7 +250,7 @@ def test_keys_as_json_are_the_keys_as_text() -> None:
     keys = {(group["name"], key["name"]): key for group in groups for key in group["keys"]}
     assert keys["arch", "radius"] == {
         "name": "radius", "kind": "number", "unit": "m", "default": "10.0", "from": 1e-9, "to": 1e9, "sweep": True,
-        "search": True, "meaning": "Radius of the circle half way between intrados and extrados."}
+        "search": True, "meaning": "Radius of the centre line, half way between intrados and extrados."}
     assert keys["scene", "kind"]["words"] == ["arch", "lines", "blocks"]
     assert (keys["material", "poisson"]["above"], keys["material", "poisson"]["below"]) == (-1.0, 0.5)
     assert keys["arch", "joints_deg"]["without"] == "equal voussoirs"
