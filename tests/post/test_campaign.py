@@ -99,7 +99,7 @@ def test_shares_of_a_job_array_make_one_table(tmp_path: Path, unbroken, capsys) 
         assert main(words) == 0
     assert tables(out) == unbroken
     printed = capsys.readouterr().out
-    assert "this share has ended, 20 cases of others are left" in printed
+    assert "this share has ended, 20 cases of other shares remain" in printed
     assert "0 undecided, 0 not finished" in printed
 
 
@@ -117,7 +117,7 @@ def test_merge_shows_what_is_finished_so_far(tmp_path: Path, unbroken, capsys) -
     whole = unbroken["results.csv"]
     assert tables(out)["results.csv"] == whole[:1] + whole[11:21]
     assert main(["campaign", deck, "--out", str(out)]) == 0
-    assert "10 of 30 cases were finished before" in capsys.readouterr().out
+    assert "10 of 30 cases are already finished" in capsys.readouterr().out
     assert tables(out) == unbroken
 
 
@@ -134,8 +134,8 @@ def test_another_deck_is_not_mixed_with_the_first(tmp_path: Path, capsys) -> Non
     deck.write_text(deck.read_text().replace("12", "8"))
     assert main(["campaign", str(deck), "--out", str(out)]) == 2
     error = capsys.readouterr().err
-    assert "other arch%voussoirs" in error and ":1: error: expected" in error and "--anew" in error
-    assert main(["campaign", str(deck), "--out", str(out), "--anew", "--quiet"]) == 0
+    assert "other arch%voussoirs" in error and ":1: error: expected" in error and "--discard" in error
+    assert main(["campaign", str(deck), "--out", str(out), "--discard", "--quiet"]) == 0
     assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"8"}
 
 
@@ -152,7 +152,7 @@ def test_bad_deck_is_reported_as_by_the_program(tmp_path: Path, capsys) -> None:
         (["--index", "1"], "give both"),
         (["--of", "3"], "give both"),
         (["--index", "4", "--of", "3"], "number the shares from 1"),
-        (["--index", "1", "--of", "3", "--anew"], "remove the folder"),
+        (["--index", "1", "--of", "3", "--discard"], "remove the folder"),
         (["--scheduler", "tcp://127.0.0.1:1"], "--scheduler:1: error: expected"),
     ],
 )
@@ -249,7 +249,7 @@ def test_every_table_of_a_run_is_merged(tmp_path: Path) -> None:
     for name in set(TABLES) - {"results.csv", "bars.csv"}:  # it has no bars
         assert (out / name).read_text() == (tmp_path / "one" / name).read_text(), name
     again = subprocess.run([DDA, "run", deck, "--out", out, "--resume"], check=True, capture_output=True, text=True)
-    assert "3 of 3 cases are there already" in again.stdout
+    assert "3 of 3 cases are already computed" in again.stdout
     assert {"points.csv", "energy.csv", "frames.csv"} <= {path.name for path in out.iterdir()}
 
 

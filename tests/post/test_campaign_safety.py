@@ -101,7 +101,7 @@ def test_changed_file_makes_another_campaign(tmp_path: Path, scene, settings, ca
     (tmp_path / "it's.blocks").write_text(BLOCKS.format(x=2.5))
     assert main(words) == 2
     assert "(other files)" in capsys.readouterr().err
-    assert main([*words, "--anew"]) == 0
+    assert main([*words, "--discard"]) == 0
     new = tables(tmp_path / "out")
     assert new["blocks.csv"] != old["blocks.csv"]
 

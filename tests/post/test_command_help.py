@@ -19,6 +19,9 @@ from voussoir import __version__  # noqa: E402
 from voussoir.command.main import COMMANDS, build_parser, main  # noqa: E402
 
 TESTS = Path(__file__).parents[1]
+sys.path.insert(0, str(TESTS / "lint"))
+
+import page_rules  # noqa: E402
 
 
 def help_of(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
@@ -68,6 +71,21 @@ def test_every_default_is_shown(command: str, capsys) -> None:
     show = subparsers[command]._get_formatter()._get_help_string
     for action in options_of(command):
         assert action.required or "default" in show(action), action.option_strings
+
+
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_help_is_in_the_words_of_the_pages(command: str | None, tmp_path: Path, capsys) -> None:
+    page = tmp_path / "help.md"
+    page.write_text(help_of(["help", *filter(None, [command])], capsys).replace("`", ""))
+    assert [line for line in page_rules.offences(page) if "words per sentence" not in line] == []
+
+
+@pytest.mark.parametrize("verb", ["run", "check", "cut"])
+def test_verbs_of_dda_are_named(verb: str, capsys) -> None:
+    assert main([verb, "a.nml"]) == 2
+    assert capsys.readouterr().err == (
+        f"voussoir: error: expected a command of voussoir, got '{verb}', which dda has; write 'dda {verb}'\n")
+    assert "'dda run DECK'" in " ".join(help_of(["help"], capsys).split())
 
 
 def words_of_calls() -> Iterator[set[str]]:

@@ -104,6 +104,6 @@ def test_campaign_leaves_a_table_of_others_alone(tmp_path: Path) -> None:
     out.mkdir()
     (out / "results.csv").write_text("time,load\n")
     with pytest.raises(DdaError, match="results.csv:1: error: expected a table that begins with deck,case") as refusal:
-        open_campaign(find_dda(), deck, [], out, anew=False)
+        open_campaign(find_dda(), deck, [], out, discard=False)
     assert refusal.value.status == 4
     assert (out / "results.csv").read_text() == "time,load\n"

@@ -37,7 +37,7 @@ def test_what_is_said_of_a_block_is_how_far_it_goes_in_the_picture(tmp_path: Pat
     assert told.count(f"block {len(told)}: does not move") == 1
     ways = [float(text.split(" is ")[1].split(" m ")[0]) for text in told if " is " in text]
     assert len(ways) == 12 and min(ways) > 0.0
-    assert words_of(run, 1, pictures, pictures[0], 3) == "block 3: a corner is 0 m from where it was"
+    assert words_of(run, 1, pictures, pictures[0], 3) == "block 3: a corner is 0 m from its initial position"
 
 
 def test_without_pyvista_it_says_how_to_get_it(tmp_path: Path, capsys, monkeypatch) -> None:

@@ -101,7 +101,7 @@ def sketches(lines: Sequence[Line]) -> dict[str, str]:
     return {f"{line.scene.deck}.svg": sketch(line.shapes) for line in first.values() if line.shapes}
 
 
-def told(line: Line) -> str:
+def screen_line(line: Line) -> str:
     """One line for the terminal."""
     found = line.computed if isinstance(line.computed, str) else f"{line.computed:.8g}"
     what = f"{line.scene.name}: {line.check.what}"

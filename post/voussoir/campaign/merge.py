@@ -143,7 +143,7 @@ def merged(out: Path) -> Summary:
         cases, doubtful = 0, [header]
         for line in file:
             cases += 1
-            if b"undecided" in line:  # most rows are told apart without parting them
+            if b"undecided" in line:  # most rows need no splitting
                 doubtful.append(line)
     rows = csv.reader(line.decode("utf-8", "replace") for line in doubtful)
     verdict = next(rows).index("verdict")

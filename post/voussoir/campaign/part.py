@@ -49,7 +49,7 @@ def run_part(part: Part) -> tuple[int, str]:
         if status in (0, 3) and (part.folder / "deck.record").read_bytes() != part.record.encode():
             return 2, (
                 f"{part.deck}:1: error: expected the deck and its files as they were when the "
-                "campaign began, got changed ones; call again with --anew")
+                "campaign began, got changed ones; call again with --discard")
         if status in (0, 2, 3, 4):
             return status if status in (2, 4) else 0, message
         if -status in (signal.SIGINT, signal.SIGTERM):

@@ -51,10 +51,12 @@ class Campaign:
         return self.out / "parts"
 
 
-def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False) -> Campaign:
-    """Begin a campaign, or go on with one: its folder exists and says what it is for.
+def open_campaign(
+    dda: Path, deck: Path, settings: list[str], out: Path, discard: bool, shared: bool = False,
+) -> Campaign:
+    """Start a campaign, or continue one: its folder exists and names its purpose.
 
-    What an earlier one has left there is discarded `anew`; a `shared` folder is that of a job array. DdaError if the
+    `discard` removes the results of an earlier one; a `shared` folder is that of a job array. DdaError if the
     deck is bad input, or the folder holds another campaign.
     """
     asked = ask(dda, deck, settings)
@@ -64,9 +66,9 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     file = out / "campaign.record"
     digest = hashlib.sha256(asked.record.encode()).hexdigest()
     text = f"{digest}\n{asked.record}"
-    if not anew and not file.exists():
+    if not discard and not file.exists():
         check_origin(out / "results.csv")
-    if anew:
+    if discard:
         shutil.rmtree(campaign.parts, ignore_errors=True)
         for name in ("campaign.record", "deck.record", "results.csv", "disk.record"):
             (out / name).unlink(missing_ok=True)
@@ -77,7 +79,7 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     if true and record != asked.record:
         raise DdaError(
             f"{deck}:1: error: expected the campaign that {out} was begun for, got another one (other "
-            f"{changed_keys(record, asked.record)}); choose another --out, or discard what is there with --anew")
+            f"{changed_keys(record, asked.record)}); choose another --out, or discard what is there with --discard")
     if known != text:
         if content_of(out / "deck.record") != asked.record.encode():
             for name in ("results.csv", "disk.record"):  # of whatever was there before
@@ -95,7 +97,7 @@ def check_origin(table: Path) -> None:
     if not begin.startswith(_ORIGIN) and not _ORIGIN.startswith(begin):
         raise DdaError(
             f"{table}:1: error: expected a table that begins with {_ORIGIN.decode()}, got a file that dda has not "
-            "written; choose another --out, or discard what is there with --anew", 4)
+            "written; choose another --out, or discard what is there with --discard", 4)
 
 
 def changed_keys(old: str, new: str) -> str:
@@ -205,7 +207,7 @@ def local_engine(workers: int) -> Engine:
 
 
 def run_parts(parts: list[Part], engine: Engine, shown: bool = False) -> Outcome:
-    """Run all parts and tell on standard error how many have ended: the worst status, 4 before 2, and its message."""
+    """Run all parts and report on standard error how many have ended: the worst status, 4 before 2, and its message."""
     worst, message = 0, ""
     for done, (status, text) in enumerate(engine(parts), start=1):
         if shown:

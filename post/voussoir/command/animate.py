@@ -16,8 +16,8 @@ MOST_CASES = 6
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Animate cases of a folder that dda run has written, side by side: the frames of runs with geometry = "
-        "'current' (arches and blocks, collapses and dynamic runs), else the collapse mechanism as it grows."
+        "Animates cases of a folder of results side by side: frames of runs with geometry = 'current', else the "
+        "growing collapse mechanism."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="FILE",
         type=Path,
-        help="a .gif, an .mp4 (needs ffmpeg), or a .png for one numbered file a picture "
+        help="a .gif, an .mp4 (needs ffmpeg), or a .png for one numbered file per frame "
         "(default: DIR/plots/motion.gif)",
     )
     parser.add_argument(

@@ -21,14 +21,14 @@ _COPY = re.compile(rf"\S*voussoir-[^/\s]+/[^:\s]+(?=:\d)|\bdeck\.nml(?=:\d)")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Assess an arch: does it stand, how thick is it against the critical thickness, which load factor does it "
-        "carry, where is the worst position of its vehicle. Writes one HTML page with load cases, assumptions and what "
-        "each number means, which prints on one or two sheets of A4. Several decks are compared on one page."
+        "Assesses an arch: verdict, geometric safety factor, load factor, worst position of its vehicle. Writes one "
+        "HTML page with load cases, assumptions and meanings, for two sheets of A4. Several decks are compared on one "
+        "page."
     )
-    parser.add_argument("deck", metavar="DECK", type=Path, nargs="+", help="decks of arches, static, one case each")
+    parser.add_argument("deck", metavar="DECK", type=Path, nargs="+", help="static decks of arches with one case each")
     parser.add_argument(
         "--out", metavar="FILE", type=Path,
-        help="the page (default: DECK with the ending .html; of several decks comparison.html)")
+        help="page to write (default: DECK with the ending .html; comparison.html for several decks)")
 
 
 def run(arguments: argparse.Namespace) -> int:

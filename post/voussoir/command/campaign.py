@@ -27,36 +27,35 @@ _WORST_FIRST = (4, 2, 3, 0)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Compute the cases of one deck by many processes and merge them into DIR/results.csv, "
-        "joints.csv and log.txt, sorted by case. Killed and called again, it goes on where it was."
+        "Computes the cases of one deck by many processes and merges them into DIR/results.csv, joints.csv and "
+        "log.txt, sorted by case. The same command continues a stopped campaign."
     )
-    parser.add_argument("deck", metavar="DECK", type=Path, help="the deck, with its &sweep groups")
+    parser.add_argument("deck", metavar="DECK", type=Path, help="deck with &sweep groups")
     parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="folder of the results (default: named as the deck without its ending)")
+        "--out", metavar="DIR", type=Path, help="folder of the results (default: the name of the deck)")
     parser.add_argument(
         "--set", metavar="group%key=value", action="append", default=[],
-        help="override the deck; may be repeated (default: the deck as it is)")
+        help="override the deck; repeatable (default: the deck as written)")
     parser.add_argument(
         "--workers", metavar="N", type=whole_number(1), default=os.cpu_count() or 1,
-        help="processes on this machine (default: one a processor, here %(default)s)")
+        help="number of processes on this machine (default: one per processor, here %(default)s)")
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="use the Dask cluster at this address, such as tcp://10.0.0.1:8786; its workers must "
-        "see the folders of the deck, of DIR and of dda (default: processes on this machine)",
+        help="Dask cluster at this address, such as tcp://10.0.0.1:8786; its workers need access to the deck, "
+        "DIR and dda (default: processes on this machine)",
     )
     parser.add_argument(
         "--index",
         metavar="I",
         type=whole_number(1),
-        help="compute only the I-th of N shares of the cases, for job arrays; the last one to "
-        "end merges (default: all cases)",
+        help="share I of N of the cases, for job arrays; the last share to end merges (default: all cases)",
     )
-    parser.add_argument("--of", metavar="N", type=whole_number(1), help="number of shares (default: no shares)")
-    parser.add_argument("--merge", action="store_true", help="compute nothing, merge what is finished so far")
-    parser.add_argument("--anew", action="store_true", help="discard what an earlier campaign has finished")
+    parser.add_argument("--of", metavar="N", type=whole_number(1), help="number of shares (default: 1)")
+    parser.add_argument("--merge", action="store_true", help="merge the finished cases without computing")
+    parser.add_argument("--discard", action="store_true", help="discard the finished cases of an earlier campaign")
     parser.add_argument(
-        "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow")
+        "--parquet", action="store_true", help="write results.parquet as well; needs pyarrow")
     add_quiet(parser)
 
 
@@ -68,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     out = (arguments.out or Path(arguments.deck.stem)).resolve()
     shared = arguments.index is not None
     try:
-        campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared)
+        campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.discard, shared)
         cases = share(campaign.total, index, of)
         status, message = (0, "") if arguments.merge else _compute(campaign, arguments, cases)
         if message:
@@ -87,7 +86,7 @@ def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) ->
     done, _ = owners([*begun(campaign).values()], campaign.total)
     found = int(np.count_nonzero(done[cases.start:cases.stop] >= 0))
     if found and not arguments.quiet:
-        print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
+        print(f"{arguments.deck}: {found} of {len(cases)} cases are already finished")
     workers, engine = arguments.workers, local_engine(arguments.workers)
     if arguments.scheduler:
         engine, workers = dask_engine(arguments.scheduler)
@@ -105,7 +104,7 @@ def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> 
         if not done[1:].all():
             if not arguments.quiet:
                 left = campaign.total - int(np.count_nonzero(done))
-                print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
+                print(f"{arguments.deck}: this share has ended, {left} cases of other shares remain")
             return 0 if done[cases.start:cases.stop].all() else 3
     owner = merge(parts, campaign.total, campaign.out, campaign.asked.record, campaign.asked.headers)
     if (owner[1:] >= 0).all() and arguments.index is None:
@@ -131,10 +130,10 @@ def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
         raise DdaError("--index:1: error: expected --index and --of, got one of them; give both")
     if arguments.index is None:
         return 1, 1
-    if arguments.anew:
+    if arguments.discard:
         raise DdaError(
-            "--anew:1: error: expected no --anew with --index, got both; the shares "
-            "would discard one another: remove the folder before they begin")
+            "--discard:1: error: expected no --discard with --index, got both; remove the folder before the shares "
+            "start")
     if arguments.index > arguments.of:
         raise DdaError(
             f"--index:1: error: expected an index from 1 to {arguments.of}, got "

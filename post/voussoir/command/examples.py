@@ -12,7 +12,7 @@ from voussoir.files import fresh
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
-    parser.add_argument("--copy", metavar="DIR", type=Path, help="copy them to DIR/input (default: list them)")
+    parser.add_argument("--copy", metavar="DIR", type=Path, help="copy the decks to DIR/input (default: list them)")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,15 +14,15 @@ from voussoir.deck.export import WRITERS, outlines_of
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Write the blocks of a case as closed outlines, fixed ones and each material on a layer of their own, "
-        "in metres: DXF, GeoJSON, WKT, meshes. voussoir import reads them back."
+        "Writes the blocks of a case as closed outlines in metres: DXF, GeoJSON, WKT, meshes. Fixed blocks and each "
+        "material have their own layers. voussoir import reads the file."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
-    parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(WRITERS)}")
+    parser.add_argument("file", metavar="FILE", type=Path, help=f"file with the ending {', '.join(WRITERS)}")
     parser.add_argument("--case", metavar="N", type=int, default=1, help="number of the case")
     parser.add_argument(
         "--magnify", metavar="M", type=magnification, default=0.0,
-        help="how many times their displacements the blocks have moved; 1 for where they are at the end")
+        help="factor of the displacements; 1 for the end of the run")
 
 
 def run(arguments: argparse.Namespace) -> int:

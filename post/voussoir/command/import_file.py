@@ -30,38 +30,37 @@ UNITS = {"mm": 1e-3, "cm": 1e-2, "dm": 0.1, "m": 1.0, "km": 1e3, "in": 0.0254, "
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Make a deck and its file of blocks from outlines: DXF (closed polylines, circles, inserted blocks, what "
-        "single lines and arcs of a layer enclose; arcs become chords), GeoJSON, WKT, meshes, COMPAS (json). GeoJSON "
-        "and WKT of lines alone become a file of lines for dda cut. Layers, the properties role, layer and material, "
-        "and physical groups of gmsh are materials; properties density, unit_weight, young and poisson are those of "
-        "the material, equal materials are merged, and 'fixed': true is a block that does not move. Prints what was "
-        "repaired, snapped, dropped and merged."
+        "Makes a deck and its file of blocks from outlines: DXF (closed polylines, circles, inserted blocks, areas "
+        "enclosed by lines and arcs of a layer), GeoJSON, WKT, meshes, COMPAS (json). GeoJSON and WKT of lines alone "
+        "become a file of lines for dda cut. Layers, the properties role, layer and material, and physical groups of "
+        "gmsh are materials. The properties density, unit_weight, young and poisson belong to the material, and "
+        "'fixed': true fixes a block. Equal materials are merged. Prints repairs, snapped and dropped pieces."
     )
-    parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(ENDINGS)}")
-    parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
+    parser.add_argument("file", metavar="FILE", type=Path, help=f"file with the ending {', '.join(ENDINGS)}")
+    parser.add_argument("--out", metavar="DECK", type=Path, help="deck to write (default: FILE with the ending nml)")
     unit = parser.add_mutually_exclusive_group()
     unit.add_argument(
         "--unit", metavar="U", choices=UNITS,
-        help=f"unit of the file: {', '.join(UNITS)} (default: that which a drawing names, else m)")
-    unit.add_argument("--scale", metavar="S", type=_above_zero, help="metres per unit of the file")
+        help=f"unit of the file: {', '.join(UNITS)} (default: the unit of the drawing, else m)")
+    unit.add_argument("--scale", metavar="S", type=_above_zero, help="metres per unit of the file (default: by --unit)")
     parser.add_argument(
-        "--tolerance", metavar="T", type=_above_zero, default=1e-3, help="how far a chord may be from its arc [m]")
+        "--tolerance", metavar="T", type=_above_zero, default=1e-3, help="largest distance of a chord from its arc [m]")
     parser.add_argument(
         "--snap", metavar="T", type=magnification, default=0.0,
-        help="distance within which corners, ends and edges are joined [m]")
+        help="largest distance of corners, ends and edges that are joined [m]")
     parser.add_argument(
-        "--plane", choices=AXES, help="axes to the right and up of points in space (default: xy, of COMPAS the plane "
+        "--plane", choices=AXES, help="axes to the right and up of points in space (default: xy; for COMPAS the plane "
         "in which all blocks share their ends)")
     parser.add_argument(
         "--fixed", metavar="WORD", nargs="+", default=list(FIXED),
-        help="layers, or values of the property role or layer, of what does not move")
+        help="layers, or values of the properties role or layer, of fixed blocks (default: " + ", ".join(FIXED) + ")")
     parser.add_argument(
-        "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of blocks that do not move")
+        "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of further fixed blocks")
     parser.add_argument(
-        "--allow-dropped", action="store_true", help="accept that pieces are dropped which make no block")
+        "--allow-dropped", action="store_true", help="accept dropped pieces that make no block")
     parser.add_argument(
-        "--search", metavar="PARAMETER", help="ask for the value at which it falls, such as horizontal_coefficient")
-    parser.add_argument("--run", action="store_true", help="run the deck, too, and draw what comes out")
+        "--search", metavar="PARAMETER", help="key whose critical value is searched, such as horizontal_coefficient")
+    parser.add_argument("--run", action="store_true", help="run the deck and draw the result")
 
 
 def _above_zero(word: str) -> float:

@@ -16,10 +16,10 @@ _POINTS = (("measure", "o", "followed"), ("fix", "^", "held"), ("load", "v", "lo
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
-    parser.description = "Draw the lines, bolts and points that dda lines has written."
+    parser.description = "Draws the lines, bolts and points of a joint map."
     parser.add_argument("table", metavar="TABLE", type=Path, help="table of dda lines, NAME_lines.csv")
     parser.add_argument(
-        "--out", metavar="FILE", type=Path, help="the picture, .png, .svg or .pdf (default: TABLE with the ending .png)"
+        "--out", metavar="FILE", type=Path, help="picture, .png, .svg or .pdf (default: TABLE with the ending .png)"
     )
 
 

@@ -1,4 +1,4 @@
-"""The command `voussoir`: one subcommand a module."""
+"""The command `voussoir`: one module per subcommand."""
 
 from __future__ import annotations
 
@@ -15,47 +15,52 @@ from voussoir.extras import MissingPackage, advice
 
 #: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status, and one line of help
 COMMANDS = {
-    "animate": ("voussoir.command.animate", "the motion of cases as a GIF"),
-    "assess": ("voussoir.command.assess", "one page for a client: does the arch stand, and how safely"),
-    "campaign": ("voussoir.command.campaign", "the cases of one deck on many processes or machines"),
-    "lines": ("voussoir.command.lines", "a picture of what dda lines has drawn"),
-    "examples": ("voussoir.command.examples", "the decks that came with the program"),
-    "export": ("voussoir.command.export_file", "the blocks of a case as a drawing, GeoJSON, WKT or a mesh"),
-    "import": ("voussoir.command.import_file", "a drawing, GeoJSON, WKT or a mesh as a deck of blocks"),
-    "paper": ("voussoir.command.paper", "every table and figure of the paper, and the report"),
+    "animate": ("voussoir.command.animate", "animation of the motion of cases"),
+    "assess": ("voussoir.command.assess", "assessment of an arch on one page: verdict and safety factors"),
+    "campaign": ("voussoir.command.campaign", "cases of one deck by many processes or machines"),
+    "lines": ("voussoir.command.lines", "picture of the lines of dda lines"),
+    "examples": ("voussoir.command.examples", "decks of the package"),
+    "export": ("voussoir.command.export_file", "blocks of a case as a drawing, GeoJSON, WKT or a mesh"),
+    "import": ("voussoir.command.import_file", "deck of blocks from a drawing, GeoJSON, WKT or a mesh"),
+    "paper": ("voussoir.command.paper", "tables and figures of the paper, and a report"),
     "plot": ("voussoir.command.plot", "pictures and charts of a folder of results"),
-    "theory": ("voussoir.command.theory", "the three analytic solutions at given half angles"),
+    "theory": ("voussoir.command.theory", "three analytic solutions at given half angles"),
     "work-precision": ("voussoir.command.work_precision", "error against run time"),
-    "view": ("voussoir.command.view", "the blocks of a case in a window that turns"),
-    "verify": ("voussoir.verify.command", "the proofs of a folder of results, recomputed"),
-    "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
-    "study": ("voussoir.command.study", "a deck with one key halved again and again: order of convergence"),
-    "traffic": ("voussoir.command.traffic", "vehicles of a list on an arch: load factors and worst positions"),
-    "validation": ("voussoir.command.validation", "scenes with exact answers beside what the program computes"),
+    "view": ("voussoir.command.view", "blocks of a case in a window"),
+    "verify": ("voussoir.verify.command", "check of the proofs in a folder of results"),
+    "stability": ("voussoir.command.stability", "stiff and extreme scenes with exact answers"),
+    "study": ("voussoir.command.study", "order of convergence of a deck as one key is halved"),
+    "traffic": ("voussoir.command.traffic", "load factors and worst positions of vehicles on an arch"),
+    "validation": ("voussoir.command.validation", "verification: results beside exact answers"),
 }
-
+#: Verbs of dda that voussoir does not have
+DDA_VERBS = ("run", "check", "cut")
 
 EXIT_STATUS = (
-    "Exit status: 0 done; 1 a value of validation or stability is wrong; 2 bad input; 4 a result could not be written."
+    "Exit status: 0 done; 1 a check of verify, validation or stability fails; 2 bad input; 3 a case is undecided; "
+    "4 a result could not be written."
 )
 
 
-class Formatter(argparse.RawDescriptionHelpFormatter):
-    """Help that shows every default, unless the text says what holds without the option."""
+class Formatter(argparse.HelpFormatter):
+    """Help that shows every default, unless the text has it."""
 
     def _get_help_string(self, action: argparse.Action) -> str:
         text = action.help or ""
         silent = isinstance(action, (argparse._HelpAction, argparse._VersionAction))
         if not action.option_strings or action.required or silent or "default" in text:
             return text
+        if action.default in (None, [], ()):
+            return text + " (default: none)"
         return text + (" (default: no)" if action.default is False else " (default: %(default)s)")
 
 
 def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
     """The parser of the command line, with the options of the chosen subcommand; other modules are not loaded."""
     parser = argparse.ArgumentParser(
-        prog="voussoir", description="Masonry arches: theory, tables and figures.",
-        epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS)
+        prog="voussoir", description="Pictures, proofs, studies and drawings for results of dda.",
+        epilog="'voussoir help COMMAND' lists its options. Decks are computed by 'dda run DECK': see 'dda help'. "
+        + EXIT_STATUS)
     parser.add_argument("--version", action="version", version=f"voussoir {__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, (module, summary) in COMMANDS.items():
@@ -78,7 +83,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if any("\ud800" <= letter <= "\udfff" for letter in word):  # what Python makes of other bytes
             sys.stderr.write(f"voussoir: error: expected text in UTF-8, got {word!a}; rename the file or folder\n")
             return 2
-    chosen = build_parser(words[0] if words else None).parse_args(words)
+    if words[0] in DDA_VERBS:
+        sys.stderr.write(f"voussoir: error: expected a command of voussoir, got '{words[0]}', which dda has; write "
+                         f"'dda {words[0]}'\n")
+        return 2
+    chosen = build_parser(words[0]).parse_args(words)
     try:
         return int(importlib.import_module(COMMANDS[chosen.command][0]).run(chosen))
     except BrokenPipeError:  # who reads the output, such as head, has enough of it
@@ -103,8 +112,8 @@ def fail(problem: Exception, chosen: argparse.Namespace) -> int:
     elif isinstance(problem, OSError) and not isinstance(problem, FileNotFoundError) and problem.filename != str(place):
         place, status = problem.filename or getattr(chosen, "out", None) or place, 4
         words = f"the file cannot be written: {problem.strerror}; choose another with --out"
-    told = re.search(r":\d+: error: ", words)  # the program's own messages name file and line
+    placed = re.search(r":\d+: error: ", words)  # the program's own messages name file and line
     bare = place is None or isinstance(problem, DdaError)
-    head = "" if told else "voussoir: error: " if bare else f"{place}:1: error: "
+    head = "" if placed else "voussoir: error: " if bare else f"{place}:1: error: "
     sys.stderr.write(f"{head}{words}\n")
     return status

@@ -11,13 +11,13 @@ from pathlib import Path
 
 def add_quiet(parser: argparse.ArgumentParser) -> None:
     """Add --quiet."""
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--quiet", action="store_true", help="print errors only")
 
 
 def add_decks(parser: argparse.ArgumentParser) -> None:
     """Add --decks."""
     parser.add_argument(
-        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those that came with the program)"
+        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those of the package)"
     )
 
 
@@ -68,10 +68,10 @@ def type_size(word: str) -> float:
 
 def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
     """Add the options of files, widths and types."""
-    parser.add_argument("--out", metavar="DIR", type=Path, help=f"where the files go (default: {where})")
+    parser.add_argument("--out", metavar="DIR", type=Path, help=f"folder of the files (default: {where})")
     parser.add_argument(
         "--format", metavar="ENDING", nargs="+", choices=("svg", "pdf", "png"), default=("svg",),
-        help="of svg, pdf, png (default: svg)")
+        help="formats: svg, pdf, png (default: svg)")
     parser.add_argument(
         "--width", metavar="W", type=picture_width, default=picture_width("132mm"),
         help="width of the picture with its unit, mm, cm, in or pt (default: 132mm)")
@@ -79,7 +79,7 @@ def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
         "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
     parser.add_argument(
         "--no-title", dest="title", action="store_false", default=True,
-        help="leave the title out (default: draw it)")
+        help="omit the title (default: draw it)")
     parser.add_argument(
         "--no-legend", dest="legend", action="store_false", default=True,
-        help="leave the legend out (default: draw it)")
+        help="omit the legend (default: draw it)")

@@ -27,13 +27,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder for results, tables, figures and index.html (default: paper)")
     parser.add_argument(
         "--jobs", metavar="N", type=whole_number(1), default=os.cpu_count() or 1,
-        help="decks computed, and figures drawn, at the same time (default: one a processor)")
-    parser.add_argument("--resume", action="store_true", help="keep what an earlier run has finished")
+        help="number of decks and figures at the same time (default: one per processor)")
+    parser.add_argument("--resume", action="store_true", help="keep the finished decks of an earlier run")
     parser.add_argument(
         "--limerick", action="store_true",
-        help="also run the decks of the original program's scheme, which take much longer")
+        help="run the decks of Shi's scheme as well, which takes much longer")
     add_decks(parser)
-    parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)")
+    parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: beside `voussoir`)")
     add_quiet(parser)
 
 
@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _teller(arguments: argparse.Namespace) -> Callable[[str], None]:
-    """What progress is told to."""
+    """Receiver of progress reports."""
     if arguments.quiet:
         return lambda line: None
     return lambda line: print(line, file=sys.stderr, flush=True)
@@ -91,7 +91,7 @@ def _draw(campaign: Campaign, folder: Path, clock: Clock, jobs: int) -> None:
     """Draw all figures and animations, so many at the same time."""
     names = _drawings()
     if not names:
-        clock.tell(f"figures are left out: matplotlib is missing; {advice('matplotlib')}")
+        clock.report(f"figures are left out: matplotlib is missing; {advice('matplotlib')}")
         return
     start = time.monotonic()
     plain = Campaign(campaign.decks, campaign.out)

@@ -26,10 +26,9 @@ _FILES = (".blocks", ".geo")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Draw the cases of a folder that dda run has written, arches and blocks alike: thrust line, hinges, slips, "
-        "contact forces, loads, restraints, trajectories of monitoring points; chart a sweep; or draw a file of blocks "
-        "or lines without a run. With more than 40 marked joints their state is the colour of their lines, and blocks "
-        "are shaded by how far they move."
+        "Draws the cases of a folder of results: thrust line, hinges, slips, contact forces, loads, restraints, "
+        "trajectories of monitoring points. Charts a sweep. Draws a file of blocks or lines without a run. With more "
+        "than 40 marked joints, colours of their lines show the states, and shades of blocks show displacements."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results, or FILE.blocks, FILE.geo")
     parser.add_argument(
@@ -43,18 +42,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=_AUTO,
         type=lambda word: word if word == _AUTO else magnification(word),
-        help="draw the displaced shape, magnified; without a number that is chosen, and stated (default: what "
-        "stands is drawn as it stands, a collapse mechanism so that it is seen)",
+        help="magnification of the displacements; without a number the program chooses and states it (default: "
+        "stable structures undeformed, mechanisms enlarged)",
     )
-    parser.add_argument("--numbers", action="store_true", help="write the blocks' numbers on them")
-    parser.add_argument("--coordinates", action="store_true", help="draw the axes, in metres")
+    parser.add_argument("--numbers", action="store_true", help="draw block numbers")
+    parser.add_argument("--coordinates", action="store_true", help="draw axes in metres")
     forces = parser.add_mutually_exclusive_group()
     forces.add_argument(
         "--forces", action="store_true", default=None,
-        help="draw the contact forces (default: where no thrust line is drawn, of up to 150 joints)")
+        help="draw the contact forces (default: without a thrust line, for up to 150 joints)")
     forces.add_argument(
         "--no-forces", dest="forces", action="store_false",
-        help="leave the contact forces out (default: as under --forces)")
+        help="omit the contact forces (default: as under --forces)")
 
 
 def add_charts(parser: argparse.ArgumentParser) -> None:
@@ -64,13 +63,13 @@ def add_charts(parser: argparse.ArgumentParser) -> None:
         metavar="COLUMN",
         nargs="?",
         const=_AUTO,
-        help="chart the critical values against this column, such as half_angle_deg; without a "
-        "name against the swept column with the most values (default: no chart)",
+        help="chart of critical values against this column, such as half_angle_deg; without a name, against the "
+        "swept column with the most values (default: no chart)",
     )
-    parser.add_argument("--x", metavar="KEY", help="chart --y against this swept key (default: no chart)")
+    parser.add_argument("--x", metavar="KEY", help="chart of --y against this swept key (default: no chart)")
     parser.add_argument(
         "--map", metavar="KEY", nargs=2,
-        help="map --y over two swept keys, with contours; without --y and a search the verdicts (default: no map)")
+        help="map of --y over two swept keys, with contours; of verdicts without --y and search (default: no map)")
     parser.add_argument(
         "--y", metavar="COLUMN", help="column of results.csv for --x and --map (default: the critical value)")
     parser.add_argument(
@@ -78,8 +77,8 @@ def add_charts(parser: argparse.ArgumentParser) -> None:
         metavar="COLUMN",
         nargs="?",
         const=_AUTO,
-        help="draw the share of records that make the blocks collapse against this swept column, "
-        "amplitude or scale without a name; or, of searches, against the critical values",
+        help="share of records that collapse the blocks against this swept column (without a name: amplitude or "
+        "scale) or, for searches, against the critical values (default: no chart)",
     )
 
 

@@ -25,12 +25,12 @@ _SEVERITY = (RIGHT, UNDECIDED, WRONG)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument("--out", type=Path, default=Path("stability"), help="folder of the tables")
-    parser.add_argument("--jobs", type=whole_number(1), default=1, help="scenes run at the same time")
+    parser.add_argument("--jobs", type=whole_number(1), default=1, help="number of scenes at the same time")
     parser.add_argument("--random", type=whole_number(0), default=150, metavar="N", help="number of random scenes")
-    parser.add_argument("--seed", type=whole_number(0), default=1, help="beginning of the random numbers")
-    parser.add_argument("--only", metavar="WORD", help="only scenes whose group or name has WORD")
-    parser.add_argument("--timeout", type=float, default=300.0, help="longest time of one scene, in seconds")
-    parser.add_argument("--list", action="store_true", help="name the scenes, run nothing")
+    parser.add_argument("--seed", type=whole_number(0), default=1, help="seed of the random scenes")
+    parser.add_argument("--only", metavar="WORD", help="only scenes with WORD in their group or name (default: all)")
+    parser.add_argument("--timeout", type=float, default=300.0, help="time limit of a scene [s]")
+    parser.add_argument("--list", action="store_true", help="list the scenes without running them")
     parser.epilog = f"{parser.epilog or ''} 1: a scene is WRONG.".strip()
 
 

@@ -17,27 +17,26 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Run a deck with the value of a key, then with that value halved N times, such as --halve time_step 4: five "
-        "runs. Prints every result with its differences and the observed order of convergence, or why there is none; "
-        "writes study.csv and a picture. Results that are followed: critical values, thrusts, displacements of "
-        "monitoring points (measure in a file of blocks)."
+        "Runs a deck with the value of a key, then with that value halved N times: --halve time_step 4 makes five "
+        "runs. Prints results, their differences and the observed order of convergence, or why there is none. Writes "
+        "study.csv and a picture. Results are critical values, thrusts, and displacements of monitoring points."
     )
-    parser.add_argument("deck", metavar="DECK", type=Path, help="the deck; its own sweeps are cases of each run")
+    parser.add_argument("deck", metavar="DECK", type=Path, help="deck; its sweeps are cases of each run")
     way = parser.add_mutually_exclusive_group(required=True)
     way.add_argument(
-        "--halve", metavar=("KEY", "N"), nargs=2, help="key to halve, such as time_step, and how often")
+        "--halve", metavar=("KEY", "N"), nargs=2, help="key to halve, such as time_step, and number of halvings")
     way.add_argument(
         "--double", metavar=("KEY", "N"), nargs=2,
-        help="key to double, such as voussoirs, penalty or young, and how often")
+        help="key to double, such as voussoirs or young, and number of doublings")
     parser.add_argument(
         "--y", metavar="COLUMN", nargs="+", default=(),
-        help="columns of results.csv to follow, and u, v for monitoring points (default: all that have values)")
+        help="columns of results.csv, and u, v for monitoring points (default: all with values)")
     parser.add_argument(
-        "--at", metavar="T", type=float, help="time at which monitoring points are read, in s (default: the end)")
-    parser.add_argument("--exact", metavar="X", type=float, help="exact value of the one result that is followed")
+        "--at", metavar="T", type=float, help="time of the displacements of monitoring points [s] (default: the end)")
+    parser.add_argument("--exact", metavar="X", type=float, help="exact value, if there is one result")
     parser.add_argument(
-        "--set", metavar="KEY=VALUE", nargs="+", default=(), help="other keys of the deck (default: as the deck says)")
-    parser.add_argument("--jobs", metavar="J", type=int, default=1, help="cases computed at the same time")
+        "--set", metavar="KEY=VALUE", nargs="+", default=(), help="other keys of the deck (default: as in the deck)")
+    parser.add_argument("--jobs", metavar="J", type=int, default=1, help="number of cases computed at the same time")
     add_sheet(parser, "STEM_study in the current folder")
 
 

@@ -15,11 +15,11 @@ _COLUMNS = ("alpha_deg", "theory", "beta_deg", "beta_rad", "eta", "h")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument(
-        "--alpha", metavar="DEG", nargs="+", type=_half_angle, required=True, help="half angles of embrace, in degrees")
+        "--alpha", metavar="DEG", nargs="+", type=_half_angle, required=True, help="half angles of embrace [deg]")
     parser.add_argument(
         "--theory", metavar="NAME", nargs="+", choices=tuple(theory.THEORIES), default=tuple(theory.THEORIES),
-        help="theories, of " + ", ".join(theory.THEORIES) + " (default: all)")
-    parser.add_argument("--csv", action="store_true", help="comma-separated, all digits")
+        help="theories: " + ", ".join(theory.THEORIES) + " (default: all)")
+    parser.add_argument("--csv", action="store_true", help="print CSV with all digits")
 
 
 def run(arguments: argparse.Namespace) -> int:

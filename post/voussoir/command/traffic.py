@@ -23,33 +23,32 @@ COLUMNS = "vehicle,weight_kN,effective_width_m,load_kN_per_m,load_factor,verdict
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Drive vehicles of a list over the arch of a deck. Weights in kN of the vehicle are divided by an effective "
-        "width to loads per metre of depth, by a rule that is printed: with b the width of a wheel, t the track, h the "
-        "depth of fill at the crown and s its spread, w = b + 2 s h + min(t, b + 2 s h). Prints load factor, worst "
-        "position and direction of each; writes traffic.csv, a deck of each vehicle, and the load factor against the "
-        "position."
+        "Moves vehicles of a list over the arch of a deck. Weights [kN] are divided by an effective width to loads per "
+        "metre of depth. The rule is printed: w = b + 2 s h + min(t, b + 2 s h), with b the width of a wheel, t the "
+        "track, h the depth of fill at the crown and s its spread. Prints load factor, worst position and direction "
+        "per vehicle. Writes traffic.csv, one deck per vehicle, and a chart of load factor against position."
     )
-    parser.add_argument("deck", metavar="DECK", type=Path, help="deck of an arch; its own &vehicle is left out")
+    parser.add_argument("deck", metavar="DECK", type=Path, help="deck of an arch; its &vehicle is ignored")
     parser.add_argument(
         "--list", metavar="FILE", type=Path,
-        help="vehicles as CSV: name, axles_kN and spacings_m separated by blanks, and if known track_m, wheel_width_m, "
-        "length_m, source (default: input/traffic/vehicles.csv of this package)")
+        help="CSV file of vehicles: name, axles_kN, spacings_m (separated by blanks), optional track_m, wheel_width_m, "
+        "length_m, source (default: input/traffic/vehicles.csv of the package)")
     parser.add_argument("--vehicle", metavar="NAME", nargs="+", help="vehicles of the list (default: all)")
     parser.add_argument(
-        "--convoy", metavar="N", type=whole_number(1), default=1, help="so many of each vehicle one behind the other")
+        "--convoy", metavar="N", type=whole_number(1), default=1, help="number of equal vehicles in a row")
     parser.add_argument(
         "--gap", metavar="G", type=magnification, nargs="+", default=[5.0],
-        help="distances of last and first axle in a convoy, in m, of which the worst counts (default: 5)")
+        help="distances of last and first axle in a convoy [m]; the worst one is reported (default: 5)")
     width = parser.add_mutually_exclusive_group()
     width.add_argument(
         "--rule", choices=("wheels", "cs454"), default="wheels",
         help="rule of the effective width: wheels as above, or cs454, w = 1.5 m + h")
     width.add_argument(
-        "--effective-width", metavar="W", type=magnification, help="effective width in m (default: by the rule)")
+        "--effective-width", metavar="W", type=magnification, help="effective width [m] (default: by the rule)")
     parser.add_argument(
         "--barrel-width", metavar="W", type=magnification, default=math.inf,
-        help="width of the barrel in m, which limits that of the rule (default: no limit)")
-    parser.add_argument("--one-direction", action="store_true", help="drive forward only")
+        help="width of the barrel, upper limit of the effective width [m] (default: no limit)")
+    parser.add_argument("--one-direction", action="store_true", help="forward direction only")
     add_sheet(parser, "STEM_traffic in the current folder")
 
 

@@ -6,7 +6,7 @@ import argparse
 import re
 from pathlib import Path
 
-from voussoir.bench.validation_page import SKETCHES, page, sketches, told, write_lines
+from voussoir.bench.validation_page import SKETCHES, page, screen_line, sketches, write_lines
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
 from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
@@ -18,10 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="DIR", type=Path, default=Path("validation"),
         help="folder for validation.csv and validation.md (default: validation)")
-    parser.add_argument("--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)")
+    parser.add_argument("--scenes", metavar="NAME", nargs="+", help="names of decks (default: all)")
     parser.add_argument(
         "--halvings", metavar="N", type=whole_number(0), default=2,
-        help="how often the step is halved for the convergence rate")
+        help="number of halvings of the step for the convergence rate")
     add_decks(parser)
     add_quiet(parser)
 
@@ -59,5 +59,5 @@ def _lines(arguments: argparse.Namespace, decks: Path) -> list[Line]:
         for line in run_scene(decks, scene, arguments.halvings):
             lines.append(line)
             if not arguments.quiet:
-                print(told(line), flush=True)
+                print(screen_line(line), flush=True)
     return lines

@@ -1,4 +1,4 @@
-"""`voussoir view`: blocks in a window that turns, steps through the pictures and tells of the block that is picked."""
+"""`voussoir view`: blocks in a window that turns, with a slider for frames and a picker for blocks."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ STONE, SUPPORT, PICKED = "#e4dccb", "#9a9a9a", "#d1632a"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Open a window (pyvista) with the blocks of one case: it turns with the mouse, the slider goes through the "
-        "frames or the collapse as it grows, and the right button picks a block and tells its number and its way."
+        "Opens a window (pyvista) with the blocks of a case. The mouse turns it, the slider selects a frame or a "
+        "stage of the mechanism, and the right button picks a block and shows its number and displacement."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
-    parser.add_argument("--case", metavar="N", type=int, default=1, help="the case that is shown")
-    parser.add_argument("--out", metavar="FILE", type=Path, help="write the last picture as a .png instead")
+    parser.add_argument("--case", metavar="N", type=int, default=1, help="number of the case")
+    parser.add_argument(
+        "--out", metavar="FILE", type=Path, help="write the last frame as a .png instead (default: open the window)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -44,8 +45,8 @@ def pictures_of_case(read: Results, number: int) -> list[Frame]:
     """What is shown: the pictures of the motion, or the blocks as they stand."""
     from voussoir.plot.collapse_picture import pictures_of
 
-    told = read.blocks_of(number)
-    return pictures_of(read, number) or [Frame(0, 0, 0.0, [block.corners for block in told], results.Table({}))]
+    blocks = read.blocks_of(number)
+    return pictures_of(read, number) or [Frame(0, 0, 0.0, [block.corners for block in blocks], results.Table({}))]
 
 
 def block_at(shapes: list[np.ndarray], point: np.ndarray) -> int:
@@ -66,19 +67,19 @@ def block_at(shapes: list[np.ndarray], point: np.ndarray) -> int:
 
 
 def words_of(read: Results, number: int, pictures: list[Frame], frame: Frame, block: int) -> str:
-    """What is told of a block that was picked."""
-    told = read.blocks_of(number)[block - 1]
+    """Text about a picked block."""
+    picked = read.blocks_of(number)[block - 1]
     way = frame.blocks[block - 1] - pictures[0].blocks[block - 1]
-    if told.state == "fixed":
+    if picked.state == "fixed":
         return f"block {block}: does not move"
-    return f"block {block}: a corner is {np.hypot(*way.T).max():.4g} m from where it was"
+    return f"block {block}: a corner is {np.hypot(*way.T).max():.4g} m from its initial position"
 
 
 def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], file: Path | None) -> None:
     """Open the window, or write its last picture to a file."""
     from voussoir.plot.case_title import title_of
 
-    told = read.blocks_of(number)
+    blocks = read.blocks_of(number)
     depth = DEPTH * float(np.ptp(np.vstack(pictures[0].blocks), axis=0).max())
     plotter: Any = window.Plotter(off_screen=file is not None, window_size=(1200, 800))
     shown: dict[str, Any] = {"frame": pictures[-1], "block": 0}
@@ -86,7 +87,7 @@ def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], 
     def draw() -> None:
         frame: Frame = shown["frame"]
         parts: dict[str, list[Any]] = {}
-        for block, corners in zip(told, frame.blocks):
+        for block, corners in zip(blocks, frame.blocks):
             colour = PICKED if block.number == shown["block"] else SUPPORT if block.state == "fixed" else STONE
             parts.setdefault(colour, []).append(prism(window, corners, depth))
         for colour in (STONE, SUPPORT, PICKED):

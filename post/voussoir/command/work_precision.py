@@ -23,18 +23,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=Path("work_precision"), help="folder of tables and figure")
     parser.add_argument(
         "--angles", type=float, nargs="+", default=[45.0, 90.0, 140.0], metavar="DEG",
-        help="half angles of embrace, in degrees")
+        help="half angles of embrace [deg]")
     parser.add_argument(
         "--voussoirs", type=whole_number(2), nargs="+", default=[36, 1000], metavar="N",
-        help="numbers of voussoirs, even ones")
-    parser.add_argument("--repeats", type=whole_number(1), default=5, help="runs of each setting")
+        help="even numbers of voussoirs")
+    parser.add_argument("--repeats", type=whole_number(1), default=5, help="runs per setting")
     parser.add_argument(
         "--scenes", nargs="+", choices=CLASSES, default=list(CLASSES), metavar="CLASS",
         help="classes of scenes in the diagram: " + ", ".join(CLASSES))
     part = parser.add_mutually_exclusive_group()
-    part.add_argument("--race", action="store_true", help="only the times of one decision, no diagram")
-    part.add_argument("--motion", action="store_true", help="only blocks that move in time, no arches")
-    part.add_argument("--plan", action="store_true", help="only what parts of the scene plan cost if forced in")
+    part.add_argument("--race", action="store_true", help="times of one decision only")
+    part.add_argument("--motion", action="store_true", help="blocks in motion only")
+    part.add_argument("--plan", action="store_true", help="costs of forced parts of the scene plan only")
 
 
 def run(arguments: argparse.Namespace) -> int:

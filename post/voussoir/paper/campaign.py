@@ -42,9 +42,9 @@ class Timing:
 
 @dataclass
 class Clock:
-    """Times of the parts, and what is told of them on the way."""
+    """Times of the parts, and their progress reports."""
 
-    tell: Callable[[str], None]  #: Takes one line of text
+    report: Callable[[str], None]  #: Takes one line of text
     left: dict[str, float]  #: Weight of each part that is still to come
     timings: list[Timing] = field(default_factory=list)  #: Parts that are done
     _done: float = 0.0
@@ -57,14 +57,14 @@ class Clock:
         return time.monotonic() - self._start
 
     def record(self, timing: Timing) -> None:
-        """Count one part and tell how long the others will take."""
+        """Count one part and report how long the others will take."""
         self.timings.append(timing)
         self._done += self.left.pop(timing.part, 1.0)
         left = self.elapsed / self._done * sum(self.left.values())
         self._parts += 1
         number = self._parts
         line = f"[{number}/{number + len(self.left)}] {timing.part}: {timing.wall:.1f} s"
-        self.tell(line + (f", about {left:.0f} s left" if self.left else ""))
+        self.report(line + (f", about {left:.0f} s left" if self.left else ""))
 
 
 def run_program(part: str, command: list[str | Path]) -> tuple[int, Timing]:

@@ -18,10 +18,10 @@ from voussoir.verify.lines import read_lines
 from voussoir.verify.loads import loads_on
 from voussoir.verify.proofs import TOLERANCE, Finding, Scene, check_forces, check_motion
 from voussoir.verify.read import COLUMNS, Row, read_table
-from voussoir.verify.sums import sums_of, told_sums
+from voussoir.verify.sums import recorded_sums, sums_of
 from voussoir.verify.tables import check_joints, check_rigid
 
-#: A collapse that no limit analysis tells is that of blocks that strain, which may be so far from rigid
+#: A collapse without limit analysis is that of blocks that strain, which may be so far from rigid
 STRAIN = 1e-3
 TABLES = tuple(COLUMNS)
 
@@ -29,22 +29,22 @@ TABLES = tuple(COLUMNS)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Check the proofs of static verdicts that dda run has left in a folder: forces must balance the loads and keep "
-        "the law of every joint, mechanisms must open or leave every joint and be driven by the loads. Joints, weights "
-        "and loads are found again from blocks.csv, deck.record and the file of blocks. Where a proof leaves a number "
-        "free, as a velocity of what parts, the check sum of the rows says whether the program wrote it."
+        "Checks the proofs of static verdicts in a folder of results. Forces must balance the loads and obey the law "
+        "of every joint. Mechanisms must not close a joint, and the loads must drive them. Joints, weights and loads "
+        "are derived from blocks.csv, deck.record and the file of blocks. Checksums protect numbers that a proof "
+        "does not cover, such as the velocity of a separated block."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
         "--decks", metavar="DIR", type=Path,
-        help="folder of the deck, which names a file of blocks (default: the folder that holds DIR, then this one)")
+        help="folder of the deck and its file of blocks (default: the parent of DIR, then the current folder)")
     parser.add_argument(
         "--exact", action="store_true",
-        help=f"prove limits again in rational arithmetic, of cases of at most {MOST_JOINTS} joints")
+        help=f"repeat proofs of limits in rational arithmetic, for up to {MOST_JOINTS} joints")
     parser.add_argument(
         "--ignore-sums", action="store_true",
-        help="check the proofs of tables that were written again, whose rows no longer have the check sums of the run")
-    parser.add_argument("--quiet", action="store_true", help="tell the worst case alone")
+        help="ignore checksums, for tables that another program has rewritten")
+    parser.add_argument("--quiet", action="store_true", help="print the worst case only")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -79,9 +79,9 @@ def _check_folder(arguments: argparse.Namespace) -> dict[int, Finding]:
 
 def _check_sums(folder: Path, found: dict[int, Finding]) -> None:
     """Check that the rows of each case are those that the program wrote."""
-    told, sums = told_sums(folder), sums_of(folder)
+    recorded, sums = recorded_sums(folder), sums_of(folder)
     for number, finding in found.items():
-        if sums.get(number) != told.get(number):
+        if sums.get(number) != recorded.get(number):
             finding.faults.append("its rows are not as the program wrote them")
     for number in sums.keys() - found.keys():
         raise VerifyError(f"rows of case {number} in the tables, which results.csv does not have")
@@ -139,11 +139,11 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
             if deck.searched is None:
                 # the program may let bars and fill take more than they can
                 off = float(result["mechanism_power"]) - power
-                finding.keep("power told", max(off, 0.0) if scene.pulls else abs(off))
+                finding.keep("power (results.csv)", max(off, 0.0) if scene.pulls else abs(off))
             _check_bound(result, stopped, rows[0]["value"], finding)
             if deck.searched is not None and result["exact_high"]:
                 finding.keep("power at the limit", abs(power))
-    _check_told(deck, of_case, result, {name: tables[name].get(number, []) for name in TABLES}, places, finding)
+    _check_tables(deck, of_case, result, {name: tables[name].get(number, []) for name in TABLES}, places, finding)
     return finding
 
 
@@ -167,10 +167,10 @@ def _files_of(deck: Deck, places: list[Path]) -> list[Path]:
     return [_find(deck.text(f"scene%{key}"), places) for key in keys]
 
 
-def _check_told(
+def _check_tables(
     deck: Deck, of_case: Deck, result: Row, rows: dict[str, list[Row]], places: list[Path], finding: Finding
 ) -> None:
-    """Check what joints.csv and blocks.csv tell: forces of what stands, the mechanism of what falls."""
+    """Check joints.csv and blocks.csv: forces of stable cases, mechanisms of collapses."""
     at_value, at_end = of_case, None
     if deck.searched is not None and result["verdict"] == "found":
         stands = "critical_high" if result["collapses_at"] == "low" else "critical_low"
@@ -192,7 +192,7 @@ def _check_told(
 
 
 def _apart(of_case: Deck, result: Row) -> float:
-    """How far corners at the two ends of a bracket are apart: blocks are told at one of them [m]."""
+    """How far corners at the two ends of a bracket are apart: blocks.csv is for one of them [m]."""
     name = of_case.searched
     if name is None or result["verdict"] != "found" or of_case.text("scene%kind") != "arch":
         return 0.0
@@ -299,12 +299,12 @@ def _find(name: str, places: list[Path]) -> Path:
     raise VerifyError(f"cannot find {name}: name the folder of the deck by --decks")
 
 
-def _compare(told: list[np.ndarray], given: list[np.ndarray], finding: Finding) -> None:
-    """Corners that were told are those that the deck gives, in any order."""
-    if len(told) != len(given):
-        finding.faults.append(f"expected {len(given)} blocks, got {len(told)}")
+def _compare(written: list[np.ndarray], given: list[np.ndarray], finding: Finding) -> None:
+    """Corners of blocks.csv are those of the deck, in any order."""
+    if len(written) != len(given):
+        finding.faults.append(f"expected {len(given)} blocks, got {len(written)}")
         return
-    for number, (mine, its) in enumerate(zip(told, given), 1):
+    for number, (mine, its) in enumerate(zip(written, given), 1):
         size = float(np.linalg.norm(np.ptp(its, axis=0)))
         apart = np.linalg.norm(mine[:, None, :] - its[None, :, :], axis=2)
         off = max(float(apart.min(axis=1).max()), float(apart.min(axis=0).max())) / size

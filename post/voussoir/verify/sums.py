@@ -1,4 +1,4 @@
-"""Whether the rows of a case are those that the program wrote: their check sum, which sizes.record tells."""
+"""Whether the rows of a case are those that the program wrote: their checksum in sizes.record."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SUMMED = (
 _COMMA = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')
 
 
-def told_sums(folder: Path) -> dict[int, int]:
+def recorded_sums(folder: Path) -> dict[int, int]:
     """Sums that the program has written down: the sum of each case."""
     path = folder / "sizes.record"
     if not path.exists():
         raise VerifyError("no sizes.record: run the deck again, or check proofs alone by --ignore-sums")
     first, *lines = read_text(path).splitlines() or [""]
     if first != "case,bytes,sum":
-        raise VerifyError("sizes.record tells no sums: run the deck again, or check proofs alone by --ignore-sums")
+        raise VerifyError("sizes.record has no checksums: run the deck again, or check proofs alone by --ignore-sums")
     sums = {}
     for number, line in enumerate(lines, 2):
         if not re.fullmatch(r"\d{1,10},\d{1,20},\d{1,10}", line, re.ASCII):
