@@ -148,7 +148,7 @@ class Measured:
         return "; ".join(f"{check.what}: {_figure(check.exact)}" for check in self.checks)
 
     def judge(self, finished: Finished) -> Judgement:
-        """Judge every quantity; tell the one whose error is the largest share of the accepted."""
+        """Judge every quantity; report the one whose error is the largest share of the accepted."""
         worst, found, why, share = "", "", "", -1.0
         for check in self.checks:
             outcome = Outcome(finished.folder, check.case)

@@ -40,11 +40,11 @@ class Scene:
         return isinstance(self.deck, dict) and not {"scene", "output"} & set(self.deck)
 
     def text(self, lean: bool = False) -> bytes:
-        """The deck as it is written: with all that can be told, or lean with a row a case alone."""
+        """The deck as written: with all tables, or lean with one row per case."""
         if isinstance(self.deck, bytes):
             return self.deck
-        told = {"joints": False, "blocks": False} if lean else {"condition": True}
-        output = {"vtu": False, **told, **self.deck.get("output", {})}
+        tables = {"joints": False, "blocks": False} if lean else {"condition": True}
+        output = {"vtu": False, **tables, **self.deck.get("output", {})}
         return deck_text({**self.deck, "output": output}).encode()
 
 

@@ -102,7 +102,7 @@ def _chains() -> list[Scene]:
 def _arrival(modulus: float):
     """Measure of the speed of a step of pressure, from the way of point 1 after it has passed.
 
-    The point then moves at stress/(rho c); so its way tells when it began to.
+    The point then moves at stress/(rho c); so its path shows when it began to.
     """
     speed = 1e5 / math.sqrt(modulus * 2500.0)
 

@@ -93,13 +93,13 @@ def _block_panel(scene: scenes.SceneClass, folder: Path, repeats: int) -> Panel:
     of_flow = {scenes.ASSOCIATED: associated}
     points = list(_dda_points(scene, lambda method: of_flow.get(method, coulomb), folder, repeats))
     if limit_lp.scipy_version() is not None:
-        told = {"output": {"joints": True, "blocks": True}}
-        told_run = results.read(_run(scene, told, folder, 1).folder)
+        tables = {"output": {"joints": True, "blocks": True}}
+        full_run = results.read(_run(scene, tables, folder, 1).folder)
         push = None
         if scene.live_block is not None:
             force = np.array([0.0, -1000.0 / UNIT_WEIGHT])
             push = scene.live_block, np.array(scene.live_point), force
-        assembly = assembly_of(told_run, push)
+        assembly = assembly_of(full_run, push)
         points += _programs(scene, assembly, associated, repeats)
     return Panel(scene.title, tuple(points), associated / coulomb - 1.0)
 

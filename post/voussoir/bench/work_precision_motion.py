@@ -107,10 +107,10 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
 
 def order(points: list[MotionPoint]) -> float | None:
     """Order of convergence: slope of the logarithm of the error by that of the step; None where errors are rounding."""
-    told = [point for point in points if point.error > ROUNDING]
-    if len(told) < 2:
+    known = [point for point in points if point.error > ROUNDING]
+    if len(known) < 2:
         return None
-    steps, errors = np.log([(point.step, point.error) for point in told]).T
+    steps, errors = np.log([(point.step, point.error) for point in known]).T
     return float(np.polyfit(steps, errors, 1)[0])
 
 

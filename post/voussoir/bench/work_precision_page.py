@@ -23,7 +23,7 @@ ALL_DIGITS = 1e-14
 LEAST_ERROR = 1e-16
 #: Colour of words in the axes
 _QUIET = "#555555"
-#: Errors that the tables tell the cost of, and that of blocks that move
+#: Errors whose cost the tables have, and that of blocks that move
 GOALS, MOTION_GOALS = (1e-1, 1e-3, 1e-6, 1e-9), (1e-2, 1e-3, 1e-4, 1e-6)
 #: Colour (place in the style's inks), mark and line of each method
 _LOOKS = {
@@ -107,10 +107,10 @@ def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
     from voussoir.plot.figure_style import Picture, house_style, save
 
     fronts = [front(own) for panel in panels for own in grouped(panel.points, "method").values()]
-    told = [point.seconds for best in fronts for point in best]
-    if not told:
+    times = [point.seconds for best in fronts for point in best]
+    if not times:
         return []
-    span = 10.0 ** math.floor(math.log10(min(told)) - 0.1), 10.0 ** math.ceil(math.log10(max(told)) + 0.2)
+    span = 10.0 ** math.floor(math.log10(min(times)) - 0.1), 10.0 ** math.ceil(math.log10(max(times)) + 0.2)
     paths = []
     with house_style():
         for panel in panels:

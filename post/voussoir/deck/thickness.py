@@ -26,9 +26,9 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
     It is infinite where no smaller thickness falls, NaN where it is not known.
     """
     row = run.case(number)
-    told = float(row.get("safety_thickness", math.nan))
-    if not math.isnan(told):
-        return told, "thickness over the exact critical thickness of the same voussoirs"
+    factor = float(row.get("safety_thickness", math.nan))
+    if not math.isnan(factor):
+        return factor, "thickness over the exact critical thickness of the same voussoirs"
     groups = dead_groups(run, row)
     arch = groups.get("arch", {})
     if "crown_thickness" in arch:
@@ -96,7 +96,7 @@ def _value(word: str) -> Any:
 
 
 def ends_of(low: float, high: float) -> str:
-    """The ends of an interval with as many digits as tell them apart.
+    """The ends of an interval with as many digits as distinguish them.
 
     Examples
     --------

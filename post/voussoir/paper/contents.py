@@ -75,7 +75,7 @@ _IN_WORDS = {
     "figure9": _SIDE,
     "figure10": _SIDE,
 }
-#: Tables whose values the figures show, and what tells their rows apart
+#: Tables whose values the figures show, and the columns that identify their rows
 _TABLE_OF = {
     "figure11": ("table1", "blocks"),
     "figure12": ("table2", "joint"),
@@ -104,19 +104,19 @@ def _beside(part: str, campaign: Campaign) -> str:
     rows = campaign.tables[name].rows
     unit = " blocks" if key == "blocks" else "&deg;"
     if part == "figure19":
-        told = [f"{row.half_angle}&deg;: {row.values['paper DDA'].hinge}" for row in rows]
-        return "The paper's hinges [deg] by half angle: " + ", ".join(told) + "."
+        entries = [f"{row.half_angle}&deg;: {row.values['paper DDA'].hinge}" for row in rows]
+        return "The paper's hinges [deg] by half angle: " + ", ".join(entries) + "."
     if part in _SAMPLES:
         rows = [row for row in rows if float(row.joint) == _SAMPLES[part]]
     elif part != "figure18":  # the table beside has them all
         rows = [rows[0], max(rows, key=_paper_value), rows[-1]]
         rows = [row for place, row in enumerate(rows) if row not in rows[:place]]
-    told = []
+    entries = []
     for row in rows:
         paper, own = row.values["paper DDA"].digits("paper DDA"), row.values["ours, rigid"].eta
         digits = len(paper.partition(".")[2])
-        told.append(f"{getattr(row, key)}{unit}: {paper} ({own or 0.0:.{digits}f})")
-    return "The paper's &eta; (ours, rigid): " + ", ".join(told) + "."
+        entries.append(f"{getattr(row, key)}{unit}: {paper} ({own or 0.0:.{digits}f})")
+    return "The paper's &eta; (ours, rigid): " + ", ".join(entries) + "."
 
 
 def _paper_value(row: Row) -> float:

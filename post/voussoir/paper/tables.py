@@ -96,7 +96,7 @@ def number(text: str | None) -> float | None:
 
 
 def key_of(half_angle: str, blocks: str, joint: str) -> tuple[float, int, float]:
-    """What tells an arch from the others of its table."""
+    """Distinction of an arch from the others of its table."""
     return float(half_angle), int(blocks), float(joint or 0.0)
 
 

@@ -1,4 +1,4 @@
-"""What the picture of one case shows, as `dda run` has told it: shapes, supports, the piece of plane."""
+"""What the picture of one case shows, as `dda run` has written it: shapes, supports, the piece of plane."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class CaseScene:
 
     @property
     def largest(self) -> float:
-        """Largest displacement of a corner [m], NaN where none is told."""
+        """Largest displacement of a corner [m], NaN where none is known."""
         return max((float(np.hypot(*block.displacement.T).max()) for block in self.blocks), default=float("nan"))
 
     def shapes(self, factor: float) -> list[np.ndarray]:
@@ -43,14 +43,14 @@ class CaseScene:
 
 def scene_of(run: Results, number: int) -> CaseScene:
     """The shapes of one case; KeyError if the folder has no blocks of it."""
-    told = run.blocks_of(number)
+    blocks = run.blocks_of(number)
     is_arch = run.kind == "arch"
-    free = [block for block in told if block.state != "fixed"]
-    supports = [block for block in told if block.state == "fixed"]
+    free = [block for block in blocks if block.state != "fixed"]
+    supports = [block for block in blocks if block.state == "fixed"]
     if is_arch:
         supports = [shortened(block, free) for block in supports]
     row = run.case(number)
-    # a search along a path tells the blocks where they come to rest nearest to critical
+    # a search along a path has the blocks where they come to rest nearest to critical
     moves = row["geometry"] == "current" and (not run.searched or not math.isnan(row["path_time"]))
     falls = row["collapse_mode"] != "none" and not moves
     if run.kind != "shape":

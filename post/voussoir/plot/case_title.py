@@ -12,7 +12,7 @@ Row = dict[str, Any]
 
 
 def title_of(row: Row, run: Results | None = None) -> str:
-    """The deck's title if it has one, what tells the case from others, its verdict: a line each."""
+    """The deck's title if it has one, the distinction of the case, its verdict: a line each."""
     title = run.setting("scene%title") if run is not None else None
     given = ", ".join(_given(row, run))
     if run is not None and len(run.cases) > 1:
@@ -59,7 +59,7 @@ def _ending(row: Row, run: Results | None) -> str:
 
 
 def safety_of(row: Row, run: Results | None) -> str:
-    """The safety numbers of what stands, as far as they are told."""
+    """The known safety numbers of a stable case."""
     words = ""
     names = ("safety_thickness", "critical", "exact_low")
     safety, factor, limit = (row.get(name, math.nan) for name in names)
@@ -76,7 +76,7 @@ def safety_of(row: Row, run: Results | None) -> str:
 
 
 def thrust_of(row: Row, unit: str) -> str:
-    """The range of thrust in words, empty where neither end is told.
+    """The range of thrust in words, empty where neither end is known.
 
     Examples
     --------

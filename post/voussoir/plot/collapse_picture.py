@@ -45,12 +45,13 @@ def pictures_of(run: Results, number: int) -> list[Frame]:
     scene = scene_of(run, number)
     if not scene.falls or not scene.largest > 0.0:
         return frames
-    told = run.blocks_of(number)
+    blocks = run.blocks_of(number)
     low, high = view(scene.shapes(0.0), [])
     most = MECHANISM_SIZE * float((high - low).max()) / scene.largest
     return [
         Frame(
-            picture, 0, 0.0, [block.corners + picture / GROWTH * most * block.displacement for block in told], Table({})
+            picture, 0, 0.0, [block.corners + picture / GROWTH * most * block.displacement for block in blocks],
+            Table({})
         )
         for picture in range(GROWTH + 1)
     ]

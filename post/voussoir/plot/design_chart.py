@@ -20,9 +20,9 @@ _SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geome
 #: First and last column that every table has; swept parameters stand between
 _BEFORE, _BEHIND = "case", "blocks"
 _MARKERS = "osD^vP*X"
-#: Most curves that can be told apart
+#: Most curves that can be distinguished
 MOST_CURVES = 8
-#: Most curves whose colour can be told; more are a map
+#: Most curves whose colours differ; more are a map
 MOST_COLOURS = 40
 
 
@@ -122,7 +122,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
 
 
 def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, other: str) -> Figure:
-    """Curves too many for marks: their colour tells the second parameter."""
+    """Curves too many for marks: their colour shows the second parameter."""
     figure = Picture(figsize=(5.4, 3.9), layout="constrained")
     axes = figure.subplots()
     values = [float(rows[other][0]) for _, rows in groups]

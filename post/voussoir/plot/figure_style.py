@@ -21,7 +21,7 @@ from voussoir.files import fresh
 EXACT_DPI = 300
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
-#: Line styles that tell the curves apart without colour
+#: Line styles that distinguish the curves without colour
 DASHES = ("-", (0, (6, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
 #: Fill of masonry
 STONE = "#ececec"

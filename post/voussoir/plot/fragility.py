@@ -68,7 +68,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
     """Draw the fragility of a sweep over records and strengths, or of searches for the strength of each record.
 
     The column is by default amplitude or scale. Shares are points, the lognormal (None where there is none) a line.
-    ChartError if the results tell no fragility.
+    ChartError if the results have no fragility.
     """
     found = run.cases.take(run.cases["verdict"] == "found")
     if len(found) > 1 and column is None:

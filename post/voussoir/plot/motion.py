@@ -15,7 +15,7 @@ class Motion:
 
     Attributes
     ----------
-    shown, told : float
+    shown, written : float
         Multiples of the displacements at which the picture shows the blocks, and at which tables have their points.
     fields : dict of int to ndarray
         Of each block that can move, the rows a of u = (x, y, 1) a: (3, 2), of the places before it has moved.
@@ -24,23 +24,23 @@ class Motion:
     """
 
     shown: float
-    told: float
+    written: float
     fields: dict[int, np.ndarray]
     corners: dict[int, np.ndarray]
 
     def carried(self, points: np.ndarray, blocks: np.ndarray) -> np.ndarray:
         """Places in the picture of points of tables, each of one block: (n, 2) [m]."""
         moved = np.array(points, dtype=float)
-        if self.shown == self.told or not self.fields:
+        if self.shown == self.written or not self.fields:
             return moved
         numbers = np.array(sorted(self.fields))
         laws = np.array([self.fields[number] for number in numbers.tolist()])
         row = np.minimum(np.searchsorted(numbers, blocks), len(numbers) - 1)
         goes = numbers[row] == blocks
         law, there = laws[row[goes]], moved[goes]
-        # the table has p + told u(p), with u = p A + c: p is found from it
-        a, b, c, d = (self.told * law[:, i, j] + (i == j) for i in (0, 1) for j in (0, 1))
-        x, y = (there - self.told * law[:, 2]).T
+        # the table has p + written u(p), with u = p A + c: p is found from it
+        a, b, c, d = (self.written * law[:, i, j] + (i == j) for i in (0, 1) for j in (0, 1))
+        x, y = (there - self.written * law[:, 2]).T
         det = a * d - b * c
         first = np.column_stack(((x * d - y * c) / det, (y * a - x * b) / det))
         shift = first[:, :1] * law[:, 0] + first[:, 1:] * law[:, 1] + law[:, 2]
@@ -79,7 +79,7 @@ def distance(corners: np.ndarray, point: np.ndarray) -> float:
     return -gap if inside else gap
 
 
-def motion_of(blocks: list[Block], supports: list[Block], shown: float, told: float) -> Motion:
+def motion_of(blocks: list[Block], supports: list[Block], shown: float, written: float) -> Motion:
     """The motion of a case; blocks whose displacements are not known stay."""
     fields, corners = {}, {}
     for block in blocks:
@@ -88,4 +88,4 @@ def motion_of(blocks: list[Block], supports: list[Block], shown: float, told: fl
             rows = np.column_stack((block.corners, np.ones(len(block.corners))))
             fields[block.number] = np.linalg.lstsq(rows, block.displacement, rcond=None)[0]
     corners |= {block.number: block.corners for block in supports}
-    return Motion(shown, told, fields, corners)
+    return Motion(shown, written, fields, corners)

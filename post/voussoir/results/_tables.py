@@ -1,4 +1,4 @@
-"""The tables of `dda run` as columns with types; what is damaged is told with file and line."""
+"""The tables of `dda run` as columns with types; damage is reported with file and line."""
 
 from __future__ import annotations
 

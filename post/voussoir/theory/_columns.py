@@ -61,7 +61,7 @@ def evaluate(
 ) -> tuple[Value, ...]:
     """Call a routine of the Fortran layer for every element of its arguments.
 
-    It takes them as columns, then the numbers, and returns columns and its fault, told by what each argument wants
+    It takes them as columns, then the numbers, and returns columns and its fault, by the demand of each argument
     (`ranges`). Results have the shape of the arguments. ValueError if they are not numeric, do not fit, or are out of
     range.
     """

@@ -58,10 +58,10 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
         still = [False] * len(corners) + [True, True]
         corners = corners + ends
     else:
-        told: dict[int, list[list[Fraction]]] = {}
+        corners_of: dict[int, list[list[Fraction]]] = {}
         for row in rows:
-            told.setdefault(int(row["block"]), []).append([Fraction(row["x"]), Fraction(row["y"])])
-        corners, still = [np.array(told[n]) for n in sorted(told)], [fixed[n] for n in sorted(told)]
+            corners_of.setdefault(int(row["block"]), []).append([Fraction(row["x"]), Fraction(row["y"])])
+        corners, still = [np.array(corners_of[n]) for n in sorted(corners_of)], [fixed[n] for n in sorted(corners_of)]
     rounded = [make_block(k + 1, c.astype(float), f) for k, (c, f) in enumerate(zip(corners, still))]
     blocks = [make_block(k + 1, c, f) for k, (c, f) in enumerate(zip(corners, still))]
     if deck.gives("scene%analysis"):
@@ -236,13 +236,13 @@ def check_exactly(deck: Deck, files: list[Path], rows: dict[str, list[Row]], fin
         return exact
 
     if result["exact_low"] and name in LINEAR:
-        told = [Fraction(result["exact_low"]), Fraction(result["exact_high"])]
+        bounds = [Fraction(result["exact_low"]), Fraction(result["exact_high"])]
         proven = limit(scene(), name, -1 if result["collapses_at"] == "low" else 1)
-        if proven is None or not told[0] <= proven[0] <= proven[1] <= told[1]:
+        if proven is None or not bounds[0] <= proven[0] <= proven[1] <= bounds[1]:
             got = "none was proven" if proven is None else f"got {float(proven[0])!r}"
             finding.faults.append(f"limit expected from exact_low to exact_high by rational arithmetic, {got}")
             return
-        ours = sum(told) / 2
+        ours = sum(bounds) / 2
         _keep_interval(name, min(ours, proven[0]), max(ours, proven[1]), finding)
         return
     falls = [row["value"] for row in rows["proof_motion"][:1]]
@@ -265,6 +265,6 @@ def check_exactly(deck: Deck, files: list[Path], rows: dict[str, list[Row]], fin
 
 
 def _keep_interval(name: str, low: Fraction, high: Fraction, finding: Finding) -> None:
-    """Tell an interval, rounded outward."""
+    """Print an interval, rounded outward."""
     below, above = math.nextafter(float(low), -math.inf), math.nextafter(float(high), math.inf)
     finding.interval = f"{name} is critical from {below!r} to {above!r}, proven; width {above - below:.1e}"

@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.verify.contacts import Block, depth
 from voussoir.verify.deck import Deck
 
-#: A point so far outside an edge, over its length, tells what lies on it
+#: A point so far outside an edge, over its length, shows what is on it
 OUTSIDE = 1e-6
 #: A chord that rises less than this share of its length is not pressed
 LEVEL = 1e-9

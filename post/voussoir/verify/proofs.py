@@ -162,10 +162,10 @@ def _check_pull(
         value = vector[0] if pull.kind == "bar" else float(vector @ pull.direction)
         if pull.kind == "bounded":
             finding.keep("law of forces", float(np.abs(vector - value * pull.direction).max()) / largest)
-            told = math.inf if row["shear"] == "" else float(row["shear"])
+            shear = math.inf if row["shear"] == "" else float(row["shear"])
             bound = math.inf if pull.most is None else float(pull.most)
-            if told != bound:
-                finding.keep("bounds of forces", abs(told - bound) / largest)
+            if shear != bound:
+                finding.keep("bounds of forces", abs(shear - bound) / largest)
         most = value if pull.most is None else pull.most
         finding.keep("law of forces", max(0.0, -value, value - most) / largest)
         for number, at, way in ((blocks[0], pull.points[0], -1.0), (blocks[1], pull.points[1], 1.0)):

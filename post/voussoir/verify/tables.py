@@ -1,4 +1,4 @@
-"""Joint forces and displacements as joints.csv and blocks.csv tell them, checked like the proofs."""
+"""Joint forces and displacements of joints.csv and blocks.csv, checked like the proofs."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from voussoir.verify.proofs import (
     TOLERANCE, Finding, Scene, digits_of, largest_of, match_joint, push, reach_of, rounding_of)
 from voussoir.verify.read import Row
 
-#: What told forces may leave of a load: those of a search are of the bracket's end that stands
-TOLD = 1e-7
-#: Share of the largest load to which told forces have settled
+#: Permitted imbalance of joints.csv over the load: a search writes the stable end of its bracket
+WRITTEN = 1e-7
+#: Share of the largest load to which forces of joints.csv have converged
 SETTLED = 1e-8
-#: How far the told forces of what falls may be beyond a law: they are those of the last step
+#: Permitted violation of a law by the forces of a collapse, which are those of the last step
 FALLING = 1e-5
 #: What rounding leaves between columns that say the same
 SAME = 1e-9
@@ -28,10 +28,10 @@ NONE = 1e-12
 def check_joints(
     scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: np.ndarray, off: float
 ) -> None:
-    """Check that told joint forces keep the law of every joint, and balance the loads of what stands.
+    """Check that forces of joints.csv obey the law of every joint, and balance the loads of stable cases.
 
-    `bars` are told forces, None where nothing stands and forces need not balance; `allowed` (n, 3) is what the forces
-    may leave besides, as the bracket of a search is so wide, and `off` how far corners differ between its ends [m].
+    `bars` are forces of bars.csv, None where forces need not balance; `allowed` (n, 3) is their permitted imbalance
+    besides, from the width of the bracket of a search, and `off` the distance of corners between its ends [m].
     """
     allowed = allowed.copy()
     rounding = [off + rounding_of(block) for block in scene.blocks]
@@ -44,7 +44,7 @@ def check_joints(
     pairs, digits = numbers_of(scene.joints), 0.0
     for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
         beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
-        finding.keep("law of told forces", beyond / largest, TOLD)
+        finding.keep("friction law (joints.csv)", beyond / largest, WRITTEN)
         for number, at, way in zip(pull.blocks, pull.points, (-1.0, 1.0)):
             if number > 0:
                 push(left, scene.blocks[number - 1], at, way * force * pull.direction)
@@ -69,7 +69,7 @@ def check_joints(
         beyond = max(0.0, -normal)
         if math.isfinite(friction):
             beyond = max(beyond, (abs(shear) - friction * normal) / max(1.0, friction))
-        finding.keep("law of told forces", beyond / largest, TOLD if bars is not None else FALLING)
+        finding.keep("friction law (joints.csv)", beyond / largest, WRITTEN if bars is not None else FALLING)
         for force, place in _forces(row, joint, order, way, at, vector):
             push(left, scene.blocks[second - 1], place, force)
             push(left, scene.blocks[first - 1], place, -force)
@@ -81,8 +81,8 @@ def check_joints(
         if free[block.number - 1]:
             _lean(left, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
     if free.any():
-        finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest,
-                     TOLD + digits + largest_of(allowed[free], scene.length) / largest)
+        finding.keep("balance (joints.csv)", largest_of(left[free], scene.length) / largest,
+                     WRITTEN + digits + largest_of(allowed[free], scene.length) / largest)
 
 
 def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> None:
@@ -112,7 +112,7 @@ def _is_held(scene: Scene, number: int) -> bool:
 def _forces(
     row: Row, joint: Joint, order: list[int], way: float, at: np.ndarray, vector: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Told forces on the second block, and where they act: each contact's along the normal of its own edge."""
+    """Forces of joints.csv on the second block, and where they act: each contact's along the normal of its own edge."""
     normal, shear = float(row["normal_force"]), float(row["shear_force"])
     if joint.single or not row["eccentricity_ratio"]:
         return joint.forces(np.array([normal, 0.0, shear]), way) if joint.single else [(vector, at)]
@@ -123,7 +123,7 @@ def _forces(
 def _check_place(
     row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, rounding: float, finding: Finding
 ) -> None:
-    """The force acts between the ends of its joint, which has room for the strip that bears it, where it is told.
+    """The force acts between the ends of its joint, which has room for its bearing strip, if both are known.
 
     Corners are off by `rounding` [m].
     """
@@ -132,25 +132,25 @@ def _check_place(
     if joint.single or not normal > 0.0:
         return
     beyond, digits = float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5, rounding / length
-    finding.keep("place of a force", max(0.0, beyond), TOLD + digits)
+    finding.keep("place of a force", max(0.0, beyond), WRITTEN + digits)
     aside = along[0] * (at - middle)[1] - along[1] * (at - middle)[0]
     finding.keep("place off its joint", abs(float(aside)) / length**2, TOLERANCE + digits)
     if row["eccentricity_ratio"]:
-        told = abs(float(row["eccentricity_ratio"]))
-        finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - told), SAME + digits)
+        written = abs(float(row["eccentricity_ratio"]))
+        finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - written), SAME + digits)
 
 
 def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
-    """Check that told motions are those of rigid blocks, or of blocks that strain alike throughout.
+    """Check that displacements of blocks.csv are those of rigid blocks, or of blocks that strain alike throughout.
 
     They may be `strain` times the largest velocity from rigid; infinite where they need not be.
     """
-    told: dict[int, list[list[float]]] = {}
+    blocks: dict[int, list[list[float]]] = {}
     for row in rows:
         if row["u"]:
-            told.setdefault(int(row["block"]), []).append([float(row[name]) for name in ("x", "y", "u", "v")])
-    largest = max((abs(value) for block in told.values() for corner in block for value in corner[2:]), default=0.0)
-    for number, corners in told.items():
+            blocks.setdefault(int(row["block"]), []).append([float(row[name]) for name in ("x", "y", "u", "v")])
+    largest = max((abs(value) for block in blocks.values() for corner in block for value in corner[2:]), default=0.0)
+    for number, corners in blocks.items():
         x, y, u, v = np.array(corners).T
         if scene.blocks[number - 1].fixed:
             finding.keep("motion of fixed blocks", float(np.abs([u, v]).max()) / max(largest, 1e-300), SAME)
