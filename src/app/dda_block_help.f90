@@ -8,9 +8,8 @@ module dda_block_help
    !> The page, line by line
    character(len=*), parameter :: on_blocks(*) = [character(len=96) :: &
       & "A file of blocks (scene%kind = 'blocks', scene%geometry = 'FILE') is plain text in", &
-      & "UTF-8, one entry per line, rows of numbers below it. Words are separated by blanks,", &
-      & "capital and small letters are the same, ! begins a comment. Units are SI per metre of", &
-      & "depth.", &
+      & "UTF-8: one entry per line, with rows of numbers below it. Blanks separate words, case", &
+      & "is ignored, and ! starts a comment. Units are SI per metre of depth.", &
       & "", &
       & "   block fixed              ! never moves", &
       & "   -1 -1", &
@@ -29,19 +28,19 @@ module dda_block_help
       & "   A polygon; rows x y of its corners [m] follow. Velocity [m/s], spin [rad/s], stress", &
       & "   [Pa].", &
       & "material N [density d] [unit_weight w] [young e] [poisson p] [compressive_strength s]", &
-      & "   Material N, from 2 on; material 1, and what is left out, is that of the deck.", &
+      & "   Material N from 2. Material 1 and omitted values are those of the deck.", &
       & "joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r] [slip_length d]", &
       & "   Law of the joints between materials I and J.", &
       & "fix x y [x or y]", &
-      & "   Fixed point, in one direction if that is named.", &
+      & "   Restraint of a point, in one direction if named.", &
       & "fix_line x1 y1 x2 y2 [x or y]", &
-      & "   Fixed points at the ends of the line's part in each block.", &
+      & "   Restraints at both ends of the part of the line in each block.", &
       & "measure x y", &
       & "   Monitoring point, for points.csv.", &
       & "load x y fx fy", &
       & "   Dead load on a point [N/m]; instead of fx fy, rows time fx fy may follow.", &
       & "load block N x y fx fy", &
-      & "   The same on block N. live, fix, measure and displacement take block N, too.", &
+      & "   Dead load on block N. live, fix, measure and displacement accept block N as well.", &
       & "live x y fx fy", &
       & "   Live load, multiplied by load%load_factor.", &
       & "displacement x y ux uy", &
@@ -51,16 +50,16 @@ module dda_block_help
       & "water x y x y ... [unit_weight W] [factor F]", &
       & "   Piezometric line from left to right; rows time rise may follow.", &
       & "absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]", &
-      & "   Faces along a line that absorb waves, for mode = 'dynamic'.", &
+      & "   Absorbing boundary along the faces on a line (mode = 'dynamic').", &
       & "remove block N ... at T, add block N ... at T", &
       & "   Blocks removed or built at time T [s]; `polygon` and rows x y select them by their", &
       & "   centre of gravity.", &
       & "base_acceleration ax ay", &
-      & "   Acceleration of the ground [m/s2], or rows time ax ay.", &
+      & "   Ground acceleration [m/s2], or rows time ax ay.", &
       & "base_velocity, base_displacement", &
-      & "   Motion of the ground [m/s, m]: rows time x y.", &
+      & "   Ground motion [m/s, m]: rows time x y.", &
       & "", &
       & "Instead of rows of times: file 'RECORD' [columns T X [Y]] [scale S]. Columns are", &
-      & "numbers from 1, or names of the header, in quotes where they have blanks.", &
-      & "The key output%blocks: 'dda help output%blocks'."]
+      & "numbers from 1 or names of the header, in quotes if they contain blanks.", &
+      & "Draw the file: 'voussoir plot FILE.blocks'. The key: 'dda help output%blocks'."]
 end module dda_block_help

@@ -9,7 +9,7 @@ module dda_command_line
    implicit none
    private
 
-   public :: command_t, read_command
+   public :: command_t, read_command, is_of_voussoir
 
    !> Maximum length of an argument
    integer, parameter :: longest = 32768
@@ -19,6 +19,10 @@ module dda_command_line
    !> What the first argument may be
    character(len=*), parameter :: subcommands(*) = [character(len=9) :: verbs, "help", "--help", &
       & "--version"]
+   !> Commands of voussoir that dda does not have
+   character(len=*), parameter :: of_voussoir(*) = [character(len=14) :: "animate", "assess", &
+      & "campaign", "examples", "import", "paper", "plot", "stability", "study", "theory", &
+      & "traffic", "validation", "verify", "view", "work-precision"]
 
    !> An option of verbs that take files
    type :: option_t
@@ -137,15 +141,15 @@ contains
       if (takes_files .and. command%verb /= "help" .and. size(command%name) == 0) then
          call fatal_error(error, "dda "//trim(command%verb)//" needs the name of a " &
             & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", got " &
-            & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
+            & //"none; 'dda help "//trim(command%verb)//"' lists its options", line=1)
       else if (allocated(command%out) .and. any(command%verb == ["cut  ", "lines"])) then
          ending = command%out(max(len(command%out) - 3, 1):)
          if (size(command%name) > 1) then
             call fatal_error(error, "--out needs a single file of lines, got " &
                & //to_text(size(command%name))//"; cut them one by one", line=1)
          else if (command%verb == "lines" .and. ending /= ".geo") then
-            call fatal_error(error, "--out expected a file that ends in .geo, got '" &
-               & //shown(command%out)//"'", line=1)
+            call fatal_error(error, "--out must be a file that ends in .geo, got '" &
+               & //shown(command%out)//"'; give it that ending", line=1)
          else if (command%verb == "cut" .and. all(ending /= [".vtu", ".csv"])) then
             call fatal_error(error, "--out must be a file that ends in .vtu or .csv, got '" &
                & //shown(command%out)//"'; give it one of these endings", line=1)
@@ -165,11 +169,21 @@ contains
          command%verb = word
       else if (word == "--version") then
          command%verb = "version"
+      else if (is_of_voussoir(word)) then
+         call fatal_error(error, "expected a subcommand of dda, got '"//word//"', which "// &
+            & "voussoir has; write 'voussoir "//word//"'", line=1)
       else if (all(word /= [character(len=6) :: "--help", "-h", "help"])) then
          call fatal_error(error, "expected a subcommand, got '"//shown(trim(word))//"'"// &
             & near_one(trim(word), subcommands)//"; 'dda help' lists all", line=1)
       end if
    end subroutine take_subcommand
+
+   !> Whether a word is a command of voussoir alone
+   pure logical function is_of_voussoir(word)
+      character(len=*), intent(in) :: word
+
+      is_of_voussoir = any(of_voussoir == word)
+   end function is_of_voussoir
 
    !> Understand one option and its value
    pure subroutine take_option(argument, i, command, error)

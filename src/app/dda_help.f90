@@ -2,7 +2,7 @@
 module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_block_help, only : on_blocks
-   use dda_command_line, only : command_t
+   use dda_command_line, only : command_t, is_of_voussoir
    use dda_deck_token, only : shown
    use dda_deck_keys, only : deck_group, deck_key
    use dda_deck_key, only : near_one
@@ -18,134 +18,134 @@ module dda_help
 
    !> Version of the program
    character(len=*), parameter :: version = "0.2.0"
-   !> What there is help on
+   !> Topics of the help
    character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
       & "lines", "export", "keys", "models", "blocks", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
-      & "dda: discontinuous deformation analysis of masonry arches", &
+      & "dda: discontinuous deformation analysis of masonry arches and blocks", &
       & "", &
-      & "   dda run DECK [DECK ...]     compute every case of every deck", &
-      & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
-      & "   dda cut LINES.geo           cut lines into blocks, say what was dropped", &
-      & "   dda lines MAP.nml [...]     joint sets, slopes, openings to lines for dda cut", &
-      & "   dda export DECK [DECK ...]  write arches and cut blocks as files for other programs", &
-      & "   dda help run | check | cut | lines | export", &
-      & "                               options of a subcommand (dda run --help does the same)", &
-      & "   dda help keys               every group and key of a deck: unit, range, default", &
-      & "   dda help keys --json        the same for programs", &
-      & "   dda help GROUP | KEY        a group of a deck, or a key: &arch, radius, arch%radius", &
-      & "   dda help blocks             the form of a file of blocks", &
-      & "   dda help models             what is run with which mode, and what can be searched", &
+      & "   dda run DECK [DECK ...]     compute all cases", &
+      & "   dda check DECK [DECK ...]   check decks without computing", &
+      & "   dda cut LINES.geo           cut lines into blocks", &
+      & "   dda lines MAP.nml [...]     write the lines of joint sets, slopes and openings", &
+      & "   dda export DECK [DECK ...]  write arches and cut blocks in other formats", &
+      & "   dda help VERB               options of run, check, cut, lines, export", &
+      & "   dda help keys               all groups and keys of a deck", &
+      & "   dda help keys --json        all groups and keys as JSON", &
+      & "   dda help GROUP | KEY        one group or key: &arch, radius, arch%radius", &
+      & "   dda help blocks             format of a file of blocks", &
+      & "   dda help models             models, and keys that can be searched", &
       & "   dda --help | -h             this page", &
-      & "   dda --version               the version", &
+      & "   dda --version               version", &
       & "", &
-      & "A deck is a text file in Fortran's namelist form. A short one that asks a question:", &
+      & "'voussoir help' lists the commands of the second program, which draws, animates,", &
+      & "verifies and exports results, imports drawings, and runs campaigns.", &
+      & "", &
+      & "A deck is a text file in Fortran's namelist format, such as arch.nml:", &
       & "", &
       & "   &arch half_angle_deg = 90.0, voussoirs = 36 /", &
       & "   &search parameter = 'thickness_ratio' /", &
       & "", &
-      & "Written into arch.nml, 'dda run arch.nml' finds the thickness at which this arch", &
-      & "collapses and writes it to arch/results.csv. Units are SI per metre of depth, angles", &
-      & "degrees.", &
+      & "'dda run arch.nml' finds the critical thickness of this arch and writes it to", &
+      & "arch/results.csv. Units are SI per metre of depth, angles are in degrees.", &
       & "", &
-      & "Exit status: 0 every case reached a verdict; 2 bad input, with a line on standard", &
-      & "error, FILE:LINE: error: what is expected, what it got; what to do; 3 a case is", &
-      & "undecided or was not finished; 4 results could not be written. Of several, the first", &
-      & "of 4, 2, 3."]
+      & "Exit status: 0 all cases have a verdict; 2 bad input, with a message FILE:LINE: error;", &
+      & "3 a case is undecided or not finished; 4 results could not be written. If several", &
+      & "apply: 4 before 2 before 3."]
 
    !> dda help run
    character(len=*), parameter :: on_run(*) = [character(len=96) :: &
       & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
       & "        [--cases LIST] [--resume] [--force] [--tight] [--quiet]", &
       & "", &
-      & "   --out DIR   where results go; several decks each have a folder inside it", &
-      & "               (without it: a folder named as the deck without its ending)", &
-      & "   --jobs N    cases computed at the same time (default 1)", &
-      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
-      & "               (without it: the deck as it is)", &
+      & "   --out DIR   folder of the results; with several decks, one folder per deck in it", &
+      & "               (without it: a folder with the name of the deck)", &
+      & "   --jobs N    number of cases computed at the same time (default 1)", &
+      & "   --set group%key=value   override the deck; commas separate lists; repeatable", &
+      & "               (without it: the deck as written)", &
       & "   --cases LIST   compute only these cases, such as 1-500,812 (without it: all)", &
-      & "   --resume    skip the cases that an earlier run of the same deck with the same", &
-      & "               --set has finished; if the deck has changed, compute all again", &
-      & "               (without it: compute all again)", &
-      & "   --force     overwrite a results.csv, or another table, that dda has not written", &
-      & "               (without it: such a file is left alone, and the run ends with 4)", &
-      & "   --tight     bounds of searches to 1e-12, as search%tolerance=1e-11 asks for them", &
+      & "   --resume    skip cases that the same deck with the same --set has finished; if the", &
+      & "               deck has changed, compute all (without it: compute all)", &
+      & "   --force     overwrite tables that dda has not written", &
+      & "               (without it: such tables stay, and the exit status is 4)", &
+      & "   --tight     close the bounds of searches to 1e-12, as search%tolerance = 1e-11", &
       & "               (without it: to the tolerance of the deck)", &
-      & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &
-      & "               the undecided ones of more, and progress where a terminal shows it)", &
-      & "   --          what follows are names of decks, even if they begin with -", &
+      & "   --quiet     print errors only (without it: one line per case for up to 100 cases,", &
+      & "               beyond that only undecided cases, and progress on a terminal)", &
+      & "   --          the next words are names of decks, even if they start with -", &
       & "   --help, -h  this page", &
       & "", &
-      & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
-      & "corner), log.txt, and what --resume needs: deck.record (used to verify the deck),", &
-      & "sizes.record (the bytes of each case) and disk.record (rows known to be on disk);", &
-      & "and run.lock, which is empty and locked while a run writes there: a second one ends", &
-      & "with 4.", &
-      & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
+      & "Writes results.csv (one row per case), joints.csv (one row per joint), blocks.csv (one", &
+      & "row per corner) and log.txt. Files for --resume: deck.record (the deck), sizes.record", &
+      & "(bytes per case), disk.record (rows synced to disk). run.lock is empty and locked", &
+      & "during a run; a second run into the folder ends with status 4.", &
+      & "'dda help' lists the exit statuses, 'dda help keys' the keys of a deck.", &
+      & "'voussoir plot DIR' draws the results, 'voussoir verify DIR' checks their proofs."]
 
    !> dda help check
    character(len=*), parameter :: on_check(*) = [character(len=96) :: &
       & "dda check DECK [DECK ...] [--set group%key=value ...] [--record] [--quiet]", &
       & "", &
-      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
-      & "               (without it: the deck as it is)", &
-      & "   --record    print the tables of a run with their columns, and its deck.record", &
+      & "   --set group%key=value   override the deck; commas separate lists; repeatable", &
+      & "               (without it: the deck as written)", &
+      & "   --record    print the tables of a run with their columns, and deck.record", &
       & "               (without it: neither)", &
-      & "   --quiet     print nothing but errors (without it: the plan of each deck)", &
-      & "   --          what follows are names of decks, even if they begin with -", &
+      & "   --quiet     print errors only (without it: the plan of each deck)", &
+      & "   --          the next words are names of decks, even if they start with -", &
       & "   --help, -h  this page", &
       & "", &
-      & "Reads and checks the decks and prints what would be computed, and why. Writes nothing.", &
-      & "Exit status: 0 all decks are good; 2 one is not."]
+      & "Checks decks and prints the plan of the computation. Writes nothing.", &
+      & "Exit status: 0 all decks are good; 2 at least one is not."]
 
    !> dda help cut
    character(len=*), parameter :: on_cut(*) = [character(len=96) :: &
       & "dda cut LINES.geo [LINES.geo ...] [--out FILE] [--quiet]", &
       & "", &
-      & "   --out FILE  where the blocks of one LINES.geo go; ends in .vtu or .csv", &
+      & "   --out FILE  file of the blocks of one LINES.geo, .vtu or .csv", &
       & "               (without it: nothing is written)", &
-      & "   --quiet     print nothing but errors (without it: counts, areas, what was dropped)", &
-      & "   --          what follows are names of files, even if they begin with -", &
+      & "   --quiet     print errors only (without it: counts, areas, dropped lines)", &
+      & "   --          the next words are names of files, even if they start with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Reads geometry files of the Limerick line, plain or DDAML, cuts the lines into blocks,", &
-      & "and prints counts, areas, and which parts of lines were dropped, and why.", &
-      & "Exit status: 0 all files were cut; 2 one could not be; 4 FILE could not be written."]
+      & "and prints counts, areas, and the dropped parts of lines with reasons.", &
+      & "'voussoir plot LINES.geo' draws the blocks.", &
+      & "Exit status: 0 all files were cut; 2 one could not be cut; 4 FILE could not be written."]
 
    !> dda help lines
    character(len=*), parameter :: on_lines(*) = [character(len=96) :: &
       & "dda lines MAP.nml [MAP.nml ...] [--out FILE.geo] [--quiet]", &
       & "", &
-      & "   --out FILE.geo   where the lines of one MAP.nml go", &
+      & "   --out FILE.geo   file of the lines of one MAP.nml", &
       & "               (without it: MAP.geo in the current folder)", &
-      & "   --quiet     print nothing but errors (without it: what was drawn)", &
-      & "   --          what follows are names of files, even if they begin with -", &
+      & "   --quiet     print errors only (without it: numbers of lines)", &
+      & "   --          the next words are names of files, even if they start with -", &
       & "   --help, -h  this page", &
       & "", &
-      & "Draws the joints of a rock mass from sets of them, with slopes, openings, bolts and", &
-      & "points, clips them to the outline, and writes them for dda cut in the form of the", &
-      & "Limerick line; FILE_lines.csv says what each line is for. The same seed gives the", &
-      & "same bytes. Groups and keys of a map:", &
+      & "Writes lines of joint sets, slopes, openings, bolts and points for dda cut, clipped to", &
+      & "an outline, in the format of the Limerick line. FILE_lines.csv lists the purpose of", &
+      & "each line; 'voussoir lines FILE_lines.csv' draws it. Equal seeds give equal files.", &
+      & "Groups and keys of a map:", &
       & ""]
 
    !> dda help export
    character(len=*), parameter :: on_export(*) = [character(len=96) :: &
       & "dda export DECK [DECK ...] [--out DIR] [--set group%key=value ...] [--quiet]", &
       & "", &
-      & "   --out DIR   where the files go (without it: the current folder)", &
-      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
-      & "               (without it: the deck as it is)", &
-      & "   --quiet     print nothing but errors (without it: names, and what is lost)", &
-      & "   --          what follows are names of decks, even if they begin with -", &
+      & "   --out DIR   folder of the files (without it: the current folder)", &
+      & "   --set group%key=value   override the deck; commas separate lists; repeatable", &
+      & "               (without it: the deck as written)", &
+      & "   --quiet     print errors only (without it: names, and data that are lost)", &
+      & "   --          the next words are names of decks, even if they start with -", &
       & "   --help, -h  this page", &
       & "", &
-      & "Of a ring of voussoirs, in the conventions of the Limerick line: NAME.geo and", &
-      & "NAME_ddaml.geo, NAME.ana (DDAML) and NAME_plain.ana; says what they cannot carry.", &
-      & "arch%abutment_size sets the abutments' size.", &
-      & "Of an arch of any shape, with fill, a vehicle or ties, and of blocks cut from lines:", &
-      & "NAME.blocks, a file for scene%kind = 'blocks', where blocks may then come and go.", &
+      & "A ring of voussoirs becomes files of the Limerick line: NAME.geo and NAME_ddaml.geo,", &
+      & "NAME.ana (DDAML) and NAME_plain.ana. arch%abutment_size is the size of the abutments.", &
+      & "Arches of other shapes, with fill, a vehicle or ties, and blocks cut from lines become", &
+      & "NAME.blocks, a file for scene%kind = 'blocks'.", &
+      & "'voussoir export DIR FILE' writes the blocks of a result as a drawing or mesh.", &
       & "Exit status: 0 all cases were written; 2 bad input; 4 files could not be written."]
 
    !> dda help help
@@ -153,9 +153,8 @@ module dda_help
       & "dda help [run | check | cut | lines | export | keys [--json] | models | blocks | help |", &
       & "          GROUP | KEY | GROUP%KEY]", &
       & "", &
-      & "Prints help on a subcommand, on the keys of a deck, on one group or key of a deck or a", &
-      & "joint map, on the models that there are, or on the form of a file of blocks", &
-      & "(without a topic: the first page).", &
+      & "Prints help on a subcommand, the keys of a deck, a group or key of a deck or joint map,", &
+      & "the models, or the format of a file of blocks (without a topic: the first page).", &
       & "", &
       & "   --json      groups and keys as JSON: kind, unit, default, range, words, meaning", &
       & "               (without it: as text)"]
@@ -208,11 +207,16 @@ contains
          found = topic_help(topic, [deck_group, map_group], [deck_key, map_key])
          call print_text(command%screen, found)
          if (found /= "") return
+         status = exit_status%bad_input
+         if (is_of_voussoir(topic)) then
+            write (error_unit, "(a)") "dda:2: error: expected a topic of dda, got '"//topic &
+               & //"', which voussoir has; write 'voussoir help "//topic//"'"
+            return
+         end if
          write (error_unit, "(a)") "dda:2: error: expected help on run, check, cut, lines, " &
             & //"export, keys, models, blocks, help, a group or a key, got '"//shown(topic)//"'" &
             & //near_one(topic, [character(len=32) :: topics, deck_group%name, map_group%name, &
             & deck_key%name, map_key%name])//"; write one of them"
-         status = exit_status%bad_input
       end select
    end subroutine print_help
 

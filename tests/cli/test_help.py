@@ -219,6 +219,18 @@ def test_every_key_shows_its_default_or_what_holds_without_it() -> None:
     assert set(bare) <= {"geometry", "analysis", "parameter"}
 
 
+def test_commands_of_voussoir_are_named() -> None:
+    main = (Path(__file__).resolve().parents[2] / "post/voussoir/command/main.py").read_text(encoding="utf-8")
+    commands = set(re.findall(r'^    "([\w-]+)": \("voussoir\.', main, flags=re.MULTILINE)) - {"lines", "export"}
+    assert len(commands) > 10 and "'voussoir help'" in help_on()
+    for command in commands:
+        done = run_dda(command, "x")
+        assert (done.returncode, done.stderr) == (
+            2, f"dda:1: error: expected a subcommand of dda, got '{command}', which voussoir has; write "
+            f"'voussoir {command}'\n")
+        assert run_dda("help", command).stderr.endswith(f"; write 'voussoir help {command}'\n")
+
+
 def test_help_on_a_group_a_key_or_both() -> None:
     everything = help_on("help", "keys")
     joint = help_on("help", "&joint")
