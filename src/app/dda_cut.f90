@@ -63,7 +63,8 @@ contains
       call tell(screen, "joints", counted(size(cut%pair), "pair")//" of coincident edges")
       call tell(screen, "points", to_text(count(cut%point%kind == entity_role%fix))//" fixed, " &
          & //to_text(count(cut%point%kind == entity_role%load))//" load, " &
-         & //to_text(count(cut%point%kind == entity_role%measure))//" measured")
+         & //to_text(count(cut%point%kind == entity_role%measure))//" monitoring")
+      call print_hinged(screen, cut)
       if (model%of(entity_role%bolt)%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
          & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
       if (any(cut%pair%joint == bond_joint)) call tell(screen, "islands", &
@@ -80,7 +81,24 @@ contains
       call print_dropped(screen, model, cut)
    end subroutine print_cut
 
-   !> Print a row a block
+   !> Print how many blocks a single fixed point lets turn
+   subroutine print_hinged(screen, cut)
+      type(screen_t), intent(in) :: screen
+      type(cut_model_t), intent(in) :: cut
+      integer :: n_fixed(size(cut%area)), i
+
+      n_fixed = 0
+      do i = 1, size(cut%point)
+         associate (point => cut%point(i))
+            if (point%kind == entity_role%fix) n_fixed(point%block) = n_fixed(point%block) + 1
+         end associate
+      end do
+      if (any(n_fixed == 1)) call tell(screen, "hinged", counted(count(n_fixed == 1), "block") &
+         & //" with a single fixed point can turn, such as block " &
+         & //to_text(findloc(n_fixed, 1, 1))//"; a second point fixes a block")
+   end subroutine print_hinged
+
+   !> Print one row per block
    subroutine print_blocks(screen, cut)
       type(screen_t), intent(in) :: screen
       type(cut_model_t), intent(in) :: cut

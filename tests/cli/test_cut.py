@@ -97,6 +97,15 @@ def test_what_was_dropped_is_reported_with_its_line(tmp_path: Path) -> None:
     assert "a.geo:14: line 6" in done.stdout
 
 
+@pytest.mark.parametrize(("end", "hinged"), [(2.1, ""), (0.6, "1 block with a single fixed point can turn")])
+def test_block_with_a_single_fixed_point_is_reported(tmp_path: Path, end: float, hinged: str) -> None:
+    """A fixed line across a square of 1 m crosses two of its edges, and one that ends inside crosses one."""
+    (tmp_path / "a.geo").write_text(
+        "0.002\n4 4\n0\n0\n1 0 0 0\n0 0 1 0 1\n1 0 1 1 1\n1 1 0 1 1\n0 1 0 0 1\n-0.1 0.5 " + f"{end} 0.5\n")
+    printed = run_dda("cut", "a.geo", cwd=tmp_path).stdout
+    assert ("hinged" in printed) == bool(hinged) and hinged in printed, printed
+
+
 def test_line_ends_marks_and_tabs_do_not_matter(tmp_path: Path) -> None:
     (tmp_path / "a.geo").write_bytes(b"\xef\xbb\xbf" + SQUARE.replace("\n", "\r\n").encode())
     (tmp_path / "b.geo").write_text(" \n\n" + SQUARE.replace(" ", "\t"))
