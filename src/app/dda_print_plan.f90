@@ -88,7 +88,7 @@ contains
          do b = 1, min(n, most_rows)
             call print_line(screen, "   "//to_text(b)//"  "//short_text(system%area(b))//"  " &
                & //place_text(system%centroid(:, b) + scene%origin) &
-               & //trim(merge("  held", "      ", system%equation(b) == 0)))
+               & //trim(merge("  fixed", "       ", system%equation(b) == 0)))
          end do
          if (n > most_rows) call print_line(screen, "   and "//to_text(n - most_rows)//" more")
       end associate
@@ -120,7 +120,7 @@ contains
       if (allocated(boundary%measured)) n(3) = size(boundary%measured)
       text = "none"
       if (any(n > 0)) text = to_text(n(1))//" fixed or prescribed, "//to_text(n(2)) &
-         & //" loaded, "//to_text(n(3))//" measured"
+         & //" loaded, "//to_text(n(3))//" monitoring"
    end function points_text
 
    !> What is written besides results.csv and joints.csv

@@ -178,10 +178,10 @@ contains
       record = run_record(deck, deck_stem(name))
       if (command%resume) then
          call find_finished(tables, record, total, finished)
-         found = "nothing to resume, there are no results of this very deck with these "// &
-            & "settings by this build of dda; all cases are computed"
+         found = "nothing to resume: the deck, its settings or the program have changed; "// &
+            & "all cases are computed"
          if (finished%same_deck) found = "resumed, "//to_text(sum(finished%count))//" of " &
-            & //to_text(total)//" cases are there already"
+            & //to_text(total)//" cases are already computed"
          if (.not. command%quiet) call print_line(command%screen, name//": "//found)
       end if
       if (finished%same_deck) then
@@ -242,8 +242,8 @@ contains
          call fatal_error(error, "expected a folder that no other run or deck writes to, got "// &
             & "one in use; choose another folder with --out, or wait for that run to end", file, 1)
       else if (.not. quiet) then
-         write (error_unit, "(a)") file//":1: warning: this file system knows no locks: "// &
-            & "nothing keeps another run from writing to "//folder
+         write (error_unit, "(a)") file//":1: warning: this file system has no locks; "// &
+            & "let no other run write to "//folder
       end if
    end subroutine lock_folder
 

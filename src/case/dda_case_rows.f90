@@ -285,9 +285,9 @@ contains
       type(block_system_t), intent(in) :: system  !! The blocks at the end
       character(len=:), allocatable :: remark
 
-      remark = "geometry = 'reference' shows no collapse: blocks keep their places, the largest " &
-         & //"displacement is "//short_text(largest_displacement(system, .false.))//" m. " &
-         & //"Set geometry = 'current' to let them move."
+      remark = "geometry = 'reference' shows no collapse; the largest displacement is " &
+         & //short_text(largest_displacement(system, .false.))//" m. " &
+         & //"Set geometry = 'current' for large displacements."
    end function small_displacement_remark
 
    !> What the user should know of the path of a static run

@@ -178,19 +178,19 @@ contains
 
       problem = ""
       if (has_group(deck, search_group)) then
-         problem = "a search needs blocks that stay"
+         problem = "a search needs a model without stages"
       else if (deck%value(analysis_mode)%text == "limerick") then
-         problem = "mode = 'limerick' knows no blocks that come or go"
+         problem = "mode = 'limerick' has no stages"
       else if (deck%value(output_energy)%flag) then
-         problem = "output%energy needs blocks that stay"
+         problem = "output%energy needs a model without stages"
       else if (deck%value(output_reactions)%given .and. deck%value(output_reactions)%flag &
          & .and. deck%value(analysis_mode)%text == "dynamic") then
-         problem = "output%reactions of a dynamic run needs blocks that stay"
+         problem = "output%reactions of a dynamic run needs a model without stages"
       else if ((deck%value(material_compressive_strength)%given &
          & .or. any(deck%plan%materials%given(5))) &
          & .and. deck%value(analysis_flow)%text /= "associated") then
-         problem = "blocks with a compressive_strength need flow = 'associated' where some "// &
-            & "come or go"
+         problem = "blocks with a compressive_strength need flow = 'associated' in "// &
+            & "stages"
       else if ((deck%value(analysis_mode)%text == "dynamic") &
          & .neqv. deck%value(analysis_geometry)%text == "current") then
          problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &
@@ -213,7 +213,7 @@ contains
                & .and. joint%n_contact == 1)) cycle
             call fatal_error(error, "compressive_strength needs joints with a width, got a "// &
                & "corner of blocks "//to_text(joint%block(1))//" and "//to_text(joint%block(2)) &
-               & //" on an edge, which any force crushes; cut the corner off, or remove "// &
+               & //" on an edge without bearing area; cut the corner off, or remove "// &
                & "compressive_strength", geometry_file(deck), deck%plan%line(joint%block(1)))
             return
          end associate

@@ -36,7 +36,7 @@ contains
          bar%block(side) = block_at(plan, site, bar%point(:, side))
          if (bar%block(side) == 0) call add_warning(warnings, "the end of the bar at " &
             & //place_text(ends(2*side - 1:2*side)) &
-            & //" lies in no block: the ground holds it", file, bar%line)
+            & //" lies in no block and is anchored in the ground", file, bar%line)
       end do
       if (bar%block(1) == bar%block(2)) call fatal_error(error, &
          & "expected a bar between two blocks or a block and the ground, " &
@@ -106,7 +106,7 @@ contains
       water%x = place(1:n:2)
       water%head = place(2:n:2)
       if (any(water%x(2:) <= water%x(:n/2 - 1))) call fatal_error(error, &
-         & "expected points of the line of heads from left to right")
+         & "expected points of the piezometric line from left to right")
       if (allocated(error)) return
       value = [water%unit_weight, water%factor]
       call take_words(entry%head, n + 2, key, value, given, error)
@@ -282,15 +282,15 @@ contains
             do b = 1, 2
                if (plan%boundary%bar(i)%block(b) == 0) cycle
                if (last(plan%boundary%bar(i)%block(b)) > 0) call fatal_error(error, &
-                  & "expected bars between blocks that stay, got one on block " &
+                  & "expected bars on blocks without stages, got one on block " &
                   & //to_text(plan%boundary%bar(i)%block(b))//", which 'remove' or 'add' names", &
                   & line=plan%boundary%bar(i)%line)
             end do
          end do
       end if
       if (.not. allocated(error) .and. size(plan%water) > 0) call fatal_error(error, &
-         & "expected a file with either stages or water: pressure on faces that an excavation " &
-         & //"lays bare is not known", line=plan%boundary%change(1)%line)
+         & "expected a file with either stages or water: the pressure on new faces is " &
+         & //"not known; remove one of them", line=plan%boundary%change(1)%line)
    end procedure close_changes
 
 end submodule dda_block_entries

@@ -288,7 +288,7 @@ contains
          .and. .not. is_known(deck, fill_passive_share)) then
          why = "fill%passive_share is not given; give it"
       else if (key%name == "water_rise" .and. deck%value(scene_kind)%text /= "blocks") then
-         why = "water stands in files of blocks alone; name another key"
+         why = "for files of blocks only; name another key"
       end if
    end function reason_of_no_effect
 
@@ -313,7 +313,7 @@ contains
       n = n_cases(deck)
       if (n > nint(deck%value(output_max_cases)%number)) call deck_error(error, &
          & "expected at most "//to_text(nint(deck%value(output_max_cases)%number))//" cases, got " &
-         & //to_text(n)//" or more; raise output%max_cases if they are meant", deck, &
+         & //to_text(n)//" or more; raise output%max_cases for more", deck, &
          & deck%sweeps(size(deck%sweeps))%place)
       if (allocated(error)) return
       call choose_cases(cases, n, chosen, error)

@@ -71,7 +71,7 @@ contains
       if (deck%searched%key == 0) return
       problem = search_problem(deck_key(deck%searched%key), kind, mode)
       if (mode == "limerick" .and. keeps_velocities(deck)) &
-         problem = "with velocities it ends 'completed', neither stable nor collapsed"
+         problem = "with velocities it ends 'completed'"
       if (len(problem) > 0) call key_error(error, "search%parameter: expected a key that "// &
          "mode = '"//deck%value(analysis_mode)%text//"' of scene%kind = '"//kind// &
          "' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem// &
@@ -99,7 +99,7 @@ contains
             & "duration needs mode = 'dynamic': a static run has no time", deck, &
             & analysis_duration, error)
          call refuse(value(analysis_restart)%given .and. .not. in_time, "analysis%restart "// &
-            & "needs mode = 'dynamic': a static run comes to rest by itself", deck, &
+            & "needs mode = 'dynamic': a static run has no time", deck, &
             & analysis_restart, error)
          call refuse(value(analysis_start)%text == "static" .and. (.not. in_time &
             & .or. value(analysis_restart)%given), "start = 'static' needs mode = 'dynamic' "// &

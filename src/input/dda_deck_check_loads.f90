@@ -128,7 +128,7 @@ contains
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
       point = nint(deck%value(analysis_collapse_point)%number)
       call refuse(point > measured, &
-         & "analysis%collapse_point needs a measured point, from 1 to "//to_text(measured) &
+         & "analysis%collapse_point needs a monitoring point, from 1 to "//to_text(measured) &
          & //", got "//to_text(point)//"; add 'measure' lines", deck, analysis_collapse_point, &
          & error)
       if (allocated(error)) return
@@ -200,7 +200,7 @@ contains
       end do
       if (.not. deck%value(analysis_collapse_point)%given) return
       call refuse(deck%value(scene_kind)%text /= "blocks", "analysis%collapse_point needs a "// &
-         & "file of blocks with measured points, got kind = '"//deck%value(scene_kind)%text &
+         & "file of blocks with monitoring points, got kind = '"//deck%value(scene_kind)%text &
          & //"'", deck, analysis_collapse_point, error)
       call refuse(.not. deck%value(analysis_collapse_displacement)%given, &
          & "analysis%collapse_point needs collapse_displacement, the "// &

@@ -48,32 +48,32 @@ module dda_model_table
    !> All keys that have real values
    type(search_t), parameter :: search(19) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
-         "abutments are blocks with mode = 'limerick' alone"), &
+         "for mode = 'limerick' only"), &
       search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
          "pier_width pier_height buttress_width buttress_height lune_deg", "shape", "", "", &
-         "with them an arch is a shape"), &
-      search_t("arch", "", "arch shape", "arch", "arch", "there is no generated arch"), &
-      search_t("fill", "", "shape", "", "", "there is no arch that it lies on"), &
-      search_t("tie", "", "shape", "", "", "there is no arch that it holds"), &
+         "setting one makes the arch a shape"), &
+      search_t("arch", "", "arch shape", "arch", "arch", "needs an arch"), &
+      search_t("fill", "", "shape", "", "", "needs an arch"), &
+      search_t("tie", "", "shape", "", "", "needs an arch"), &
       search_t("material", "compressive_strength", "shape blocks", "", "", &
-         "only limit analysis of arches and blocks has it"), &
+         "for limit analysis of arches and blocks only"), &
       search_t("material", "", all_kinds, of_original, of_original), &
       search_t("joint", "cohesion tension", all_kinds, of_original, "", &
-         "joints of Shi's scheme begin open: bonds are lost"), &
+         "joints of Shi's scheme start open, without bonds"), &
       search_t("joint", "residual_deg slip_length", "", "", "", &
          "the verdict may change more than once: use &sweep"), &
       search_t("joint", "", all_kinds, of_original, of_original), &
       search_t("load", "displacement_factor", "blocks", "blocks", "", &
-         "only files of blocks prescribe displacements"), &
+         "for files of blocks only"), &
       search_t("load", "water_rise", "blocks", "blocks", "", &
-         "water stands in files of blocks alone"), &
+         "for files of blocks only"), &
       search_t("load", "", all_kinds, of_original, of_original), &
       search_t("live", "", all_kinds, of_original, "", "Shi's scheme has no &live"), &
       search_t("vehicle", "", all_kinds, of_original, "", &
          "Shi's scheme has no &vehicle"), &
-      search_t("ground", "", "", all_kinds, "", "the ground moves in time"), &
+      search_t("ground", "", "", all_kinds, "", "needs mode = 'dynamic'"), &
       search_t("analysis", "restitution damping", "", of_original, "", &
-         "motion in time has them"), &
+         "needs mode = 'dynamic'"), &
       search_t("analysis", "", "", "", "", of_the_method), &
       search_t("limerick", "", "", "", "", of_the_method)]
 

@@ -27,8 +27,8 @@ module dda_line_model
       & "load", "measure", "hole", "bolt", "seismic"]
 
    !> What messages call one of each
-   character(len=*), parameter :: entity_name(8) = [character(len=14) :: "line", &
-      & "material line", "fixed point", "load point", "measured point", "hole point", "bolt", &
+   character(len=*), parameter :: entity_name(8) = [character(len=16) :: "line", &
+      & "material line", "fixed point", "load point", "monitoring point", "hole point", "bolt", &
       & "seismic point"]
 
    !> Segments or points of one role, in the order of the file

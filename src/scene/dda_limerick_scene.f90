@@ -319,17 +319,17 @@ contains
       integer :: b, i
 
       if (allocated(plan%boundary%base_acceleration%time)) call fatal_error(error, &
-         & "mode = 'limerick' knows no motion of the ground; remove it or " &
+         & "mode = 'limerick' has no ground motion; remove it or " &
          & //"choose mode = 'dynamic'", file, plan%ground_line)
       if (allocated(error)) return
       if (allocated(plan%boundary%absorbing)) call fatal_error(error, &
-         & "mode = 'limerick' knows no absorbing faces; remove this line " &
+         & "mode = 'limerick' has no absorbing boundaries; remove this line " &
          & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
       if (allocated(error)) return
       do i = 1, size(plan%starts)
          if (dynamic .or. .not. any(abs(plan%start(:3, i)) > 0.0_wp)) cycle
          b = plan%starts(i)
-         call fatal_error(error, "mode = 'limerick' begins every static step at rest, but block " &
+         call fatal_error(error, "mode = 'limerick' starts every static step at rest, but block " &
             & //to_text(b)//" has a velocity; remove it or set limerick%dynamic = .true.", file, &
             & plan%line(b))
          return
@@ -338,11 +338,11 @@ contains
       do i = 1, size(plan%boundary%held)
          associate (held => plan%boundary%held(i))
             if (allocated(held%path%time)) then
-               call fatal_error(error, "mode = 'limerick' holds points where they are and moves " &
-                  & //"none; remove the displacement or choose another mode", file, held%line)
+               call fatal_error(error, "mode = 'limerick' has no prescribed displacements; " &
+                  & //"remove the line or choose another mode", file, held%line)
             else if (.not. all(held%along)) then
-               call fatal_error(error, "mode = 'limerick' holds points along x and y; hold this " &
-                  & //"one so or choose another mode", file, held%line)
+               call fatal_error(error, "mode = 'limerick' restrains points along x and y; " &
+                  & //"remove the direction or choose another mode", file, held%line)
             end if
          end associate
          if (allocated(error)) return

@@ -124,23 +124,23 @@ contains
       else if (deck%value(fill_passive_share)%given &
          & .and. .not. deck%value(fill_friction_deg)%given) then
          key = fill_passive_share
-         problem = "expected friction_deg of the fill beside it, got none; give it"
+         problem = "expected friction_deg of the fill, got none; give it"
       else if (deck%value(fill_backing_unit_weight)%given &
          & .and. .not. deck%value(fill_backing_height)%given) then
          key = fill_backing_unit_weight
-         problem = "expected backing_height beside it, got none; give it"
+         problem = "expected backing_height with it, got none; give it"
       else if (fill_yields(deck) .and. .not. deck%value(fill_passive_stiffness)%given) then
          key = fill_passive_coefficient
          if (deck%value(fill_passive_share)%given) key = fill_passive_share
          if (deck%value(fill_backing_height)%given) key = fill_backing_height
-         problem = "expected passive_stiffness beside it where blocks move or joints have "// &
-            & "strength, got none; give it"
+         problem = "expected passive_stiffness in current geometry, or with strength of "// &
+            & "joints, got none; give it"
       else if (deck%value(arch_lune_deg)%given) then
          key = arch_lune_deg
          if (.not. at_rest) problem = "expected a static run in reference geometry, without "// &
             & "cohesion, tension and collapse_displacement, for a lune has the mass of no "// &
             & "plane block; change the run"
-         if (has_group(deck, fill_group)) problem = "expected a lune without fill, got some; "// &
+         if (has_group(deck, fill_group)) problem = "expected a lune without fill, got fill; "// &
             & "remove one of the two"
          if (changes_weight(deck)) problem = "expected weight that acts downwards alone, got "// &
             & "horizontal_coefficient or gravity_direction_deg; remove one of the two"

@@ -85,8 +85,8 @@ contains
          problem = form_problem_t("expected span and rise beside right_rise, got none; give "// &
             & "them, or remove it", "right_rise")
       else if (flat .and. form%half_angle_deg >= 90.0_wp) then
-         problem = form_problem_t("expected skewbacks of a flat arch of less than 90 from "// &
-            & "upright, got more; lower it", "half_angle_deg")
+         problem = form_problem_t("expected skewbacks of a flat arch less than 90 degrees "// &
+            & "from vertical, got more; lower it", "half_angle_deg")
       else if (deck%value(arch_abutment_size)%given &
          & .or. deck%value(arch_abutment_overhang)%given) then
          problem = form_problem_t("expected no abutment_size and abutment_overhang, which are "// &

@@ -85,7 +85,8 @@ contains
          decision = settled
          if (.not. allocated(decision%outcome%reason)) decision%outcome%reason = &
             & "the blocks collapse under their loads at time 0"
-         decision%outcome%reason = "start = 'static' found no rest: "//decision%outcome%reason
+         decision%outcome%reason = "start = 'static' found no equilibrium: " &
+            & //decision%outcome%reason
          decision%outcome%verdict = verdict%undecided
          return
       end if

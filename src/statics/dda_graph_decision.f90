@@ -26,7 +26,7 @@ module dda_graph_decision
 
    !> Why a path is undecided that limit analysis lets stand at its end
    character(len=*), parameter :: no_start = "no state under Coulomb friction is found under the " &
-      & //"loads of the beginning"
+      & //"initial loads"
    !> Relative gap of both bounds of a limit with its mechanism
    real(wp), parameter :: limit_gap = 1.0e-9_wp
    !> Factorisations for sliding at collapse, and for the whole collapse under live loads

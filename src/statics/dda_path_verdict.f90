@@ -63,7 +63,7 @@ contains
       call take_layers_away(graph, verdict)
       if (.not. touched) return
       verdict%end = path_end%undecided
-      verdict%reason = "the strips that bear the forces of joints that crush do not converge"
+      verdict%reason = "the bearing strips of crushing joints do not converge"
    end subroutine follow_stations
 
    !> Loads and openings at a station, of layers too

@@ -114,4 +114,4 @@ def test_modes_without_time_say_that_they_do_not_absorb(tmp_path: Path) -> None:
     assert "scene.blocks:11: warning: absorb has no effect: mode = 'static' has no time" in done.stderr
     done = run_dda("check", "deck.nml", "--set", "analysis%mode=limerick", cwd=tmp_path)
     assert done.returncode == 2
-    assert "mode = 'limerick' knows no absorbing faces" in done.stderr
+    assert "mode = 'limerick' has no absorbing boundaries" in done.stderr

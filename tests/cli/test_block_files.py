@@ -39,7 +39,7 @@ def test_check_says_the_points(tmp_path: Path) -> None:
     deck = write(tmp_path, BLOCK + "fix 0 0\nfix 1 0\nmeasure 0.5 1\nload 0.5 2 1 0\n")
     done = run_dda("check", deck)
     assert done.returncode == 0 and done.stderr == ""
-    assert "2 fixed or prescribed, 1 loaded, 1 measured" in done.stdout
+    assert "2 fixed or prescribed, 1 loaded, 1 monitoring" in done.stdout
 
 
 def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:
     deck = write(tmp_path, BASE + BLOCK)
     assert run_dda("run", deck, "--out", tmp_path / "out").returncode == 0
     again = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
-    assert "x.nml: resumed, 1 of 1 cases are there already" in again.stdout
+    assert "x.nml: resumed, 1 of 1 cases are already computed" in again.stdout
     (tmp_path / "x.blocks").write_text(BASE + BLOCK.replace("2\n", "3\n"))
     changed = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
     assert "x.nml: nothing to resume" in changed.stdout

@@ -161,7 +161,7 @@ def test_stages_under_coulomb_friction_are_refused_beside_a_strength(tmp_path: P
     (tmp_path / "x.nml").write_text(deck)
     done = run_dda("check", "x.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert "need flow = 'associated' where some come or go" in done.stderr
+    assert "need flow = 'associated' in stages" in done.stderr
     (tmp_path / "x.nml").write_text(deck + ASSOCIATED)
     assert run_dda("check", "x.nml", cwd=tmp_path).returncode == 0
 

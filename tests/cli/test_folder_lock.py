@@ -140,9 +140,8 @@ def test_file_system_without_locks_is_reported(tmp_path: Path) -> None:
             [os.environ["DDA"], "run", "short.nml", "--out", "out", *quiet], cwd=tmp_path,
             env={**os.environ, "LD_PRELOAD": str(library)}, capture_output=True, text=True, check=False)
         assert done.returncode == 0
-        told = "" if quiet else (
-            "out/run.lock:1: warning: this file system knows no locks: nothing keeps another run "
-            "from writing to out\n"
+        warning = "" if quiet else (
+            "out/run.lock:1: warning: this file system has no locks; let no other run write to out\n"
         )
-        assert done.stderr == told
+        assert done.stderr == warning
     assert not list((tmp_path / "out").glob("run.lock.*"))

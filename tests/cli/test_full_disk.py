@@ -87,7 +87,7 @@ def test_full_standard_output_spoils_no_table(tmp_path: Path) -> None:
         assert dda(tmp_path, "run", "arch.nml", stdout=full).returncode == 4
     rows = (tmp_path / "arch" / "results.csv").read_text().splitlines()
     assert [row.split(",")[1] for row in rows] == ["case", "1", "2"]
-    assert "2 of 2 cases are there already" in dda(tmp_path, "run", "arch.nml", "--resume").stdout
+    assert "2 of 2 cases are already computed" in dda(tmp_path, "run", "arch.nml", "--resume").stdout
 
 
 @pytest.mark.skipif(not FULL.exists(), reason="no /dev/full here")

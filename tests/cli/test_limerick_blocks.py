@@ -197,12 +197,12 @@ def test_two_joints_between_two_blocks_share_the_weight(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "line, text, words",
     [
-        (11, "fix 0.5 1 x\n", "holds points along x and y"),
-        (11, "fix_line 0 1 1 1 y\n", "holds points along x and y"),
-        (11, "displacement 0.5 1 0.1 0\n", "holds points where they are"),
-        (12, "measure 1 2\ndisplacement 0.5 1\n 0 0 0\n 1 0.1 0\n", "holds points where they are"),
-        (11, "base_acceleration 0.1 0\n", "no motion of the ground"),
-        (12, "measure 1 2\nbase_velocity\n 0 0 0\n 1 1 0\n 2 0 0\n", "no motion of the ground"),
+        (11, "fix 0.5 1 x\n", "restrains points along x and y"),
+        (11, "fix_line 0 1 1 1 y\n", "restrains points along x and y"),
+        (11, "displacement 0.5 1 0.1 0\n", "has no prescribed displacements"),
+        (12, "measure 1 2\ndisplacement 0.5 1\n 0 0 0\n 1 0.1 0\n", "has no prescribed displacements"),
+        (11, "base_acceleration 0.1 0\n", "no ground motion"),
+        (12, "measure 1 2\nbase_velocity\n 0 0 0\n 1 1 0\n 2 0 0\n", "no ground motion"),
         (11, polygon((2, 0), (3, 0), (3, 1), head="block velocity 1 0 0"), "step at rest"),
     ],
     ids=["roller", "line", "led", "led in time", "ground", "ground by velocity", "velocity"],

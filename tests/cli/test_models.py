@@ -381,7 +381,7 @@ def test_everything_searched_is_right_or_refused(tmp_path: Path, kind: str, mode
     analysis = f"&analysis mode = '{mode}'{time if mode == 'dynamic' else ''} /\n"
     for key in real_keys():
         if kind == "arch" and (key.removeprefix("arch%") in SHAPE_KEYS or key == STRENGTH):
-            continue  # with them an arch is a shape, which tests/cli/test_arch_shapes.py searches
+            continue  # setting one makes the arch a shape, which tests/cli/test_arch_shapes.py searches
         name = re.sub(r"[^a-z]", "_", key)
         answer = known.get(key, Answer(scene(kind), 1, 2, "refused"))
         assert (key in known) == allowed(key, kind, mode), f"{key} of {kind} in mode {mode}"
@@ -474,6 +474,6 @@ def test_an_analysis_file_that_is_dynamic_is_not_searched(tmp_path: Path) -> Non
         "&analysis mode = 'limerick' /\n&search parameter = 'friction_deg' /\n")
     done = run_dda("run", "a.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("a.nml:3: error: search%parameter: ") and "neither stable" in done.stderr
+    assert done.stderr.startswith("a.nml:3: error: search%parameter: ") and "it ends 'completed'" in done.stderr
     done = run_dda("run", "a.nml", "--set", "limerick%dynamic=.false.", "--set", "analysis%steps=3000", cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -194,7 +194,7 @@ def test_resume_notices_that_the_restart_file_has_changed(tmp_path: Path) -> Non
     assert run(tmp_path, "first", "steps = 5").returncode == 0
     assert go_on(tmp_path).returncode == 0
     words = ["run", "rest.nml", "--resume"]
-    assert "1 of 1 cases are there already" in run_dda(*words, cwd=tmp_path).stdout
+    assert "1 of 1 cases are already computed" in run_dda(*words, cwd=tmp_path).stdout
     before = rows(tmp_path / "rest", "points.csv")
     change(tmp_path, lambda whole, number: number.__setitem__(34, 2.0 * number[34]))
     assert "nothing to resume" in run_dda(*words, cwd=tmp_path).stdout

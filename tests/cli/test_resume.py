@@ -72,7 +72,7 @@ def test_finished_run_is_left_as_it_is(tmp_path: Path) -> None:
     before = {file.name: file.read_bytes() for file in out.iterdir()}
     done = run(tmp_path, "--resume")
     assert done.returncode == 0
-    assert "12 of 12 cases are there already" in done.stdout
+    assert "12 of 12 cases are already computed" in done.stdout
     assert {file.name: file.read_bytes() for file in out.iterdir()} == before
 
 
@@ -102,7 +102,7 @@ def test_row_cut_anywhere_is_computed_again(tmp_path: Path, seed: int) -> None:
     rows = max(0, (out / "results.csv").read_text().count("\n") - 1)
     done = run(tmp_path, "--resume", "--jobs", "2")
     assert done.returncode == 0
-    assert f"{rows} of 12 cases are there already" in done.stdout
+    assert f"{rows} of 12 cases are already computed" in done.stdout
     assert tables(out) == whole
     again = seconds(out)
     assert sum(again[case] == times[case] for case in times) >= rows
@@ -127,7 +127,7 @@ def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
     lines = (out / "joints.csv").read_text().splitlines(keepends=True)
     (out / "joints.csv").write_text("".join(line for line in lines if not line.startswith("5,")))
     done = run(tmp_path, "--resume")
-    assert "11 of 12 cases are there already" in done.stdout
+    assert "11 of 12 cases are already computed" in done.stdout
     assert tables(out) == whole
 
 
@@ -217,7 +217,7 @@ def test_results_of_another_build_are_computed_again(tmp_path: Path) -> None:
     record = (out / "deck.record").read_text()
     (out / "deck.record").write_text(re.sub("build [0-9a-f]{12} on", "build 0123456789ab on", record))
     done = run(tmp_path, "--resume")
-    assert "by this build of dda; all cases are computed" in done.stdout
+    assert "the program have changed; all cases are computed" in done.stdout
     assert (out / "deck.record").read_text() == record
 
 
@@ -270,7 +270,7 @@ def test_killed_twice_ends_as_an_unbroken_run(tmp_path: Path, signals: int) -> N
     done = run(tmp_path, "--resume")
     assert done.returncode == 0
     assert 50 < rows < 720
-    assert f"{rows} of 720 cases are there already" in done.stdout
+    assert f"{rows} of 720 cases are already computed" in done.stdout
     resumed = tables(out)
     assert run_dda("run", "deck.nml", "--out", "unbroken", "--quiet", cwd=tmp_path).returncode == 0
     assert tables(tmp_path / "unbroken") == resumed
@@ -294,7 +294,7 @@ def test_after_a_loss_of_power_only_rows_on_the_disk_count(tmp_path: Path, rows:
     lose_power(out, rows, joints)
     done = run(tmp_path, "--resume")
     assert done.returncode == 0
-    assert f"{rows} of 12 cases are there already" in done.stdout
+    assert f"{rows} of 12 cases are already computed" in done.stdout
     assert tables(out) == whole
     again = seconds(out)
     assert sum(again[case] == times[case] for case in times) >= rows
@@ -307,7 +307,7 @@ def test_record_that_cannot_be_read_vouches_for_nothing(tmp_path: Path, text: st
     run(tmp_path)
     whole = tables(out)
     (out / "disk.record").write_text(text)
-    assert "0 of 12 cases are there already" in run(tmp_path, "--resume").stdout
+    assert "0 of 12 cases are already computed" in run(tmp_path, "--resume").stdout
     assert tables(out) == whole
 
 

@@ -93,13 +93,13 @@ def test_any_tables_are_resumed_byte_for_byte(tmp_path: Path, blocks: str, wante
     out = write(tmp_path, blocks, wanted)
     run(tmp_path)
     whole = {path.name: path.read_bytes() for path in out.iterdir()}
-    assert f"{CASES} of {CASES} cases are there already" in run(tmp_path, "--resume")
+    assert f"{CASES} of {CASES} cases are already computed" in run(tmp_path, "--resume")
     assert {path.name: path.read_bytes() for path in out.iterdir()} == whole
     told = tables(out)
     dice = random.Random(" ".join(wanted) + blocks)
     case = dice.randint(1, CASES)
     kill(out, case, dice.randrange(len(ORDER)), 0.99 * dice.random())
-    assert f"{case - 1} of {CASES} cases are there already" in run(tmp_path, "--resume")
+    assert f"{case - 1} of {CASES} cases are already computed" in run(tmp_path, "--resume")
     assert tables(out) == told
 
 
@@ -123,11 +123,11 @@ def test_a_case_that_has_lost_rows_of_any_table_is_computed_again(tmp_path: Path
     parts = parts_of(out / name)
     parts[2] = "".join(parts[2].splitlines(keepends=True)[:-1])
     (out / name).write_text("".join(parts))
-    assert f"{CASES - 1} of {CASES} cases are there already" in run(tmp_path, "--resume")
+    assert f"{CASES - 1} of {CASES} cases are already computed" in run(tmp_path, "--resume")
     assert {name: sorted(text.splitlines()) for name, text in tables(out).items()} == told
     without_rows = parts_of(out / name).count("")
     (out / name).unlink()
-    assert f"{without_rows} of {CASES} cases are there already" in run(tmp_path, "--resume")
+    assert f"{without_rows} of {CASES} cases are already computed" in run(tmp_path, "--resume")
     assert {name: sorted(text.splitlines()) for name, text in tables(out).items()} == told
 
 
@@ -145,7 +145,7 @@ def test_cases_without_joints_are_kept_after_a_kill(tmp_path: Path) -> None:
         process.send_signal(signal.SIGKILL)
     rows = table.read_text().count("\n") - 1
     assert 50 < rows < 900
-    assert f"{rows} of 900 cases are there already" in run(tmp_path, "--resume")
+    assert f"{rows} of 900 cases are already computed" in run(tmp_path, "--resume")
     resumed = tables(out)
     run(tmp_path, "--out", "unbroken", "--quiet")
     assert tables(tmp_path / "unbroken") == resumed

@@ -184,11 +184,12 @@ def test_pictures_show_only_what_is_there(tmp_path: Path) -> None:
         ("remove polygon at 1\n5 5\n6 5", "", "expected three corners x y or more below 'polygon', got 2"),
         ("remove block 2 at 1\nremove block 2 at 2", "", "block 2 is already not there at 2 s"),
         ("remove block 2 at 1\nadd block 2 at 1", "", "expected one change of block 2 at a time"),
-        ("remove block 2 at 1\nbar 0.5 0.5 0.5 1.5 stiffness 1e6", "", "expected bars between blocks that stay"),
+        ("remove block 2 at 1\nbar 0.5 0.5 0.5 1.5 stiffness 1e6", "", "expected bars on blocks without stages"),
         ("remove block 2 at 1\nwater -5 0 5 0", "", "expected a file with either stages or water"),
-        ("remove block 2 at 1", "&search parameter = 'friction_deg', low = 10, high = 60 /", "a search needs blocks"),
+        ("remove block 2 at 1", "&search parameter = 'friction_deg', low = 10, high = 60 /",
+         "a search needs a model without stages"),
         ("remove block 2 at 1", "&analysis geometry = 'current' /", "stages need mode = 'static' with geometry"),
-        ("remove block 2 at 1", "&analysis mode = 'limerick' /", "mode = 'limerick' knows no blocks that come or go"),
+        ("remove block 2 at 1", "&analysis mode = 'limerick' /", "mode = 'limerick' has no stages"),
     ],
 )
 def test_bad_stages_are_refused(tmp_path: Path, change: str, keys: str, message: str) -> None:

@@ -70,7 +70,7 @@ def test_what_does_not_stand_is_reported(tmp_path: Path) -> None:
     row = run_blocks(tmp_path, on_slope(40.0), "&joint friction_deg = 30 /\n" + TIME.format("current", "static"))
     assert row["verdict"] == "undecided"
     log = (tmp_path / "out" / "log.txt").read_text()
-    assert "start = 'static' found no rest: the blocks collapse under their loads at time 0" in log
+    assert "start = 'static' found no equilibrium: the blocks collapse under their loads at time 0" in log
 
 
 def test_a_search_in_time_begins_in_balance(tmp_path: Path) -> None:

@@ -204,7 +204,7 @@ def test_a_run_without_joints_is_resumed(tmp_path: Path) -> None:
     folder = run(tmp_path, text)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     again = run_dda("run", "deck.nml", "--resume", cwd=tmp_path)
-    assert "101 of 101 cases are there already" in again.stdout
+    assert "101 of 101 cases are already computed" in again.stdout
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     # with the joints of one case asked for, it is another question
     asked = run_dda("run", "deck.nml", "--set", "output%joints=.true.", "--cases", "3", cwd=tmp_path)
