@@ -66,7 +66,8 @@ module dda_step
    !> Why contacts find no forces where points are led
    character(len=*), parameter :: jam = "contacts lock against a prescribed displacement"
 
-   !> Residual over the fastest speed above which it is reported
+   !> Residual over the fastest speed, or over the speed that loads add per step, above which it is
+   !> reported
    real(wp), parameter :: rough = 1.0e-4_wp
    !> Smallest reported reduction of restitution
    real(wp), parameter :: small_reduction = 1.0e-3_wp
@@ -143,11 +144,11 @@ contains
          march%stuck = merge(march%stuck + 1, 0, run%step%dt &
             & < merge(led, hardly, leads(run))*usual)
          if (march%stuck < most_stuck) return
-         cause = "the contacts allow no longer steps"
+         cause = "contacts limit the step length"
          if (leads(run)) cause = jam
          write (numbers, "(2es12.5)") run%step%dt, march%time
-         call fatal_error(error, "steps of "//trim(adjustl(numbers(:12)))//" s do not lead on at " &
-            & //trim(adjustl(numbers(13:)))//" s: "//cause)
+         call fatal_error(error, "steps of "//trim(adjustl(numbers(:12)))//" s reach no " &
+            & //"solution at "//trim(adjustl(numbers(13:)))//" s: "//cause)
       end associate
    end subroutine check_progress
 
@@ -173,7 +174,7 @@ contains
          end if
          march%energy%residual = residual
          march%residual = max(march%residual, residual)
-         fastest = max(largest_motion(run%system, step%velocity), &
+         fastest = max(largest_motion(run%system, step%velocity), march%free_acceleration*step%dt, &
             & largest_motion(run%system, step%state%motion)/step%dt)
          if (residual <= max(rough*fastest, march%rough%value)) return
          march%rough = contact_note_t(residual, march%time + step%dt)
