@@ -22,6 +22,7 @@ from voussoir.bench.validation_assemblies import roof_wedge, snap_load  # noqa: 
 from voussoir.bench.validation_impact import next_amplitude, quarter_period  # noqa: E402
 from voussoir.bench.validation_motion import stick_slip  # noqa: E402
 from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E402
+from voussoir.bench.validation_plot import diagonal, has_diagonal, has_history, history  # noqa: E402
 from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
 from voussoir.bench.validation_sketch import Shape, sketch  # noqa: E402
 from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
@@ -185,9 +186,9 @@ def square(x: float, y: float, u: float = 0.0, *, is_fixed: bool = False) -> Sha
     return Shape(corners, np.array([(0.0, 0.0), (0.0, 0.0), (u, 0.0), (u, 0.0)]), is_fixed)
 
 
-@pytest.mark.parametrize(("u", "moved"), [(0.0, 0), (1e-13, 0), (1e-9, 1), (1e-3, 1), (0.5, 0)])
-def test_sketch_enlarges_small_displacements_to_the_same_size(u: float, moved: int) -> None:
-    """Round-off and large displacements are not drawn."""
+@pytest.mark.parametrize(("u", "moved"), [(0.0, 0), (1e-13, 0), (1e-9, 1), (1e-3, 1), (0.5, 0), (1.0, 1)])
+def test_sketch_draws_small_displacements_and_mechanisms_in_one_size(u: float, moved: int) -> None:
+    """Round-off and large displacements are not drawn; a mechanism has a largest displacement of 1."""
     drawn = sketch([square(0.0, -1.0, is_fixed=True), square(0.0, 0.0, u)])
     polygons = re.findall(r'<polygon points="([^"]*)" ([^/]*)/>', drawn)
     assert len(polygons) == 2 + moved
@@ -205,9 +206,37 @@ def test_sketch_shows_a_support_that_is_far_below() -> None:
     assert min(float(point.split(",")[1]) for point in support.split()) < height
 
 
+def points_of(drawn: str, curve: int) -> np.ndarray:
+    """Points of a curve of a plot, without its axes: (n, 2) [px]."""
+    found = re.findall(r'<polyline points="([^"]*)"', drawn)[1 + curve]
+    return np.array([[float(number) for number in point.split(",")] for point in found.split()])
+
+
+def test_history_of_free_fall_is_a_parabola() -> None:
+    time = np.linspace(0.0, 1.0, 11)
+    drawn = history(np.array([time, 0.0 * time, -4.905 * time**2]))
+    u, v = points_of(drawn, 0), points_of(drawn, 1)
+    assert np.ptp(u[:, 1]) == 0.0
+    fallen = (v[:, 1] - v[0, 1]) / (v[-1, 1] - v[0, 1])
+    assert fallen == pytest.approx(((v[:, 0] - v[0, 0]) / (v[-1, 0] - v[0, 0])) ** 2, abs=2e-3)
+    assert ">-4.91<" in drawn and ">1<" in drawn
+    assert not has_history(np.array([time, 0.0 * time, 1e-15 * time]))
+
+
+def test_computed_values_are_on_the_diagonal_where_they_are_exact() -> None:
+    exact = [1.0, 2.0, 4.0]
+    drawn = diagonal(exact, [1.0, 2.5, 4.0], "[m]")
+    line = points_of(drawn, 0)
+    places = np.array([[float(x), float(y)] for x, y in re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)"', drawn)])
+    off = np.cross(line[1] - line[0], places - line[0]) / np.hypot(*(line[1] - line[0]))
+    assert abs(off[[0, 2]]).max() < 0.1 and abs(off[1]) > 10.0
+    assert has_diagonal(exact) and not has_diagonal([1.0, 1.0, 2.0]) and not has_diagonal([1.0, 10.0, 1000.0])
+
+
 def test_every_entry_of_the_documents_has_its_sketch() -> None:
     page = (REPOSITORY / "docs" / "validation.md").read_text()
     named = re.findall(r"^!\[.+\]\((.*)\)$", page, re.M)
-    assert len(named) == page.count("\n### ")
+    plots = [name for name in named if name.endswith("_result.svg")]
+    assert len(named) - len(plots) == page.count("\n### ") and len(plots) > 30
     assert {path.name for path in (REPOSITORY / "docs" / validation_page.SKETCHES).glob("*.svg")} == {
         Path(name).name for name in named}

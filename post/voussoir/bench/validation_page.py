@@ -9,6 +9,7 @@ from pathlib import Path
 
 from voussoir.bench.report_tables import grouped, markdown, write_csv
 from voussoir.bench.scene import MOVED, Scene
+from voussoir.bench.validation_plot import diagonal, has_diagonal, has_history, history
 from voussoir.bench.validation_run import Line
 from voussoir.bench.validation_sketch import sketch
 
@@ -27,7 +28,9 @@ Problems with exact answers, one entry per problem: model, input, exact value an
 - **Accepted**: the largest accepted error. A larger one is marked **MISSED**.
 - **Rate**: order of convergence in the time step, from three runs with halved steps. A dash means a single run or
   errors below 1e-9.
-- **Sketch**: fixed blocks dark, movable blocks light, small displacements enlarged and dashed.
+- **Sketch**: fixed blocks dark, movable blocks light, small displacements and mechanisms enlarged and dashed.
+- **Plot**: displacement of the monitoring point against time, u solid and v dashed; or computed against exact
+  values, where the dashed line is the exact answer. Single critical values have their mechanism in the sketch.
 - **Current**: the same deck with `--set analysis%geometry=current`, that is, large displacements and deformable
   blocks. Its error includes the elastic shift.
 """
@@ -94,11 +97,30 @@ def page(lines: Sequence[Line], titles: Mapping[str, str], version: str) -> str:
 
 
 def sketches(lines: Sequence[Line]) -> dict[str, str]:
-    """Sketches of the entries as SVG, by the names of their files."""
-    first: dict[tuple[str, str, str], Line] = {}
+    """Sketches and plots of the entries as SVG, by the names of their files."""
+    problems: dict[tuple[str, str, str], list[Line]] = {}
     for line in lines:
-        first.setdefault((line.scene.group, *_problem(line.scene)), line)
-    return {f"{line.scene.deck}.svg": sketch(line.shapes) for line in first.values() if line.shapes}
+        problems.setdefault((line.scene.group, *_problem(line.scene)), []).append(line)
+    drawn = {}
+    for own in problems.values():
+        if own[0].shapes:
+            drawn[f"{own[0].scene.deck}.svg"] = sketch(own[0].shapes)
+        if plot := _plot(own):
+            drawn[f"{own[0].scene.deck}_result.svg"] = plot
+    return drawn
+
+
+def _plot(lines: Sequence[Line]) -> str:
+    """Plot of the results of a problem as SVG: over time, else against exact values of one unit, else empty."""
+    if has_history(lines[0].track):
+        return history(lines[0].track)
+    known = [line for line in lines if not isinstance(line.check.exact, str) and not isinstance(line.computed, str)]
+    units = [re.search(r"\[.*\]$", line.check.what) for line in known]
+    unit = units[0][0] if units and units[0] else ""
+    pairs = [(line.check.exact, line.computed) for line, own in zip(known, units) if unit == (own[0] if own else "")]
+    if pairs and has_diagonal([exact for exact, _ in pairs]):
+        return diagonal(*zip(*pairs), unit)
+    return ""
 
 
 def screen_line(line: Line) -> str:
@@ -140,6 +162,8 @@ def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
         about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items()), "", exact]
     if lines[0].shapes:
         about += ["", f"![{lines[0].scene.deck}]({SKETCHES}/{lines[0].scene.deck}.svg)"]
+        if _plot(lines):
+            about.append(f"![result of {lines[0].scene.deck}]({SKETCHES}/{lines[0].scene.deck}_result.svg)")
     return ["", *about, "", *markdown(list(columns), "l" * len(columns), cells)]
 
 

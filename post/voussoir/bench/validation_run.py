@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import re
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
 
 from voussoir.bench import (
     validation_arches, validation_assemblies, validation_impact, validation_motion, validation_rest, validation_strain,
@@ -14,6 +16,7 @@ from voussoir.bench import (
 from voussoir.bench.checks import Check, Outcome
 from voussoir.bench.deck_runs import run_deck
 from voussoir.bench.scene import Scene
+from voussoir.bench.validation_plot import track_of
 from voussoir.bench.validation_sketch import Shape, shapes_of
 from voussoir.dda_program import DdaError
 from voussoir.files import read_text
@@ -33,6 +36,8 @@ class Line:
     errors: tuple[float, ...]  #: Errors with the deck's own step, half of it, and so on
     seconds: float  #: Wall time of the scene's run with the deck's own step
     shapes: tuple[Shape, ...] = ()  #: Blocks of the first case that is compared
+    #: Time and displacements of its monitoring point: (3, steps) [s, m]
+    track: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False, repr=False)
 
     @property
     def accepted(self) -> bool:
@@ -62,7 +67,7 @@ def all_scenes() -> tuple[Scene, ...]:
 def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
     """Run a scene, where it has a rate again in steps halved so often; DdaError has the program's own message."""
     deck, checks = decks / f"{scene.deck}.nml", scene.expectation.checks
-    columns, seconds, shapes = [], [], ()
+    columns, seconds, shapes, track = [], [], (), np.empty((3, 0))
     for k in range(1 + (halvings if scene.rate else 0)):
         with tempfile.TemporaryDirectory() as folder:
             finished = run_deck(deck, Path(folder), settings=[*scene.settings, *_step(deck, k)])
@@ -71,9 +76,11 @@ def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
             outcomes = {case: Outcome(finished.folder, case) for case in {check.case for check in checks}}
             columns.append([check.measure(outcomes[check.case]) for check in checks])
             seconds.append(finished.seconds)
-            shapes = shapes or shapes_of(finished.folder / "blocks.csv", checks[0].case)
+            if k == 0:
+                shapes = shapes_of(finished.folder / "blocks.csv", checks[0].case)
+                track = track_of(finished.folder / "points.csv", checks[0].case)
     return [
-        Line(scene, check, values[0], tuple(map(check.error, values)), seconds[0], shapes)
+        Line(scene, check, values[0], tuple(map(check.error, values)), seconds[0], shapes, track)
         for check, values in zip(checks, zip(*columns))
     ]
 

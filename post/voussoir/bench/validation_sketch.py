@@ -49,13 +49,13 @@ def shapes_of(file: Path, case: int) -> tuple[Shape, ...]:
 def sketch(shapes: Sequence[Shape]) -> str:
     """Return the sketch as SVG.
 
-    Displacements below a tenth of the extent of the movable blocks are drawn dashed, enlarged to the same size.
-    Larger ones are not drawn.
+    Displacements below a tenth of the extent of the movable blocks, and mechanisms, are drawn dashed in one size.
+    Larger displacements are not drawn.
     """
     free = [shape for shape in shapes if not shape.is_fixed] or list(shapes)
     low, high = (edge([edge(shape.corners, axis=0) for shape in free], axis=0) for edge in (np.min, np.max))
     extent = float(np.max(high - low))
-    moved = max(float(np.abs(shape.displacements).max()) for shape in free)
+    moved = max(float(np.hypot(*shape.displacements.T).max()) for shape in free)
     low, high = _with_supports(low - _MARGIN * extent, high + _MARGIN * extent, shapes)
     scale = float(min(_WIDTH / (high - low)[0], _HEIGHT / (high - low)[1]))
     size = (high - low) * scale
@@ -67,7 +67,8 @@ def sketch(shapes: Sequence[Shape]) -> str:
     for shape in sorted(shapes, key=lambda shape: not shape.is_fixed):
         corners = (shape.corners - (low[0], high[1])) * flip * scale
         parts.append(_polygon(corners, _FIXED if shape.is_fixed else _FREE))
-    if _ROUND_OFF * extent < moved < _SMALL * extent:
+    is_mechanism = abs(moved - 1.0) < _ROUND_OFF  # blocks.csv scales them to a largest value of 1
+    if is_mechanism or _ROUND_OFF * extent < moved < _SMALL * extent:
         for shape in free:
             drawn = shape.corners + shape.displacements * (_DRAWN * extent / moved)
             parts.append(_polygon((drawn - (low[0], high[1])) * flip * scale, _MOVED))
