@@ -103,6 +103,8 @@ pre code { white-space: pre-wrap !important; } }
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th
 { padding: 2px 4px !important; font-size: inherit; }
 .rst-content .wy-table-responsive td code { white-space: normal !important; overflow-wrap: anywhere; font-size: 90%; }
+.rst-content .wy-table-responsive td:first-child code { white-space: nowrap !important; overflow-wrap: normal; }
+.rst-content p:has(+ p > img) { break-after: avoid; }
 .rst-content tr, .rst-content img { break-inside: avoid; } }
 """
 
