@@ -104,6 +104,7 @@ pre code { white-space: pre-wrap !important; } }
 { padding: 2px 4px !important; font-size: inherit; }
 .rst-content .wy-table-responsive td code { white-space: normal !important; overflow-wrap: anywhere; font-size: 90%; }
 .rst-content .wy-table-responsive td:first-child code { white-space: nowrap !important; overflow-wrap: normal; }
+.rst-content p:has(img + img) { grid-template-columns: 1fr 1fr; }
 .rst-content p:has(+ p > img) { break-after: avoid; }
 .rst-content tr, .rst-content img { break-inside: avoid; } }
 """
@@ -218,7 +219,8 @@ def with_formulas(text: str) -> str:
 
 def keys_page(help_text: str) -> str:
     """Every key of a deck, from what `dda help keys` prints."""
-    lines = ["# Every key", "", "As `dda help keys` prints them; [the input deck](input.md) says more.", ""]
+    about = "The list of `dda help keys`. [The input deck](input.md) has the rules between keys."
+    lines = ["# Every key", "", about, ""]
     for line in help_text.splitlines():
         if line.startswith("&"):
             name, _, meaning = line.partition("   ")

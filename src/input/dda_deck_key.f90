@@ -7,7 +7,7 @@ module dda_deck_key
 
    public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
    public :: wanted, full_name, near_group, near_key, near_word, has_word, listed_words
-   public :: near_one, or_leave_out
+   public :: near_one, or_leave_out, is_required
 
    !> Maximum length of a key name [characters]
    integer, parameter :: name_length = 32
@@ -234,10 +234,18 @@ contains
       advice = "; correct it"
       if (len_trim(key%default) > 0) then
          advice = advice//", or leave it out for "//trim(key%default)
-      else if (len_trim(key%without) > 0 .and. key%group /= "sweep") then
+      else if (len_trim(key%without) > 0 .and. key%group /= "sweep" &
+         & .and. .not. is_required(key)) then
          advice = advice//", or leave it out: "//trim(key%without)
       end if
    end function or_leave_out
+
+   !> Whether a deck that has the group needs the key, at least in some cases
+   pure logical function is_required(key)
+      type(key_t), intent(in) :: key
+
+      is_required = index(key%without, "required") == 1
+   end function is_required
 
    !> The word of a list that is nearest to a word, which may be the beginning of one
    pure function nearest_word(word, list) result(found)

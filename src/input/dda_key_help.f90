@@ -1,6 +1,6 @@
 !> The registry of groups and keys as help text and as JSON
 module dda_key_help
-   use dda_deck_key, only : full_name, group_t, key_kind, key_t, wanted
+   use dda_deck_key, only : full_name, group_t, is_required, key_kind, key_t, wanted
    use dda_kinds, only : wp
    use dda_text, only : lower_case, to_text
    implicit none
@@ -75,7 +75,11 @@ contains
 
       text = "   "//trim(key%name)
       if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
-      if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
+      if (is_required(key)) then
+         text = text//"   ("//trim(key%without)//")"
+      else if (len_trim(key%without) > 0) then
+         text = text//"   (without it: "//trim(key%without)//")"
+      end if
       text = text//lf//indent//trim(key%meaning)//lf//indent//wanted(key)//lf
    end function key_help
 

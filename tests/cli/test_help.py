@@ -215,8 +215,16 @@ def test_option_works(tmp_path: Path, verb: str, option: str) -> None:
 def test_every_key_shows_its_default_or_what_holds_without_it() -> None:
     keys = re.findall(r"^   (\w+)(.*)\n      (.+)", help_on("help", "keys"), flags=re.MULTILINE)
     assert len(keys) > 40
-    bare = [name for name, rest, _ in keys if " = " not in rest and "without it" not in rest]
+    bare = [name for name, rest, _ in keys if not re.search(r" = |without it|\(required", rest)]
     assert set(bare) <= {"geometry", "analysis", "parameter"}
+
+
+def test_required_keys_are_not_left_out(tmp_path: Path) -> None:
+    """Help names them as required, and no message advises to leave one out."""
+    assert "   height   (required)\n" in help_on("help", "fill%height")
+    (tmp_path / "a.nml").write_text("&arch /\n&fill height = x, unit_weight = 1 /\n")
+    message = run_dda("check", "a.nml", cwd=tmp_path).stderr
+    assert "fill%height must be a number" in message and message.endswith("; correct it\n")
 
 
 def test_commands_of_voussoir_are_named() -> None:
