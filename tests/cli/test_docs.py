@@ -59,7 +59,9 @@ ELSEWHERE = {
 }
 #: Packages of blocks with a label of their own: where one is missing the block is left to test_import.py
 PACKAGES = {"sh geometry": "shapely", "python geometry": "shapely"}
-LABELS = {"", "text", "sh", *PACKAGES, "sh install", "console", "f90", "fortran", "python", "message"}
+LABELS = {"", "text", "sh", *PACKAGES, "sh install", "console", "f90", "fortran", "python", "message", "blocks"}
+#: Records that files of blocks on pages name
+RECORDS = {"quake.csv": "0 0\n1 0.1\n", "pier 2.txt": "time ux uy\n0 0 0\n1 5 0\n"}
 
 
 @dataclass
@@ -152,6 +154,21 @@ def check_messages(block: Block, folder: Path) -> None:
     assert (done.returncode, done.stderr) == (2, message + "\n")
 
 
+def check_file_of_blocks(block: Block, folder: Path) -> None:
+    """A file of blocks, or lines that follow the first file of its page; static where it has no ground motion."""
+    page = folder / "page.blocks"
+    if not page.exists():
+        page.write_text(block.text)
+    whole = block.text if "block fixed" in block.text else page.read_text() + block.text
+    (folder / "line.blocks").write_text(whole)
+    for name, text in RECORDS.items():
+        (folder / name).write_text(text)
+    mode = "mode = 'dynamic', geometry = 'current', duration = 1" if "base_" in whole else "mode = 'static'"
+    (folder / "line.nml").write_text(f"&scene kind = 'blocks', geometry = 'line.blocks' /\n&analysis {mode} /\n")
+    done = run_dda("check", "line.nml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+
+
 def run_block(block: Block, folder: Path, shell: dict[str, str]) -> str:
     """Run a block as its label wants it: what it prints."""
     if block.label == "fortran":
@@ -168,6 +185,8 @@ def run_block(block: Block, folder: Path, shell: dict[str, str]) -> str:
         return run_script("python3 block.py", folder, shell)
     elif block.label == "message":
         check_messages(block, folder)
+    elif block.label == "blocks":
+        check_file_of_blocks(block, folder)
     elif block.text.startswith("$ "):
         return run_console(block, folder, shell)
     elif block.label == "sh":
