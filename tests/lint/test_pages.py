@@ -71,6 +71,17 @@ def test_help_and_messages_have_no_phrase_that_pages_avoid() -> None:
     assert len(texts) > 1000 and found == []
 
 
+def test_texts_of_the_package_have_no_phrase_that_pages_avoid() -> None:
+    files = sorted((REPOSITORY / "post").rglob("*.py"))
+    known = [(file.name, line, text) for file in files for line, text in word_rules.texts(file.read_text("utf-8"))]
+    words = [word for word in (*word_rules.WORDS, *page_rules.PHRASES) if not word.messages_only]
+    found = [(name, line, word.new) for name, line, text in known for word in words for _ in word.places(text)]
+    assert len(known) > 3000
+    assert found == []
+    made = 'def f():\n    """Told."""\n    raise ValueError(f"wanted {x} anew")\n'
+    assert list(word_rules.texts(made)) == [(3, "wanted \N{HORIZONTAL ELLIPSIS} anew")]
+
+
 WORDS = " ".join(["word"] * 19)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -80,6 +81,21 @@ def messages(source: str) -> Iterator[tuple[int, str]]:
             yield begin, text
             text, begin = "", 0
         line += piece.count("\n")
+
+
+def texts(source: str) -> Iterator[tuple[int, str]]:
+    """Texts of a Python source with their lines, docstrings left out; values of f-strings are an ellipsis."""
+    tree = ast.parse(source)
+    owners = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    first = (node.body[0] for node in ast.walk(tree) if isinstance(node, owners) and node.body)
+    skipped = {id(line.value) for line in first if isinstance(line, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            skipped |= {id(part) for part in node.values}
+            yield node.lineno, "".join(
+                part.value if isinstance(part, ast.Constant) else "\N{HORIZONTAL ELLIPSIS}" for part in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in skipped:
+            yield node.lineno, node.value
 
 
 def offences_of_source(path: Path) -> list[str]:

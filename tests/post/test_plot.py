@@ -137,7 +137,7 @@ def test_joints_that_slide_in_the_collapse_are_marked(searches: results.Results)
     [
         ("post_and_lintel", (), ("fixed", "collapse mechanism", "hinge", "thrust line")),
         ("dry_wall_2x4", (), ("hinge", "open joint", "contact forces")),
-        ("slope", (), ("sliding joint: which way its sides move",)),
+        ("slope", (), ("sliding joint: directions of its sides",)),
         ("four_corners", (), ("touches at this corner only",)),
         ("momentum", (), ("at the beginning; true scale", "monitoring points, trajectories")),
         ("projectile", (), ("monitoring points, trajectories",)),

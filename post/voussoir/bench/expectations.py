@@ -24,7 +24,7 @@ class Judgement:
 class Expectation(Protocol):
     """What a scene must answer."""
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
 
     def judge(self, finished: Finished) -> Judgement:
@@ -38,7 +38,7 @@ class Critical:
     exact: float | None  #: Critical value by limit analysis; 0 where everything stands, None where nothing does
     bound: float = 0.0  #: By how much blocks that strain may differ from rigid ones
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
         if self.exact is None:
             return "collapsed"
@@ -50,7 +50,7 @@ class Critical:
         """Judge the only row."""
         (row,) = finished.rows
         if self.exact is None or self.exact == self.bound == 0.0:
-            return _verdict(row, self.wanted())
+            return _verdict(row, self.expected())
         if row["verdict"] != "found":
             return Judgement(WRONG, row["verdict"], "", "a critical value exists")
         low, high = float(row["critical_low"]), float(row["critical_high"])
@@ -69,7 +69,7 @@ class Verdict:
 
     word: str  #: "stable" or "collapsed"
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
         return self.word
 
@@ -87,7 +87,7 @@ class Same:
 
     tolerance: float  #: Largest relative difference
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
         return f"the same to {self.tolerance:.0e}"
 
@@ -108,7 +108,7 @@ class Refused:
 
     word: str  #: What the message names
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
         return "refused"
 
@@ -125,9 +125,9 @@ class Warned:
     word: str  #: What the warning names
     then: Expectation  #: What it must answer
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
-        return f"a warning, {self.then.wanted()}"
+        return f"a warning, {self.then.expected()}"
 
     def judge(self, finished: Finished) -> Judgement:
         """Judge what was printed, then the rest."""
@@ -143,7 +143,7 @@ class Measured:
 
     checks: tuple[Check, ...]  #: What is compared
 
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The answer in words."""
         return "; ".join(f"{check.what}: {_figure(check.exact)}" for check in self.checks)
 

@@ -155,7 +155,7 @@ def _slopes() -> Iterator[Scene]:
         text, load = BASE + (low if slope > 70.0 else block), {"gravity_direction_deg": -90.0 + slope}
         for distance in (-0.1, -1e-3, -1e-6, 1e-6, 1e-3, 0.1):
             yield from in_both(
-                "slope", f"{slope:g} deg, friction {distance:+g} deg", "rest is judged by what is left of balance",
+                "slope", f"{slope:g} deg, friction {distance:+g} deg", "rest is judged by the residual of equilibrium",
                 text, Verdict("stable" if distance > 0.0 else "collapsed"), joint={"friction_deg": slope + distance},
                 load=load)
         yield block_scene(

@@ -21,7 +21,7 @@ class Line:
     group: str
     scene: str
     result: str
-    wanted: str
+    expected: str
     found: str
     error: str
     passes: str
@@ -42,7 +42,7 @@ td.WRONG { background: #d1632a; color: #fff; font-weight: bold; }
 h1 { font-size: 1.4em; } h1.bad { color: #d1632a; } summary { cursor: pointer; padding: .2em 0; }
 @media print { details { display: none; } }"""
 #: Columns of the table of scenes; those of the ones that are not right have the reason, too
-_SHOWN = ("scene", "result", "wanted", "found", "error", "seconds")
+_SHOWN = ("scene", "result", "expected", "found", "error", "seconds")
 
 
 @dataclass(frozen=True)
@@ -101,13 +101,13 @@ def write_lines(lines: Sequence[Line], file: Path) -> None:
 def write_markdown(lines: Sequence[Line], file: Path) -> None:
     """Write a table by kind, and every scene that is not right, as Markdown."""
     odd = [
-        [f"{line.group}: {line.scene}", line.result, line.wanted, line.found, line.error, line.reason]
+        [f"{line.group}: {line.scene}", line.result, line.expected, line.found, line.error, line.reason]
         for line in lines if line.result != RIGHT
     ]
     text = [
         f"# Stiff and extreme scenes\n\n**{headline(lines)}**\n",
         *markdown(_HEADS, "l" + "r" * (len(_HEADS) - 1), [kind.cells() for kind in kinds(lines)]), "",
-        *markdown(("scene", "result", "wanted", "found", "error", "reason"), "llllll", odd),
+        *markdown(("scene", "result", "expected", "found", "error", "reason"), "llllll", odd),
     ]
     write_text(file, "\n".join(text) + "\n")
 
@@ -172,4 +172,4 @@ def _scene_table(lines: Sequence[Line], names: Sequence[str]) -> list[str]:
 
 def _class(name: str, value: str) -> str:
     """Class of a cell."""
-    return "number" if name not in ("wanted", "found") and _is_number(value) else name
+    return "number" if name not in ("expected", "found") and _is_number(value) else name

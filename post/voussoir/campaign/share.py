@@ -79,7 +79,7 @@ def open_campaign(
     if true and record != asked.record:
         raise DdaError(
             f"{deck}:1: error: expected the campaign that {out} was begun for, got another one (other "
-            f"{changed_keys(record, asked.record)}); choose another --out, or discard what is there with --discard")
+            f"{changed_keys(record, asked.record)}); choose another --out, or discard its contents with --discard")
     if known != text:
         if content_of(out / "deck.record") != asked.record.encode():
             for name in ("results.csv", "disk.record"):  # of whatever was there before
@@ -97,7 +97,7 @@ def check_origin(table: Path) -> None:
     if not begin.startswith(_ORIGIN) and not _ORIGIN.startswith(begin):
         raise DdaError(
             f"{table}:1: error: expected a table that begins with {_ORIGIN.decode()}, got a file that dda has not "
-            "written; choose another --out, or discard what is there with --discard", 4)
+            "written; choose another --out, or discard its contents with --discard", 4)
 
 
 def changed_keys(old: str, new: str) -> str:

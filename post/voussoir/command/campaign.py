@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
         return min((status, _finish(campaign, arguments, cases)), key=_WORST_FIRST.index)
     except OSError as error:
         raise DdaError(
-            f"{error.filename or out}:1: error: files cannot be written: {error.strerror}; what is finished stays safe "
+            f"{error.filename or out}:1: error: files cannot be written: {error.strerror}; finished cases are kept "
             "in the folder parts", 4) from error
     finally:
         unlock(out)

@@ -97,8 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if made.dropped and not arguments.allow_dropped:
         raise ValueError(
-            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped; mend it, or run what is "
-            "left with --allow-dropped")
+            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped; correct it, or run the "
+            "rest with --allow-dropped")
     return _run_deck(deck) if made.fixed else 2
 
 
@@ -134,7 +134,7 @@ def import_file(arguments: argparse.Namespace) -> _Imported:
     made.lines += _said_of(shapes, blocks)
     if not made.fixed:
         made.advice.append(
-            "nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD, or --hold N")
+            "no block is fixed: put supports on a layer named 'fixed', or give --fixed WORD or --hold N")
     return made
 
 
@@ -187,7 +187,7 @@ def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...], held: Sequenc
     `fixed` are the layers, in small letters, of what does not move, `held` numbers of further ones from 1.
     """
     if max(held, default=0) > len(shapes):
-        raise ValueError(f"expected numbers of blocks from 1 to {len(shapes)} to hold, got {max(held)}")
+        raise ValueError(f"expected numbers of blocks from 1 to {len(shapes)} for --hold, got {max(held)}")
     blocks = Blocks()
     still = [
         full_layer(shape).is_fixed or shape.layer.lower() in fixed or number in held

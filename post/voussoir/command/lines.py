@@ -11,7 +11,7 @@ from voussoir.files import read_text
 #: Layers of the picture from below: role, colour by its place in INK, width of the line
 _LINES = (("joint", 0, 0.5), ("boundary", 0, 1.4), ("material", 1, 1.0), ("bolt", 2, 1.6))
 #: Points: role, mark, name in the legend
-_POINTS = (("measure", "o", "followed"), ("fix", "^", "held"), ("load", "v", "loaded"), ("hole", "x", "taken out"))
+_POINTS = (("measure", "o", "monitoring"), ("fix", "^", "fixed"), ("load", "v", "loaded"), ("hole", "x", "removed"))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

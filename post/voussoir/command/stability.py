@@ -67,7 +67,7 @@ def run_scenes(scenes: Iterable[Scene], folder: Path, jobs: int, timeout: float)
         if line.result != "right":
             sys.stdout.write(
                 f"{line.result}: {number:04d} {line.group}: {line.scene}: "
-                f"wanted {line.wanted}, found {line.found}: {line.reason}\n")
+                f"expected {line.expected}, got {line.found}: {line.reason}\n")
             sys.stdout.flush()
         return line
 
@@ -85,7 +85,7 @@ def _line(scene: Scene, finished: Finished) -> Line:
 
     conditions = [float(row["condition"]) for row in rows if row.get("condition")]
     return Line(
-        scene.group, scene.name, judgement.colour, scene.expectation.wanted(), judgement.found, judgement.error,
+        scene.group, scene.name, judgement.colour, scene.expectation.expected(), judgement.found, judgement.error,
         total("open_close_iterations"), total("factorisations"), f"{max(conditions):.1e}" if conditions else "",
         f"{sum(float(row['seconds']) for row in rows):.4f}" if rows else "",
         "; ".join(filter(None, [scene.note, _seen_guard(rows)])), judgement.reason

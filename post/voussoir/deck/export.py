@@ -94,7 +94,7 @@ def write_mesh(outlines: list[Outline], file: Path) -> str:
         meshio.Mesh(np.column_stack((points, np.zeros(len(points)))), cells).write(fresh(file))
     except meshio.WriteError as problem:
         raise ValueError(f"expected a mesh that can hold these blocks, got: {problem}") from problem
-    return "layers and numbers of blocks, so what is fixed"
+    return "layers and numbers of blocks, and fixed blocks"
 
 
 #: How a file is written, by its ending; each gives in words what the file cannot hold

@@ -44,7 +44,7 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
         between = ends_of(found["critical_low"], found["critical_high"])
         return value / found["critical"], f"under dead load; the critical {name} lies between {between}"
     if found["verdict"] == "stable":
-        return math.inf, f"under dead load it stands at any smaller {name} down to a thousandth"
+        return math.inf, f"stable under dead load at any smaller {name} down to a thousandth"
     return math.nan, f"not found: the search for the critical {name} under dead load is {found['verdict']}"
 
 
@@ -61,7 +61,7 @@ def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
         except DdaError as error:
             return math.nan, f"not found: {str(error).rpartition('error: ')[2]}"
         if all(verdict == "stable" for verdict in verdicts):
-            return math.inf, "under dead load it stands at any smaller thickness in proportion down to a thousandth"
+            return math.inf, "stable under dead load at any proportionally smaller thickness down to a thousandth"
         last = max(k for k, verdict in enumerate(verdicts) if verdict != "stable")
         if last == SHARES - 1 or verdicts[last] == "undecided":
             return math.nan, "not found: a decision at smaller thicknesses in proportion is undecided"

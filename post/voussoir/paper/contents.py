@@ -58,8 +58,8 @@ ANIMATIONS = {
 
 THEORY_CAPTIONS = (
     "collapse mode of a half arch, CCR",
-    "line of thrust and forces on the upper part of a half arch",
-    "lines of thrust of the semicircle above, at and below the critical thickness, CCR",
+    "thrust line and forces on the upper part of a half arch",
+    "thrust lines of the semicircle above, at and below the critical thickness, CCR",
     "thickness for equilibrium against the hinge angle, semicircle, CCR",
     "the same for several half angles, CCR",
     "the same for the three theories, half angle 90 degrees",

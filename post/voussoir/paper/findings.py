@@ -42,7 +42,7 @@ def rigid_is_exact(campaign: Campaign) -> Finding:
         f"In {len(errors)} arches of Tables 1 to 4 the critical thickness of rigid blocks "
         f"deviates from limit analysis of the same polygons by at most {max(errors):.0e} of "
         f"its value, in {len(cases)} arches whose joints may slip by at most {friction:.0e}. "
-        "What follows about the paper's values is therefore about its program, not about ours.",
+        "Differences from the values of the paper are therefore those of its program.",
     )
 
 
@@ -65,8 +65,8 @@ def from_below(campaign: Campaign) -> Finding:
         f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no steady way",
         f"Of {even.size} even numbers of blocks from {even[0]} to {even[-1]}, {int(np.count_nonzero(exact < limit))} "
         f"need less than the continuous arch of Milankovitch ({limit:.6f}); the largest value is {exact.max():.9f}, at "
-        f"{even[exact.argmax()]} blocks. From one even number to the next the value falls {falls} times: what counts "
-        f"is how near a joint comes to {math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} "
+        f"{even[exact.argmax()]} blocks. From one even number to the next the value decreases {falls} times: it "
+        f"depends on the distance of a joint from {math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} "
         "degrees." + shown,
     )
 

@@ -72,7 +72,7 @@ def numbers_of(found: Assessment) -> list[tuple[str, str, str]]:
     safety, note = found.safety
     rows = []
     if math.isfinite(safety):
-        meaning = f"Under dead load the arch stands until it is {digits(safety)} times thinner."
+        meaning = f"Under dead load the arch collapses when it is {digits(safety)} times thinner."
         rows.append(("Geometric safety factor", digits(safety), meaning))
     else:
         rows.append(("Geometric safety factor", "any" if math.isinf(safety) else "not known", note + "."))
@@ -143,8 +143,8 @@ def verdict_of(found: Assessment) -> tuple[str, bool]:
     """The verdict in a sentence, and whether it is a bad one."""
     own, factor = found.row, found.factor
     words = {
-        "stable": "The structure stands under the loads given.",
-        "collapsed": "The structure does not stand under the loads given.",
+        "stable": "The structure is stable under the given loads.",
+        "collapsed": "The structure collapses under the given loads.",
     }
     text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
     if factor is not None and factor["verdict"] == "found":

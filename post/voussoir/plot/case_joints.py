@@ -195,7 +195,7 @@ class JointMarks:
                     arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.2 * self.pen, "shrinkA": 0,
                                 "shrinkB": 0, "mutation_scale": 9 * self.pen})
         falls = self.scene.falls or self.scene.moves
-        words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
+        words = "sliding joint: directions of its sides" if falls else "joint at its friction limit"
         return [entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0],
                       markersize=9, markeredgewidth=0.3)]
 

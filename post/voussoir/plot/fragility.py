@@ -91,7 +91,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
     axes.set(xlabel=label, ylabel="share of records with collapse", ylim=(-0.02, 1.02), xlim=(0.0, None))
     axes.legend(loc="best")
     notes = [f"{left} of {len(run.cases)} cases without a verdict"] if left else []
-    notes += [] if fit else ["no lognormal fits: one strength parts what collapses from what does not"]
+    notes += [] if fit else ["no lognormal fit: all records collapse above one value and none below"]
     axes.set_title("; ".join(notes), fontsize=9, color="#555555")
     return figure, fit
 

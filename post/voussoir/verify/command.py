@@ -222,9 +222,9 @@ def _check_stage(source: Source, result: Row, finding: Finding) -> None:
     if not source.changes or float(result["path_time"]) >= last:
         return
     if result["verdict"] == "stable":
-        finding.faults.append(f"stable to time {result['path_time']}, but blocks come or go at {last}")
+        finding.faults.append(f"stable to time {result['path_time']}, but the last stage is at {last}")
     if source.changing:
-        raise VerifyError("loads that change are not verified of a fall before the last stage")
+        raise VerifyError("time histories of a collapse before the last stage are not verified")
 
 
 def _check_bound(result: Row, column: str, value: str, finding: Finding) -> None:
