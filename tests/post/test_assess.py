@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("matplotlib")
 from voussoir.deck import assessment
 from voussoir.deck.run import run as run_deck
-from voussoir.plot.assess_drawing import draw_scheme
+from voussoir.plot.assess_drawing import axle_groups, draw_scheme
 from voussoir.plot.assess_text import assumptions_of, cases_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.command.main import main
@@ -24,6 +24,12 @@ BRIDGE = (
 )
 #: Where the page has the geometric safety factor
 SAFETY = r'Geometric safety factor</th><td class="number">([\d.]+)<'
+
+
+def test_equal_axles_that_are_close_share_a_label() -> None:
+    axles = [(0.0, 60e3), (4.0, 45e3), (5.3, 45e3), (6.6, 45e3), (9.0, 45e3)]
+    assert axle_groups(axles, 1.5) == [([0.0], 60e3), ([4.0, 5.3, 6.6], 45e3), ([9.0], 45e3)]
+    assert [len(places) for places, _ in axle_groups(axles, 0.1)] == [1] * 5
 
 
 def test_the_page_holds_what_a_client_asks(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,8 @@ from voussoir.results import Results
 
 #: Room between a dimension and what it measures, over the size
 ROOM = 0.07
+#: Distance below which labels of axles overlap, over the size
+CLOSE = 0.25
 
 
 @dataclass(frozen=True)
@@ -125,12 +128,25 @@ def draw_scheme(found: Assessment, sheet: Sheet = Sheet()) -> tuple[Figure, str]
             fontsize="small", color="#555555")
     for dimension in measured:
         draw_dimension(axes, dimension, size, pen)
-    for place, weight in found.axles:
+    for place, _ in found.axles:
         tip = {"arrowstyle": "-|>", "color": INK[2], "linewidth": 1.4 * pen, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
-        axes.text(place, road + 0.14 * size, quantity(weight, "N/m"), ha="center", fontsize="small", color=INK[2])
+    for places, weight in axle_groups(found.axles, CLOSE * size):
+        words = (f"{len(places)} x " if len(places) > 1 else "") + quantity(weight, "N/m")
+        axes.text(float(np.mean(places)), road + 0.14 * size, words, ha="center", fontsize="small", color=INK[2])
     words = ", ".join(f"{dimension.name} {quantity(dimension.length, 'm')}" for dimension in measured)
     return sheet.finish(figure, axes), words[0].upper() + words[1:] + "."
+
+
+def axle_groups(axles: Sequence[tuple[float, float]], close: float) -> list[tuple[list[float], float]]:
+    """Return places and weight of neighbouring axles that are equal and so close that their labels would overlap."""
+    groups: list[tuple[list[float], float]] = []
+    for place, weight in sorted(axles):
+        if groups and weight == groups[-1][1] and place - groups[-1][0][-1] < close:
+            groups[-1][0].append(place)
+        else:
+            groups.append(([place], weight))
+    return groups
 
 
 def draw_dimension(axes: Axes, dimension: Dimension, size: float, pen: float) -> None:
