@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Manual pages from what the programs say of themselves: make_man.py DDA OUT [PACKAGE].
+"""Manual pages from the help of the programs: make_man.py DDA OUT [PACKAGE].
 
 Writes OUT/dda.1 and, where the folder PACKAGE of the Python package is named, OUT/voussoir.1. So a
 page is never behind the program.
@@ -13,7 +13,9 @@ import sys
 from pathlib import Path
 
 #: Topics of `dda help` in the order of the page
-TOPICS = ("run", "check", "cut", "export", "keys")
+TOPICS = ("run", "check", "cut", "lines", "export", "keys", "blocks", "models")
+#: Titles of topics that are no commands
+TITLES = {"keys": "KEYS OF A DECK", "blocks": "FILES OF BLOCKS", "models": "MODELS"}
 
 
 def roff(text: str) -> str:
@@ -73,13 +75,13 @@ def of_dda(dda: str) -> str:
     str
         The page.
     """
-    def told(*words: str) -> str:
+    def printed(*words: str) -> str:
         return subprocess.run([dda, *words], capture_output=True, text=True, check=True).stdout
 
-    first, _, rest = told("help").partition("\n")
+    first, _, rest = printed("help").partition("\n")
     parts = [("DESCRIPTION", rest.strip("\n")), ("COMMANDS", "")]
-    parts += [(topic if topic != "keys" else "KEYS OF A DECK", told("help", topic)) for topic in TOPICS]
-    return page("dda", told("--version").split()[1], first.partition(": ")[2], parts, "voussoir")
+    parts += [(TITLES.get(topic, topic), printed("help", topic)) for topic in TOPICS]
+    return page("dda", printed("--version").split()[1], first.partition(": ")[2], parts, "voussoir")
 
 
 def of_voussoir(package: str) -> str:
