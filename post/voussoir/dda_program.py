@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,6 +87,6 @@ def path_word(path: Path) -> str:
     return os.path.join(os.curdir, word) if word.startswith("-") else word
 
 
-def set_options(settings: list[str]) -> list[str]:
+def set_options(settings: Sequence[str]) -> list[str]:
     """Values of --set, such as "arch%radius=5.0", as words of a command line."""
     return [word for setting in settings for word in ("--set", setting)]

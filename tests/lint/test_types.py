@@ -1,4 +1,4 @@
-"""Types of the packages that users call are complete: mypy in its strict mode finds nothing."""
+"""Types are complete: mypy in its strict mode finds nothing."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from pathlib import Path
 import pytest
 
 POST = Path(__file__).resolve().parents[2] / "post"
-#: Packages whose types are complete
-COMPLETE = ("campaign", "command", "deck", "imports", "plot", "results")
 
 
 def has_typed_packages() -> bool:
@@ -30,5 +28,4 @@ def test_types_are_complete() -> None:
         pytest.skip("mypy with numpy 2.2 and matplotlib 3.8 is not installed")
     words = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", "/dev/null"]
     done = subprocess.run([*words, "-p", "voussoir"], cwd=POST, capture_output=True, text=True)
-    places = tuple(f"voussoir/{name}/" for name in COMPLETE)
-    assert [line for line in done.stdout.splitlines() if line.startswith(places) and ": error: " in line] == []
+    assert [line for line in done.stdout.splitlines() if ": error: " in line] == []

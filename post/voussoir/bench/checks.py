@@ -60,7 +60,7 @@ class Outcome:
         pictures = (self.folder / "frames").glob(f"case_{self.case}_*.vtu")
         blocks = [path for path in pictures if not path.stem.endswith("_joints")]
         last = max(blocks, key=lambda path: int(path.stem.rpartition("_")[2]))
-        return cell_field(last, "stress")[block - 1]
+        return np.asarray(cell_field(last, "stress")[block - 1])
 
     def speed(self, point: int) -> np.ndarray:
         """Velocity of a measured point at the end, by a parabola through three steps: (2) [m/s]."""
@@ -68,12 +68,12 @@ class Outcome:
         late, early = time[2] - time[1], time[1] - time[0]
         last = np.array([u[2] - u[1], v[2] - v[1]]) / late
         before = np.array([u[1] - u[0], v[1] - v[0]]) / early
-        return last + (last - before) * late / (late + early)
+        return np.asarray(last + (last - before) * late / (late + early))
 
     def velocity(self, point: int) -> np.ndarray:
         """Mean velocity of a measured point in the last step: (2) [m/s]."""
         time, _, _, u, v = self.track(point)
-        return np.array([u[-1] - u[-2], v[-1] - v[-2]]) / (time[-1] - time[-2])
+        return np.asarray(np.array([u[-1] - u[-2], v[-1] - v[-2]]) / (time[-1] - time[-2]))
 
     def direction(self, first: int, second: int) -> np.ndarray:
         """Angle from one measured point to another after each step: (steps) [rad]."""
@@ -83,7 +83,7 @@ class Outcome:
     def energy(self, *names: str) -> np.ndarray:
         """Sum of the named columns of energy.csv after each step: (steps) [J/m]."""
         rows = self.rows("energy")
-        return sum(np.array([float(row[name]) for row in rows]) for name in names)
+        return np.array([sum(float(row[name]) for name in names) for row in rows])
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Check:
         """Error of a computed value: that over `scale`, or 0 and infinity for a verdict."""
         if isinstance(self.exact, str):
             return 0.0 if computed == self.exact else math.inf
-        return abs(computed - self.exact) / abs(self.exact if self.scale is None else self.scale)
+        return abs(float(computed) - self.exact) / abs(self.exact if self.scale is None else self.scale)
 
 
 def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:

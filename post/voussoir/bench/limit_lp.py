@@ -96,4 +96,4 @@ def _stands(result: Any) -> bool:
     """Answer of a solved program."""
     if result.status not in (_FEASIBLE, _INFEASIBLE):
         raise RuntimeError(f"HiGHS gave no answer: {result.message}")
-    return result.status == _FEASIBLE
+    return bool(result.status == _FEASIBLE)

@@ -39,17 +39,24 @@ class Scene:
         """Whether the scene needs less of the method where fewer tables are wanted: an arch does."""
         return isinstance(self.deck, dict) and not {"scene", "output"} & set(self.deck)
 
+    @property
+    def benchmark(self) -> str:
+        """Name of the deck of a benchmark."""
+        return str(self.deck)
+
     def text(self, lean: bool = False) -> bytes:
         """The deck as written: with all tables, or lean with one row per case."""
         if isinstance(self.deck, bytes):
             return self.deck
+        if isinstance(self.deck, str):
+            raise TypeError(f"expected groups or bytes of a deck, got the benchmark {self.deck}")
         tables = {"joints": False, "blocks": False} if lean else {"condition": True}
         output = {"vtu": False, **tables, **self.deck.get("output", {})}
         return deck_text({**self.deck, "output": output}).encode()
 
 
 def benchmark(
-    group: str, deck: str, source: str, *checks: Check, settings: tuple[str, ...] = (), **others: bool
+    group: str, deck: str, source: str, *checks: Check, settings: tuple[str, ...] = (), **others: Any
 ) -> Scene:
     """A deck of `input/benchmarks`, named with what is set, and where its exact values come from."""
     name = " ".join([deck, *(setting.partition("=")[2] for setting in settings)])
@@ -81,7 +88,7 @@ def written_blocks(shapes: Iterable[Corners]) -> str:
 
 
 def block_scene(
-    group: str, name: str, guard: str, blocks: str, expectation: Expectation, **groups: dict[str, Any]
+    group: str, name: str, guard: str, blocks: str, expectation: Expectation, **groups: Any
 ) -> Scene:
     """A scene of a file of blocks."""
     deck = {"scene": {"kind": "blocks", "geometry": BLOCKS}, **groups}
@@ -90,7 +97,7 @@ def block_scene(
 
 def in_both(
     group: str, name: str, guard: str, blocks: str, expectation: Expectation, moving: Expectation | None = None,
-    **groups: dict[str, Any]
+    **groups: Any
 ) -> Iterator[Scene]:
     """The scene in reference geometry, and with nearly rigid blocks that move, which may answer a little else."""
     for geometry, young in GEOMETRIES:

@@ -24,7 +24,7 @@ _SEARCH: dict[str, Any] = {"search": {"parameter": "thickness_ratio"}}
 
 def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float | None:
     """Critical thickness ratio by limit analysis of the same polygons: 0 where each stands, None where none does."""
-    options = {
+    options: dict[str, Any] = {
         "facet": math.radians(arch["facet_deg"]) if "facet_deg" in arch else None,
         "friction": None if friction_deg >= NO_SLIP_DEG else math.radians(friction_deg),
         "springing_no_slip": arch.get("springing") == "no-slip",
@@ -108,7 +108,7 @@ def _near_critical() -> Iterator[Scene]:
     arches = ((10.0, 12), (20.0, 8), (45.0, 18), (90.0, 36), (90.0, 1000), (140.0, 56), (150.0, 60))
     for half_angle, voussoirs in arches:
         arch = {"half_angle_deg": half_angle, "voussoirs": voussoirs}
-        exact = exact_thickness(arch, 90.0)
+        exact = float(exact_thickness(arch, 90.0) or 0.0)
         for distance in (-1e-3, -1e-6, -1e-8, -1e-9, 1e-9, 1e-8, 1e-6, 1e-3):
             deck = {"arch": {**arch, "thickness_ratio": exact * (1.0 + distance)}}
             yield Scene(
@@ -139,9 +139,9 @@ def _shapes() -> Iterator[Scene]:
             ("haunch", [0.0, 54.5, 54.5 + width, 90.0]),
             ("springing", [0.0, 54.5, 90.0 - width, 90.0]),
         ):
-            arch = {"joints_deg": joints, "facet_deg": 0.5}
             name = f"{width:g} deg at the {place}"
-            yield searched("sliver", name, "joints differ by 100 in stiffness at most", arch)
+            sliver = {"joints_deg": joints, "facet_deg": 0.5}
+            yield searched("sliver", name, "joints differ by 100 in stiffness at most", sliver)
     for ratio in (1e-6, 1e-4, 1e-2):
         yield _decided("aspect ratio", f"4 voussoirs, thickness {ratio:g} r", 4, ratio, "collapsed")
         yield _decided("aspect ratio", f"3 voussoirs, thickness {ratio:g} r", 3, ratio, "stable")
@@ -210,7 +210,7 @@ def _refused() -> Iterator[Scene]:
         ("load", "gravity", 0.0),
         ("analysis", "unknowns", 4),
     ):
-        deck = {"arch": {"thickness_ratio": 0.15}, group: {key: value}}
+        deck: Any = {"arch": {"thickness_ratio": 0.15}, group: {key: value}}
         yield Scene("bad input", f"{key} {value}", deck, Refused(key), "ranges of the deck's keys")
     for word in ("NaN", "Inf", "1e999"):
         deck = f"&material young = {word} /\n".encode()

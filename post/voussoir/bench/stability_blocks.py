@@ -256,19 +256,21 @@ def _far_away() -> Iterator[Scene]:
             text = written_block(rectangle(offset - 10.0 * size, offset - size, 20.0 * size, size), "fixed")
             text += written_blocks(rectangle(offset, offset + i * size, size, size) for i in range(3))
             # the corners are rounded to the spacing of numbers at their place
-            near = [Critical(1.0 / 3.0, bound + 4.0 * math.ulp(offset) / size) for bound in (1e-8, 1e-4)]
+            near, moved = (Critical(1.0 / 3.0, bound + 4.0 * math.ulp(offset) / size) for bound in (1e-8, 1e-4))
             yield from in_both(
                 "far away", f"three cubes of {size:g} m at {offset:g} m, pushed",
-                "an origin of their own for blocks far away", text, *near, material={"unit_weight": WEIGHT}, **push)
-    near = [Critical(1.0 / 3.0, bound) for bound in (1e-8, 1e-4)]
+                "an origin of their own for blocks far away", text, near, moved, material={"unit_weight": WEIGHT},
+                **push)
+    near, moved = (Critical(1.0 / 3.0, bound) for bound in (1e-8, 1e-4))
     for scale in (1e-9, 1e-6, 1e6):
         text = written_block([(x * scale, y * scale) for x, y in rectangle(-9, -1, 19, 1)], "fixed")
         text += written_blocks(rectangle(0.0, i * scale, scale, scale) for i in range(3))
         for scene in in_both(
-            "far away", f"three cubes of {scale:g} m, pushed", "every threshold is a ratio", text, *near,
+            "far away", f"three cubes of {scale:g} m, pushed", "every threshold is a ratio", text, near, moved,
             material={"unit_weight": WEIGHT}, **push
         ):
-            scene.deck["material"]["young"] *= scale
+            if isinstance(scene.deck, dict):
+                scene.deck["material"]["young"] *= scale
             yield scene
 
 

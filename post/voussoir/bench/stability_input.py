@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from voussoir.bench.stability_blocks import BASE, WEIGHT, normal_force
 from voussoir.bench.expectations import Expectation, Measured, Refused, Verdict, Warned
-from voussoir.bench.scene import Scene, block_scene, rectangle, written_block, written_blocks
+from voussoir.bench.scene import Corners, Scene, block_scene, rectangle, written_block, written_blocks
 from voussoir.bench.checks import GRAVITY, Check, verdict
 
 _SQUARE = rectangle(0.0, 0.0, 1.0, 1.0)
@@ -30,7 +30,7 @@ def input_scenes() -> Iterator[Scene]:
     yield from _lines()
 
 
-def _blocks(name: str, text: str, expectation: Expectation, **groups: dict[str, Any]) -> Scene:
+def _blocks(name: str, text: str, expectation: Expectation, **groups: Any) -> Scene:
     """A scene of a doubtful file of blocks."""
     groups = {"material": {"unit_weight": WEIGHT}, **groups}
     return block_scene(_GROUP, name, _GUARD, text, expectation, **groups)
@@ -56,14 +56,15 @@ def _polygons() -> Iterator[Scene]:
 
 def _overlaps() -> Iterator[Scene]:
     """Blocks that share space."""
-    for name, shapes, answer in (
+    overlaps: tuple[tuple[str, Sequence[Corners], Expectation], ...] = (
         *((f"blocks overlap by {share:g}", [rectangle(0.0, -share, 1.0, 1.0)], Refused("blocks 1 and 2 overlap"))
           for share in (0.1, 0.01, 1e-3)),
         ("blocks overlap by 1e-7", [rectangle(0.0, -1e-7, 1.0, 1.0)], _STANDS),
         ("a block inside another", [rectangle(0.0, -0.8, 0.5, 0.5)], Refused("block 2 lies inside block 1")),
         ("the same block twice", [_SQUARE, _SQUARE], Refused("block 3 lies inside block 2")),
         ("a cross of two blocks", [_SQUARE, rectangle(-0.5, 0.4, 2.0, 0.2)], Refused("2 and 3")),
-    ):
+    )
+    for name, shapes, answer in overlaps:
         yield _blocks(name, BASE + written_blocks(shapes), answer)
 
 

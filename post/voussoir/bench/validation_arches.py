@@ -70,7 +70,7 @@ POINT_LOADS = (
 
 def _loaded() -> list[Scene]:
     """Semicircles of 1 m under a load of 10 kN/m on one voussoir."""
-    scenes = []
+    scenes: list[Scene] = []
     for deck, n, ratio, exact in POINT_LOADS:
         area = n * math.sin(math.pi / n) * ratio
         share = lambda outcome, area=area: 1e4 / (outcome.critical * area)  # noqa: E731

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from voussoir.bench.checks import YOUNG, Check, Outcome, critical, verdict
 from voussoir.bench.scene import MOVED, Scene, benchmark, benchmark_in_both
@@ -153,7 +154,7 @@ def _associated_tilt(outcome: Outcome) -> float:
     return math.degrees(math.atan(float(outcome.rows("results")[0]["exact_high"])))
 
 
-def _normal(joint: int):
+def _normal(joint: int) -> Callable[[Outcome], float]:
     """Measure of a joint's normal force [N/m]."""
     return lambda outcome: float(outcome.rows("joints")[joint]["normal_force"])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def _p2(b: float, h: float) -> float:
     return 3.0 * GRAVITY / (4.0 * math.hypot(b, h))
 
 
-def _upright(block: int):
+def _upright(block: int) -> Callable[[Outcome], float]:
     """Measure of the time at which a tilted block is first upright."""
 
     def measure(outcome: Outcome) -> float:
@@ -61,7 +62,7 @@ def _upright(block: int):
     return measure
 
 
-def _swing(block: int, angle: float):
+def _swing(block: int, angle: float) -> Callable[[Outcome], float]:
     """Measure of the largest tilt to the other side over the block's angle."""
     return lambda outcome: float(-(outcome.direction(2 * block - 1, 2 * block) - math.pi / 2.0).min() / angle)
 
@@ -111,7 +112,7 @@ PULSES = (
 )
 
 
-def _fate(block: int, b: float, h: float):
+def _fate(block: int, b: float, h: float) -> Callable[[Outcome], str]:
     """Measure of whether a block has ever been tilted far beyond its angle."""
 
     def measure(outcome: Outcome) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -30,7 +31,7 @@ def slide(slope_deg: float, friction_deg: float, up: bool = False) -> float:
     return GRAVITY * (math.sin(slope) + (rub if up else -rub))
 
 
-def _along(slope_deg: float):
+def _along(slope_deg: float) -> Callable[[Outcome], float]:
     """Measure of the way of point 1 down a slope to the right."""
     slope = math.radians(slope_deg)
     return lambda outcome: float(outcome.end(1) @ (math.cos(slope), -math.sin(slope)))
@@ -59,7 +60,7 @@ def _rotation(outcome: Outcome) -> float:
     return float(np.abs(angle - angle[0]).max())
 
 
-def _way_at(time: float):
+def _way_at(time: float) -> Callable[[Outcome], float]:
     """Measure of the way of point 1 along x at a time at which a step ends."""
 
     def measure(outcome: Outcome) -> float:
@@ -92,12 +93,14 @@ def _momentum_gained(outcome: Outcome) -> np.ndarray:
     return gained
 
 
-def _gained(i: int):
+def _gained(i: int) -> Callable[[Outcome], float]:
     """Measure of one component of the momentum gained."""
     return lambda outcome: float(_momentum_gained(outcome)[i])
 
 
-def _share(size, velocity, spin: float, place) -> np.ndarray:
+def _share(
+    size: Sequence[float], velocity: Sequence[float] | np.ndarray, spin: float, place: np.ndarray
+) -> np.ndarray:
     """Momentum of a rectangle and its moment about the origin: (3)."""
     mass = DENSITY * size[0] * size[1]
     inertia = mass * (size[0] ** 2 + size[1] ** 2) / 12.0
@@ -208,7 +211,7 @@ def _shaken() -> list[Scene]:
     ]
 
 
-def _speed_along(slope_deg: float):
+def _speed_along(slope_deg: float) -> Callable[[Outcome], float]:
     """Measure of the speed of point 1 down a slope to the right."""
     slope = math.radians(slope_deg)
     return lambda outcome: float(outcome.speed(1) @ (math.cos(slope), -math.sin(slope)))

@@ -84,7 +84,7 @@ def page(lines: Sequence[Line], titles: Mapping[str, str], version: str) -> str:
         Output of `dda --version`.
     """
     missed = sum(not line.accepted for line in lines)
-    decks = len({line.scene.deck for line in lines})
+    decks = len({line.scene.benchmark for line in lines})
     text = [_HEAD, f"{decks} decks, {len(lines)} values, **{missed} missed**; computed by {version}."]
     for section, own in itertools.groupby(lines, lambda line: line.scene.group):
         text += ["", f"## {section}"]
@@ -104,9 +104,9 @@ def sketches(lines: Sequence[Line]) -> dict[str, str]:
     drawn = {}
     for own in problems.values():
         if own[0].shapes:
-            drawn[f"{own[0].scene.deck}.svg"] = sketch(own[0].shapes)
+            drawn[f"{own[0].scene.benchmark}.svg"] = sketch(own[0].shapes)
         if plot := _plot(own):
-            drawn[f"{own[0].scene.deck}_result.svg"] = plot
+            drawn[f"{own[0].scene.benchmark}_result.svg"] = plot
     return drawn
 
 
@@ -136,7 +136,7 @@ def _verdict(line: Line) -> str:
 
 def _problem(scene: Scene) -> tuple[str, str]:
     """Key of decks that share an entry: the first word of their names, and the source of their exact values."""
-    return re.sub(r"s?(_.*)?$", "", scene.deck), scene.note
+    return re.sub(r"s?(_.*)?$", "", scene.benchmark), scene.note
 
 
 def _is_current(scene: Scene) -> bool:
@@ -146,24 +146,24 @@ def _is_current(scene: Scene) -> bool:
 
 def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
     """Entry of one problem: its decks, its exact value, and its table."""
-    decks = grouped((line.scene for line in lines), "deck")
+    decks = grouped((line.scene for line in lines), "benchmark")
     links = {deck: f"[`{deck}`](../input/benchmarks/{deck}.nml)" for deck in decks}
     plain = [line for line in lines if not _is_current(line.scene)]
-    moved = {(line.scene.deck, line.check.what): line for line in lines if _is_current(line.scene)}
-    pairs = [(line, moved.get((line.scene.deck, line.check.what)) if plain else None) for line in plain or lines]
+    moved = {(line.scene.benchmark, line.check.what): line for line in lines if _is_current(line.scene)}
+    pairs = [(line, moved.get((line.scene.benchmark, line.check.what)) if plain else None) for line in plain or lines]
     columns = _columns(pairs, len(decks) > 1)
     cells = [[cell(*pair) for cell in columns.values()] for pair in pairs]
     exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
     if len(decks) == 1:
-        deck = lines[0].scene.deck
+        deck = lines[0].scene.benchmark
         about = [f"### {titles[deck]}", "", f"Deck: {links[deck]}.", exact]
     else:
         family = _problem(lines[0].scene)[0].replace("_", " ").capitalize()
         about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items()), "", exact]
     if lines[0].shapes:
-        about += ["", f"![{lines[0].scene.deck}]({SKETCHES}/{lines[0].scene.deck}.svg)"]
+        about += ["", f"![{lines[0].scene.benchmark}]({SKETCHES}/{lines[0].scene.benchmark}.svg)"]
         if _plot(lines):
-            about.append(f"![result of {lines[0].scene.deck}]({SKETCHES}/{lines[0].scene.deck}_result.svg)")
+            about.append(f"![result of {lines[0].scene.benchmark}]({SKETCHES}/{lines[0].scene.benchmark}_result.svg)")
     return ["", *about, "", *markdown(list(columns), "l" * len(columns), cells)]
 
 
@@ -185,7 +185,7 @@ def _columns(pairs: list[tuple[Line, Line | None]], named: bool) -> dict[str, Ca
     """Columns of a table: their heads, and the cell of a line and its counterpart in current geometry."""
     heads: dict[str, Callable[[Line, Line | None], str]] = {}
     if named:
-        heads["deck"] = lambda line, _: f"`{line.scene.deck}`"
+        heads["deck"] = lambda line, _: f"`{line.scene.benchmark}`"
     heads["quantity"] = lambda line, _: line.check.what
     heads["exact"] = lambda line, _: _number(line.check.exact)
     heads["computed"] = lambda line, _: _number(line.computed)

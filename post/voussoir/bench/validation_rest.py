@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -39,12 +39,12 @@ def foot_acceleration(b: float, h: float, slope: float, friction: float) -> floa
     return max(0.0, float(found[0]))
 
 
-def _foot(slope_deg: float):
+def _foot(slope_deg: float) -> Callable[[Outcome], float]:
     """Measure of the mean acceleration of point 1 from rest along its ground [m/s2]."""
 
     def measure(outcome: Outcome) -> float:
         way = outcome.end(1) @ (math.cos(slope_deg * DEGREE), -math.sin(slope_deg * DEGREE))
-        return float(way) * 2.0 / outcome.track(1)[0, -1] ** 2
+        return float(way * 2.0 / outcome.track(1)[0, -1] ** 2)
 
     return measure
 

@@ -15,6 +15,7 @@ from voussoir.bench import (
 )
 from voussoir.bench.checks import Check, Outcome
 from voussoir.bench.deck_runs import run_deck
+from voussoir.bench.expectations import Measured
 from voussoir.bench.scene import Scene
 from voussoir.bench.validation_plot import track_of
 from voussoir.bench.validation_sketch import Shape, shapes_of
@@ -66,8 +67,11 @@ def all_scenes() -> tuple[Scene, ...]:
 
 def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
     """Run a scene, where it has a rate again in steps halved so often; DdaError has the program's own message."""
-    deck, checks = decks / f"{scene.deck}.nml", scene.expectation.checks
-    columns, seconds, shapes, track = [], [], (), np.empty((3, 0))
+    deck = decks / f"{scene.benchmark}.nml"
+    checks = scene.expectation.checks if isinstance(scene.expectation, Measured) else ()
+    columns, seconds = [], []
+    shapes: tuple[Shape, ...] = ()
+    track = np.empty((3, 0))
     for k in range(1 + (halvings if scene.rate else 0)):
         with tempfile.TemporaryDirectory() as folder:
             finished = run_deck(deck, Path(folder), settings=[*scene.settings, *_step(deck, k)])

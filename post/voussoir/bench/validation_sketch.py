@@ -41,9 +41,13 @@ def shapes_of(file: Path, case: int) -> tuple[Shape, ...]:
             if row["case"] == str(case):
                 blocks.setdefault(row["block"], []).append(row)
     return tuple(
-        Shape(*(np.array([[float(row[name]) for name in names] for row in rows]) for names in (("x", "y"), ("u", "v"))),
-              rows[0]["state"] == "fixed")
+        Shape(_columns(rows, "x", "y"), _columns(rows, "u", "v"), rows[0]["state"] == "fixed")
         for rows in blocks.values())
+
+
+def _columns(rows: list[dict[str, str]], *names: str) -> np.ndarray:
+    """Columns of numbers: (rows, names)."""
+    return np.array([[float(row[name]) for name in names] for row in rows])
 
 
 def sketch(shapes: Sequence[Shape]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,7 +17,7 @@ def _strains() -> list[Scene]:
     """Scenes of section 1.6."""
     nu, pressed = 0.2, 1e6 / YOUNG
     across = lambda outcome: 2.0 * float(outcome.end(2)[0] - outcome.end(1)[0])  # noqa: E731
-    along = lambda outcome: float(outcome.end(2)[1] - outcome.end(1)[1])  # noqa: E731
+    along: Callable[[Outcome], float] = lambda outcome: float(outcome.end(2)[1] - outcome.end(1)[1])  # noqa: E731
     pressed_checks = (
         Check("ey, plane stress", -pressed, along, 1e-9, 1), Check("ex, plane stress", nu * pressed, across, 1e-9, 1),
         Check("ey, plane strain", -(1.0 - nu**2) * pressed, along, 1e-9, 2),
@@ -60,13 +61,13 @@ def _sheared() -> list[Scene]:
         for case, plane in enumerate(("stress", "strain"), 1)
     )
     stays = [
-        Check(f"{name} [Pa]", exact, lambda o, i=i: float(o.stress(1)[i]), 1e-9, scale=2e6)
+        Check(f"{name} [Pa]", exact, _stress(i), 1e-9, scale=2e6)
         for i, (name, exact) in enumerate((("sx", -2e6), ("sy", -1e6), ("txy", 0.0)))
     ]
     far = lambda outcome: float(np.hypot(*outcome.end(1)))  # noqa: E731
     stays.append(Check("relative displacement of the far corner", 0.0, far, 1e-9, scale=2.2))
     turned = tuple(
-        Check(f"{name} after a quarter turn [Pa]", exact, lambda o, i=i: float(o.stress(1)[i]), 1e-6)
+        Check(f"{name} after a quarter turn [Pa]", exact, _stress(i), 1e-6)
         for i, (name, exact) in enumerate((("sx", -1e6), ("sy", -2e6), ("txy", -5e5)))
     )
     return [
@@ -99,7 +100,12 @@ def _chains() -> list[Scene]:
     ]
 
 
-def _arrival(modulus: float):
+def _stress(component: int) -> Callable[[Outcome], float]:
+    """Measure of a component of the stress of block 1 [Pa]."""
+    return lambda outcome: float(outcome.stress(1)[component])
+
+
+def _arrival(modulus: float) -> Callable[[Outcome], float]:
     """Measure of the speed of a step of pressure, from the way of point 1 after it has passed.
 
     The point then moves at stress/(rho c); so its path shows when it began to.
@@ -108,7 +114,7 @@ def _arrival(modulus: float):
 
     def measure(outcome: Outcome) -> float:
         time, _, _, way, _ = outcome.track(1)[:, -1]
-        return 1.95 / (time - way / speed)
+        return 1.95 / float(time - way / speed)
 
     return measure
 
@@ -122,7 +128,7 @@ def _lost_amplitude(outcome: Outcome) -> float:
     return float(1.0 - (tops[-1] / tops[0]) ** (1.0 / (len(tops) - 1)))
 
 
-def _swings(point: int):
+def _swings(point: int) -> Callable[[Outcome], float]:
     """Measure of a point's frequency about its mean, from its ways down through it [1/s]."""
 
     def measure(outcome: Outcome) -> float:

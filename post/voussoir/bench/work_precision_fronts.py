@@ -38,6 +38,11 @@ class Point:
     seconds: float  #: Median time
     answer: float | None  #: What was found
 
+    @property
+    def known_error(self) -> float:
+        """Relative error; infinite where no answer was given."""
+        return math.inf if self.error is None else self.error
+
 
 @dataclass(frozen=True)
 class Panel:
@@ -52,8 +57,8 @@ def front(points: list[Point]) -> list[Point]:
     """The points that no other one beats in time and error: time grows and error falls along it."""
     best: list[Point] = []
     known = [point for point in points if point.error is not None]
-    for point in sorted(known, key=lambda point: (point.seconds, point.error)):
-        if not best or point.error < best[-1].error:
+    for point in sorted(known, key=lambda point: (point.seconds, point.known_error)):
+        if not best or point.known_error < best[-1].known_error:
             best.append(point)
     return best
 

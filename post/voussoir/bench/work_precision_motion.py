@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class Motion:
     """Blocks that move, and what of their motion is known."""
 
     blocks: str
-    groups: dict[str, dict]
+    groups: dict[str, Any]
     duration: float
     longest: float
     checks: tuple[tuple[str, float, Callable[[Outcome], float]], ...]
@@ -66,7 +67,7 @@ class Motion:
             "duration": self.duration,
             "restitution": self.restitution,
         }
-        groups = {
+        groups: dict[str, Any] = {
             "scene": {"kind": "blocks", "geometry": BLOCKS}, "analysis": analysis,
             "output": {"vtu": False, "joints": False, "blocks": False}, **self.groups,
             "sweep": {"parameter": "penalty_ratio", "values": [100.0] * repeats}}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from voussoir.bench import work_precision_scenes as scenes
 from voussoir.bench.report_tables import grouped, markdown, write_csv
@@ -49,8 +49,8 @@ def front_table(panels: Sequence[Panel]) -> list[str]:
     for panel in panels:
         for method, own in grouped(panel.points, "method").items():
             best = front(own)
-            least = f"{max(best[-1].error, LEAST_ERROR):.0e}" if best else "no answer"
-            reached = [next((point for point in best if point.error <= goal), None) for goal in GOALS]
+            least = f"{max(best[-1].known_error, LEAST_ERROR):.0e}" if best else "no answer"
+            reached = [next((point for point in best if point.known_error <= goal), None) for goal in GOALS]
             times = [f"{point.seconds * 1e3:.3g} ms" if point else "-" for point in reached]
             rows.append([own[0].scene, method, least, *times])
     heads = ["scene", "method", "least error", *(f"error ≤ {goal:g}" for goal in GOALS)]
@@ -117,8 +117,8 @@ def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
             picture = Picture(figsize=(4.8, 4.7), layout="constrained")
             axes = picture.subplots()
             handles = _draw_panel(axes, panel, span)
-            below = {"loc": "upper left", "bbox_to_anchor": (-0.12, -0.16)}
-            axes.legend(handles=handles, fontsize=9.5, handlelength=2.4, **below)
+            axes.legend(
+                handles=handles, fontsize=9.5, handlelength=2.4, loc="upper left", bbox_to_anchor=(-0.12, -0.16))
             paths += save(picture, folder, "work_precision_" + panel.points[0].scene.replace(" ", "_"))
     return paths
 
@@ -128,10 +128,10 @@ def answer_words(method: str, own: Sequence[Point]) -> str:
     best = front(list(own))
     if not best:
         return f"{method}: no answer"
-    last = next(point for point in best if point.error <= max(best[-1].error, ALL_DIGITS))
-    if last.error <= ALL_DIGITS:
+    last = next(point for point in best if point.known_error <= max(best[-1].known_error, ALL_DIGITS))
+    if last.known_error <= ALL_DIGITS:
         return f"{method}: all digits in {_duration(last.seconds)}"
-    return f"{method}: {_share(last.error)} in {_duration(last.seconds)}"
+    return f"{method}: {_share(last.known_error)} in {_duration(last.seconds)}"
 
 
 def _share(error: float) -> str:
@@ -154,7 +154,7 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
     from voussoir.plot.figure_style import INK
 
     methods = grouped(panel.points, "method")
-    least = min((point.error for own in methods.values() for point in front(own)), default=0.0)
+    least = min((point.known_error for own in methods.values() for point in front(own)), default=0.0)
     decades = 16 if least < 1e-6 else 4
     bottom, top = 10.0**-decades / (6.0 if decades == 16 else 2.0), 2.0
     entries = {}
@@ -162,12 +162,12 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
         best = front(own)
         color, mark, dash = _LOOKS[method]
         times = [point.seconds for point in best]
-        errors = [max(point.error, LEAST_ERROR) for point in best]
-        look = {"linestyle": dash, "color": INK[color], "linewidth": 1.4}
+        errors = [max(point.known_error, LEAST_ERROR) for point in best]
+        look: dict[str, Any] = {"linestyle": dash, "color": INK[color], "linewidth": 1.4}
         if best:  # nothing is known before the first answer, and the best one holds from then on
             end = times[-1] if errors[-1] <= ALL_DIGITS else span[1]
             axes.plot([times[0], *times, end], [top, *errors, errors[-1]], drawstyle="steps-post", **look)
-        marks = {"marker": mark, "markersize": 6, "markerfacecolor": "white"}
+        marks: dict[str, Any] = {"marker": mark, "markersize": 6, "markerfacecolor": "white"}
         axes.plot(times, errors, color=INK[color], linestyle="none", zorder=3, **marks)
         (entries[method],) = axes.plot([], [], label=answer_words(method, own), **look, **marks)
     axes.set(xscale="log", yscale="log", xlim=span, ylim=(bottom, top))

@@ -93,13 +93,12 @@ def race(arch: Arch, folder: Path, repeats: int) -> Race:
                 answers.append(decide(arch, program, ratio))
                 times[name][number].append(time.process_time() - start)
             right[name] = sum(map(bool.__eq__, answers, truth))
-    least = {name: _middle_of_least(found) for name, found in times.items()}
+    least = {name: _middle_of_least(found) if any(found) else None for name, found in times.items()}
     return Race(
-        arch, least["decision"], right["decision"], least["search"], least["general"], right["general"],
-        least["compact"], right["compact"])
+        arch, _middle_of_least(times["decision"]), right["decision"], _middle_of_least(times["search"]),
+        least["general"], right["general"], least["compact"], right["compact"])
 
 
-def _middle_of_least(times: list[list[float]]) -> float | None:
+def _middle_of_least(times: list[list[float]]) -> float:
     """Least time of each ratio, for other work can only add to it; of these the median."""
-    least = [min(found) for found in times if found]
-    return statistics.median(least) if least else None
+    return statistics.median(min(found) for found in times if found)

@@ -40,7 +40,7 @@ class SceneClass:
     live_point: tuple[float, float] = (0.0, 0.0)  #: Where it acts
 
 
-def _each(group: str, key: str, values: tuple, **more: Any) -> Settings:
+def _each(group: str, key: str, values: tuple[Any, ...], **more: Any) -> Settings:
     """Settings that vary one key; further groups hold for all."""
     return tuple({**more, group: {**more.get(group, {}), key: value}} for value in values)
 
@@ -119,9 +119,9 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> SceneClass:
     outer = inner + rings * depth
     for angle, side in ((angles[0], -1.0), (angles[-1], 1.0)):
         away = side * math.cos(angle), -side * math.sin(angle)
-        low, high = point(inner - 0.2, angle), point(outer + 0.2, angle)
-        far = [(x + away[0], y + away[1]) for x, y in (high, low)]
-        text += written_block([low, high, *far], "fixed")
+        near = [point(inner - 0.2, angle), point(outer + 0.2, angle)]
+        far = [(x + away[0], y + away[1]) for x, y in reversed(near)]
+        text += written_block([*near, *far], "fixed")
     quarter = voussoirs // 4
     a, b = (point(outer, angles[quarter + k]) for k in (0, 1))
     x, y = (a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,14 +16,18 @@ from voussoir.paper.tables import THEORIES, PaperTable, Row
 from voussoir.plot.figure_style import DASHES, INK, closer
 
 #: How the points of a column look; columns that join later take the last one
-POINTS = {
+POINTS: dict[str, dict[str, Any]] = {
     "paper DDA": {"marker": "^", "color": INK[3], "markeredgecolor": INK[0], "markersize": 7},
     "ours, rigid": {"marker": "o", "color": INK[1], "markeredgecolor": INK[0], "markersize": 6},
     "ours, elastic": {
         "marker": "s", "markerfacecolor": "none", "markeredgecolor": INK[2], "markersize": 9, "markeredgewidth": 1.3
     },
 }
-_OTHER = {"marker": "D", "color": "#f0c040", "markeredgecolor": INK[0], "markersize": 6}
+_OTHER: dict[str, Any] = {"marker": "D", "color": "#f0c040", "markeredgecolor": INK[0], "markersize": 6}
+#: Left, bottom, width and height of a picture within another
+_Place = tuple[float, float, float, float]
+#: Ends of an axis
+_Range = tuple[float, float]
 #: How the curve of a theory looks
 CURVES = dict(zip(THEORIES, zip(INK[:3], DASHES)))
 
@@ -70,7 +75,7 @@ def friction(campaign: Campaign) -> Figure:
     exact = theory.discrete_critical(blocks, math.pi / 2, friction=np.radians(angle))
     axes.plot(angle, exact, color=INK[0], label=f"exact, {blocks} polygon blocks")
     limits = theory.friction("milankovitch")
-    mu = np.linspace(limits["mu_mixed"], limits["mu_rotational"], 200)
+    mu = np.linspace(float(limits["mu_mixed"]), float(limits["mu_rotational"]), 200)
     axes.plot(
         np.degrees(np.arctan(mu)), theory.friction_thickness(mu, "milankovitch"), color=INK[2], linestyle=DASHES[1],
         label="Milankovitch, continuous arch")
@@ -127,7 +132,7 @@ def imposed_at_140(campaign: Campaign) -> Figure:
     return _imposed(campaign.tables["table3"], 140.0, (0.26, 0.13, 0.42, 0.55), (56.0, 65.0), (0.618, 0.642))
 
 
-def _imposed(table: PaperTable, alpha_deg: float, place: tuple, near: tuple, high: tuple) -> Figure:
+def _imposed(table: PaperTable, alpha_deg: float, place: _Place, near: _Range, high: _Range) -> Figure:
     """A table of imposed joints; the piece near the top is drawn larger where there is room."""
     figure, (curve, error) = plt.subplots(2, 1, figsize=(5.2, 6.2), sharex=True, height_ratios=(3, 2))
     _draw_imposed(curve, table, math.radians(alpha_deg))

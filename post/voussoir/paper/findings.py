@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -114,9 +115,9 @@ def other_columns(campaign: Campaign) -> Iterator[Finding]:
     columns = {column for table in campaign.tables.values() for column in table.columns}
     for column in sorted(columns - known):
         shares = [
-            abs(value.eta / row.values[_PAPER].eta - 1.0)
+            abs(value.eta / printed - 1.0)
             for row, value in _values(campaign, column)
-            if value.eta is not None
+            if value.eta is not None and (printed := row.values[_PAPER].eta) is not None
         ]
         total = sum(1 for _ in _values(campaign, column))
         if shares:
@@ -201,7 +202,7 @@ def least_friction_of(row: Row) -> float:
     return least_friction(half, facet=math.radians(0.5))
 
 
-def least_friction(joints: Any, **arch: float) -> float:
+def least_friction(joints: Any, **arch: Any) -> float:
     """Least friction angle at which an arch needs no more thickness than without slip, to 1e-9 [deg]."""
     wanted = theory.discrete_solution(joints, **arch).eta * (1.0 + 1e-10)
     return _bisect(
@@ -250,9 +251,9 @@ def elastic_shift(campaign: Campaign) -> Finding:
     """What elasticity adds to the thickness."""
     parts = []
     for name, table in campaign.tables.items():
-        rows = [row for row in table.rows if row.values[_ELASTIC].error is not None]
-        worst = max(rows, key=lambda row: row.values[_ELASTIC].error)
-        median = float(np.median([row.values[_ELASTIC].error for row in rows]))
+        known = [(error, row) for row in table.rows if (error := row.values[_ELASTIC].error) is not None]
+        worst = max(known, key=itemgetter(0))[1]
+        median = float(np.median([error for error, _ in known]))
         parts.append(
             f"Table {name[-1]}: {100 * median:.3f} % in the middle, "
             f"{_share(worst, _ELASTIC, 2)} at most ({_arch(worst)})")

@@ -63,7 +63,7 @@ def _draw_hinges(axes: Axes, table: Table, name: str) -> None:
     for place in np.flatnonzero(table["verdict"] == "stable"):
         word = name.removeprefix("ours, ")
         axes.text(
-            place, height, f"{word}:\nstands", ha="center", va="center", fontsize=8.5,
+            float(place), height, f"{word}:\nstands", ha="center", va="center", fontsize=8.5,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=5)
 
 

@@ -43,7 +43,7 @@ def block_numbers(campaign: Campaign) -> Figure:
     ratios = list(dict.fromkeys(run.cases["thickness_ratio"].tolist()))
     groups = [run.cases.where(thickness_ratio=ratio)["case"].tolist() for ratio in ratios]
     figure = plt.figure(figsize=(5.6, 4.2 * len(groups)), layout="constrained")
-    parts = figure.subfigures(len(groups), 1, hspace=0.03)
+    parts: Any = figure.subfigures(len(groups), 1, hspace=0.03)
     for part, ratio, numbers, word in zip(parts, ratios, groups, ("Heyman's", "that of CCR")):
         gallery(run, numbers, 3, _blocks_title, size=3.5, into=part)
         part.suptitle(f"$\\eta$ = {ratio:g}, {word}", fontsize=12, x=0.01, ha="left")
@@ -142,4 +142,4 @@ def gallery(
         top = low[1] + tallest[place // columns] * (high[0] - low[0])
         set_limits(axes, (low, np.array([high[0], top])))
         axes.set_title(title(run.case(number)), fontsize=9.5)
-    return figure
+    return figure.figure

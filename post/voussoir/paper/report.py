@@ -7,6 +7,7 @@ import platform
 import subprocess
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -188,7 +189,7 @@ def _hinges_of_figure_10(page: Page, campaign: Campaign) -> None:
         ["blocks", "&eta;", "critical", "rigid", "elastic"], rows, anchor="hinges9")
 
 
-def _outcome(row: dict) -> str:
+def _outcome(row: dict[str, Any]) -> str:
     """Hinges of an arch that falls, else its verdict."""
     return _joined(row["intrados_hinge_deg"]) if row["verdict"] == "collapsed" else row["verdict"]
 

@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy.typing as npt
 
@@ -101,7 +102,8 @@ def critical_near_limit(distance: npt.ArrayLike, theory: str) -> tuple[Value, Va
     """Leading terms of `critical` at a distance alpha_limit - alpha from the limit of the theory [rad]."""
     wanted = "a distance in [0, alpha_limit) rad"
     routine = theory_api.critical_near_limit
-    return evaluate(routine, {"distance": distance}, [wanted], theory_number(theory), results=3)
+    beta, eta, h = evaluate(routine, {"distance": distance}, [wanted], theory_number(theory), results=3)
+    return beta, eta, h
 
 
 def equilibrium_thickness(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value:
@@ -157,6 +159,7 @@ def _embraced(theory: str) -> Callable[[], str]:
     return words
 
 
-def _critical(solve, alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
+def _critical(solve: Callable[..., Any], alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
     """Call one of the Fortran routines that return beta, eta and h."""
-    return evaluate(solve, {"alpha": alpha}, [_embraced(theory)], theory_number(theory), results=3)
+    beta, eta, h = evaluate(solve, {"alpha": alpha}, [_embraced(theory)], theory_number(theory), results=3)
+    return beta, eta, h

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -51,13 +51,15 @@ def columns(**arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Column]]:
     return shape, [np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for array in arrays]
 
 
-def shaped(shape: tuple[int, ...], column: npt.NDArray) -> Value:
+def shaped(shape: tuple[int, ...], column: Column) -> Value:
     """A result in the shape of the arguments; a number where they were numbers."""
-    return column.reshape(shape)[()]
+    value: Value = column.reshape(shape)[()]
+    return value
 
 
 def evaluate(
-    routine: Callable, arguments: Mapping[str, npt.ArrayLike], ranges: Sequence[Range], *numbers: int, results: int = 1
+    routine: Callable[..., Any], arguments: Mapping[str, npt.ArrayLike], ranges: Sequence[Range], *numbers: int,
+    results: int = 1
 ) -> tuple[Value, ...]:
     """Call a routine of the Fortran layer for every element of its arguments.
 
@@ -82,7 +84,9 @@ def evaluate(
     return tuple(shaped(shape, column) for column in found)
 
 
-def refuse(fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[Range]) -> None:
+def refuse(
+    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray[Any]], ranges: Sequence[Range]
+) -> None:
     """Raise the ValueError, with the offending value, that a fault of the Fortran layer stands for.
 
     A fault is the place of the argument and of its element, from 1; zeros where all is well.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -107,7 +108,10 @@ def discrete_solution(
     return DiscreteSolution(STATUS[status[0]], ratio, float(h[0]) if found else math.nan, **bound)
 
 
-def _solve(joints, alpha, facet, friction, springing_no_slip):
+def _solve(
+    joints: npt.ArrayLike, alpha: npt.ArrayLike | None, facet: npt.ArrayLike | None, friction: npt.ArrayLike | None,
+    springing_no_slip: bool
+) -> tuple[Any, ...]:
     """Shape, status, eta, thrust, joints (5, n), roles (5, n), flat facet and friction."""
     facet = 0.0 if facet is None else _positive_facet(facet)
     friction = _NO_SLIP if friction is None else friction
@@ -127,7 +131,9 @@ def _solve(joints, alpha, facet, friction, springing_no_slip):
     return shape, status.astype(int), eta.astype(float), h.astype(float), joint, role, flat
 
 
-def _solve_equal(joints, alpha, facet, friction, springing_no_slip):
+def _solve_equal(
+    joints: npt.ArrayLike, alpha: npt.ArrayLike, facet: npt.ArrayLike, friction: npt.ArrayLike, springing_no_slip: bool
+) -> tuple[Any, ...]:
     """The same for arches of equal voussoirs."""
     shape, flat = columns(joints=joints, alpha=alpha, facet=facet, friction=friction)
     count = flat[0]
@@ -153,6 +159,6 @@ def _positive_facet(facet: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return array
 
 
-def _refuse(fault, names, flat) -> None:
+def _refuse(fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray[Any]]) -> None:
     """Raise what a fault stands for."""
     refuse(fault, names, flat, [_WANTS[name] for name in names])

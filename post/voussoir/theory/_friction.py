@@ -53,7 +53,8 @@ def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SE
     """
     ranges = ["a coefficient of mu_mixed or more, see friction()", _ANGLE]
     arguments = {"mu": mu, "alpha": alpha}
-    return evaluate(theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3)
+    beta, eta, h = evaluate(theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3)
+    return beta, eta, h
 
 
 def friction_thickness(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> Value:

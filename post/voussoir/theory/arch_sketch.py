@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -17,6 +19,11 @@ def on_circle(radius: float | np.ndarray, angle: float | np.ndarray) -> np.ndarr
     return np.array([radius * np.sin(angle), radius * np.cos(angle)])
 
 
+def pair(point: np.ndarray) -> tuple[float, float]:
+    """Return the coordinates of a point (2)."""
+    return float(point[0]), float(point[1])
+
+
 def chunk(start: float, end: float, eta: float) -> np.ndarray:
     """Outline (2, n) of the part of the arch between two angles from the crown [rad]."""
     angle = np.linspace(start, end, STATIONS)
@@ -24,36 +31,37 @@ def chunk(start: float, end: float, eta: float) -> np.ndarray:
     return np.hstack([outer, inner, outer[:, :1]])
 
 
-def draw_arch(axes: Axes, alpha: float, eta: float, **style) -> Axes:
+def draw_arch(axes: Axes, alpha: float, eta: float, **style: Any) -> Axes:
     """Draw the outline of an arch."""
-    options = {"facecolor": STONE, "edgecolor": INK[0], "linewidth": 0.9, "zorder": 1} | style
+    options: dict[str, Any] = {"facecolor": STONE, "edgecolor": INK[0], "linewidth": 0.9, "zorder": 1} | style
     axes.fill(*chunk(-alpha, alpha, eta), **options)
     axes.set_aspect("equal")
     axes.axis("off")
     return axes
 
 
-def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style) -> Axes:
+def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style: Any) -> Axes:
     """Draw the line of thrust through the extrados of crown and springings, eq. (11)."""
     angle = np.linspace(0.0, alpha, STATIONS)
     ratio = theory.thrust_line(angle, alpha, eta, name)
     x, y = on_circle(1 - ratio * eta / 2, angle)
-    axes.plot(np.hstack([-x[::-1], x]), np.hstack([y[::-1], y]), **({"color": INK[1], "zorder": 3} | style))
+    options: dict[str, Any] = {"color": INK[1], "zorder": 3} | style
+    axes.plot(np.hstack([-x[::-1], x]), np.hstack([y[::-1], y]), **options)
     return axes
 
 
-def draw_hinges(axes: Axes, points: np.ndarray, **style) -> Axes:
+def draw_hinges(axes: Axes, points: np.ndarray, **style: Any) -> Axes:
     """Draw hinges (2, n) with x >= 0, and their mirror images."""
-    options = {"marker": "o", "linestyle": "", "color": INK[0], "markerfacecolor": "white", "zorder": 5} | style
+    look: dict[str, Any] = {"marker": "o", "linestyle": "", "color": INK[0], "markerfacecolor": "white", "zorder": 5}
     for side in (1, -1):
-        axes.plot(side * points[0], points[1], **options)
+        axes.plot(side * points[0], points[1], **(look | style))
     return axes
 
 
 def rotated(points: np.ndarray, about: np.ndarray, onto: np.ndarray, angle: float) -> np.ndarray:
     """Points (2, n) turned clockwise about one point, which is carried to another [rad]."""
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    return onto[:, None] + turn @ (points - about[:, None])
+    return np.asarray(onto[:, None] + turn @ (points - about[:, None]))
 
 
 def collapsed_half(alpha: float, beta: float, eta: float, turn: float) -> tuple[list[np.ndarray], np.ndarray]:

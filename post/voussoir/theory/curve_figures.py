@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,7 +19,7 @@ _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
     """Figure 4: eta(beta) of the semicircle, with the three conditions of figure 3."""
     alpha = math.radians(alpha_deg)
-    beta, eta, _ = theory.critical(alpha, "ccr")
+    beta, eta, _ = map(float, theory.critical(alpha, "ccr"))
     figure, axes = plt.subplots(figsize=(5.0, 3.6))
     draw_curve(axes, alpha, "ccr", color=INK[0])
     for share, word in (
@@ -110,7 +111,7 @@ def _compare(axes: Axes, alpha: float) -> None:
             markeredgewidth=1.5, label=label, zorder=5)
 
 
-def draw_curve(axes: Axes, alpha: float, name: str, **style) -> Axes:
+def draw_curve(axes: Axes, alpha: float, name: str, **style: Any) -> Axes:
     """Draw eta(beta) from the crown to the springing."""
     beta = np.linspace(0.0, alpha, 801)
     axes.plot(np.degrees(beta), theory.equilibrium_thickness(beta, alpha, name), **style)

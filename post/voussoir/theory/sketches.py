@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from voussoir import theory
 from voussoir.plot.figure_style import DASHES, INK, STONE
-from voussoir.theory.arch_sketch import chunk, draw_arch, draw_hinges, draw_mechanism, draw_thrust, on_circle
+from voussoir.theory.arch_sketch import chunk, draw_arch, draw_hinges, draw_mechanism, draw_thrust, on_circle, pair
 
 _ARROW = {"arrowstyle": "-|>", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
 _SPAN = {"arrowstyle": "<|-|>", "color": INK[0], "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
@@ -21,7 +21,7 @@ _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 def collapse_mode(alpha_deg: float = 120.0) -> Figure:
     """Figure 1: the critical arch, its line of thrust, and how it falls."""
     alpha = math.radians(alpha_deg)
-    beta, eta, h = theory.critical(alpha, "ccr")
+    beta, eta, h = map(float, theory.critical(alpha, "ccr"))
     figure, axes = plt.subplots(figsize=(6.4, 5.2))
     draw_arch(axes, alpha, eta)
     draw_thrust(axes, alpha, eta, "ccr")
@@ -29,7 +29,7 @@ def collapse_mode(alpha_deg: float = 120.0) -> Figure:
     hinges = on_circle(1 + eta / 2 * np.array([1, -1, 1]), np.array([0.0, beta, alpha]))
     draw_hinges(axes, hinges, markersize=7)
     for letter, point, shift in zip("ABC", hinges.T, ((0.03, 0.1), (-0.14, -0.06), (0.06, -0.1))):
-        axes.text(*(point + shift), letter, fontsize=12)
+        axes.text(*pair(point + shift), letter, fontsize=12)
     for angle, label in ((beta, r"$\beta$"), (alpha, r"$\alpha$")):
         draw_angle(axes, angle, 0.28 if angle == beta else 0.42, label)
     rows = [f"$\\alpha$ = {alpha_deg:g}°"]
@@ -68,22 +68,22 @@ def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4)
         ("$O$", np.zeros(2), (-0.08, -0.06)),
     ):
         axes.plot(*spot, marker="o", color=INK[0], markersize=4, zorder=6)
-        axes.text(*(spot + shift), label, fontsize=12, zorder=7)
+        axes.text(*pair(spot + shift), label, fontsize=12, zorder=7)
     axes.plot([0, radius[0]], [0, radius[1]], color=INK[0], linewidth=0.7)
     axes.plot([0, 0], [0, crown[1]], color=INK[0], linewidth=0.7)
     draw_angle(axes, beta, 0.25, r"$\beta$")
     outer, inner = on_circle(1 + eta / 2, -0.5), on_circle(1 - eta / 2, -0.5)
-    axes.annotate("", outer, inner, arrowprops=_SPAN)
+    axes.annotate("", pair(outer), pair(inner), arrowprops=_SPAN)
     return label_lengths(axes, figure, eta, ratio, beta)
 
 
 def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: float) -> Figure:
     """Finish figure 2: thickness, radius and eccentricity, at a joint and its ratio 2e/t."""
-    axes.text(*(on_circle(1.0, -0.5) + (0.03, -0.02)), "$t$", fontsize=12)
-    axes.text(*(on_circle(0.55, beta) + (0.03, -0.07)), "$r$", fontsize=12)
+    axes.text(*pair(on_circle(1.0, -0.5) + (0.03, -0.02)), "$t$", fontsize=12)
+    axes.text(*pair(on_circle(0.55, beta) + (0.03, -0.07)), "$r$", fontsize=12)
     aside = beta + 0.16
-    axes.annotate("", on_circle(1.0, aside), on_circle(1 - ratio * eta / 2, aside), arrowprops=_SPAN)
-    axes.text(*on_circle(1 - ratio * eta / 4, aside + 0.09), "$e$", fontsize=12)
+    axes.annotate("", pair(on_circle(1.0, aside)), pair(on_circle(1 - ratio * eta / 2, aside)), arrowprops=_SPAN)
+    axes.text(*pair(on_circle(1 - ratio * eta / 4, aside + 0.09)), "$e$", fontsize=12)
     for radius in (1.0, 1 - ratio * eta / 2):
         ends = on_circle(radius, np.array([beta, aside + 0.03]))
         axes.plot(*ends, color=INK[0], linewidth=0.5, zorder=4)
@@ -96,7 +96,7 @@ def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: fl
 def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1.0, 0.6)) -> Figure:
     """Figure 3: lines of thrust of a super-critical, the critical and a sub-critical semicircle."""
     alpha = math.radians(alpha_deg)
-    beta, critical, _ = theory.critical(alpha, "ccr")
+    beta, critical, _ = map(float, theory.critical(alpha, "ccr"))
     figure, panels = plt.subplots(1, len(shares), figsize=(5.4, 1.8))
     for axes, share in zip(panels, shares):
         eta = share * critical
@@ -114,12 +114,12 @@ def draw_angle(axes: Axes, angle: float, radius: float, label: str) -> Axes:
     axes.plot(*on_circle(radius, np.linspace(0.0, angle, 100)), color=INK[0], linewidth=0.7)
     for end in (0.0, angle):
         axes.plot(*np.stack([np.zeros(2), on_circle(1.15 * radius, end)], axis=1), color=INK[0], linewidth=0.7)
-    axes.text(*on_circle(1.2 * radius, 0.55 * angle), label, fontsize=12, ha="center", va="center")
+    axes.text(*pair(on_circle(1.2 * radius, 0.55 * angle)), label, fontsize=12, ha="center", va="center")
     return axes
 
 
 def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, label: str, shift: tuple[float, float]) -> Axes:
     """Draw a force from tail to tip, its name shifted from the tail."""
-    axes.annotate("", end, start, arrowprops=_ARROW, zorder=6)
-    axes.text(*(np.asarray(start) + shift), label, fontsize=12, zorder=7)
+    axes.annotate("", pair(end), pair(start), arrowprops=_ARROW, zorder=6)
+    axes.text(*pair(np.asarray(start) + shift), label, fontsize=12, zorder=7)
     return axes

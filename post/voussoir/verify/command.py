@@ -252,7 +252,7 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
     joints = find_joints(blocks, deck.number("scene%contact_tolerance"))
     source = Source()
     if deck.text("scene%kind") == "blocks":
-        source = read_blocks(*_files_of(deck, places), deck)
+        source = read_blocks(_files_of(deck, places)[0], deck)
         there = source.present(float(deck.text("path_time") or 0))
         if sorted(corners) != there:
             finding.faults.append(f"expected blocks {there} in the last stage, got {sorted(corners)}")
@@ -261,7 +261,8 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         gone = [make_block(n + 1, c, True) for n, c in enumerate(source.corners) if n + 1 not in corners]
         blocks = sorted(blocks + gone, key=lambda block: block.number)
     elif deck.gives("scene%analysis"):
-        source = read_lines(*_files_of(deck, places), blocks, deck)
+        lines, materials = _files_of(deck, places)
+        source = read_lines(lines, materials, blocks, deck)
     elif deck.text("scene%kind") == "arch" and not deck.is_shape():
         _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
         _check_supports(blocks, finding)

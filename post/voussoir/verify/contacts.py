@@ -214,7 +214,7 @@ def _bend(block: Block) -> np.ndarray:
     after = np.roll(block.corners, -1, axis=0) - block.corners
     after = after / np.linalg.norm(after, axis=1)[:, None]
     before = np.roll(after, 1, axis=0)
-    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.asarray(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
 
 
 def _faces(block: Block, unit: np.ndarray) -> np.ndarray:
@@ -222,7 +222,7 @@ def _faces(block: Block, unit: np.ndarray) -> np.ndarray:
     after = np.roll(block.corners, -1, axis=0) - block.corners
     after = after / np.linalg.norm(after, axis=1)[:, None]
     normal = np.array([unit[:, 1], -unit[:, 0]])
-    return (after @ normal > -DIP).T & (-np.roll(after, 1, axis=0) @ normal > -DIP).T
+    return np.asarray((after @ normal > -DIP).T & (-np.roll(after, 1, axis=0) @ normal > -DIP).T)
 
 
 def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:

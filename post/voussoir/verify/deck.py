@@ -113,7 +113,7 @@ class Deck:
     def read(self, text: str) -> float:
         """A number from its decimal, whose exponent may begin with d, or from a fraction of whole numbers."""
         if re.fullmatch(r"-?\d+/\d+", text):
-            return Fraction(text) if self.exact else float(Fraction(text))
+            return Fraction(text) if self.exact else float(Fraction(text))  # type: ignore[return-value]
         decimal = text.lower().replace("d", "e")
         try:
             number = float(decimal)
@@ -122,7 +122,7 @@ class Deck:
         # what underflows would take a fraction of any length
         if not math.isfinite(number) or number == 0 and re.search("[1-9]", decimal.partition("e")[0]):
             raise VerifyError(f"expected a number in the deck or its files, got {text[:40]!r}")
-        return Fraction(decimal) if self.exact else number
+        return Fraction(decimal) if self.exact else number  # type: ignore[return-value]
 
     def number(self, key: str) -> float:
         """A single number."""
@@ -135,7 +135,7 @@ class Deck:
     def sine_cosine(self, degrees: float) -> tuple[float, float]:
         """Sine and cosine of an angle."""
         if self.exact:
-            return sine_cosine(Fraction(degrees))
+            return sine_cosine(Fraction(degrees))  # type: ignore[return-value]
         return math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
 
     def gives(self, key: str) -> bool:

@@ -18,8 +18,9 @@ from voussoir.verify.contacts import Joint, find_joints, make_block
 from voussoir.verify.deck import Deck, VerifyError
 from voussoir.verify.lines import read_lines
 from voussoir.verify.loads import loads_on
-from voussoir.verify.proofs import Finding, Row, Scene, held_points
+from voussoir.verify.proofs import Finding, Scene, held_points
 from voussoir.verify.rational import Column, square_root
+from voussoir.verify.read import Row
 from voussoir.verify.simplex import Programme, find_best
 
 #: Most joints that are computed exactly
@@ -98,8 +99,8 @@ def _columns(exact: ExactScene, nudge: Fraction, number: dict[int, int], origin:
         # a unit of a bar's force is as long as the bar
         unit = pull.points[0] - pull.points[1] if pull.kind == "bar" else pull.direction
         column: Column = {}
-        for block, point, way in zip(pull.blocks, pull.points, (-1, 1)):
-            for i, value in _effect(way * unit, point - origin, (0, block), number).items():
+        for pulled, point, way in zip(pull.blocks, pull.points, (-1, 1)):
+            for i, value in _effect(way * unit, point - origin, (0, pulled), number).items():
                 column[i] = column.get(i, Fraction(0)) + value
         if pull.most is not None:
             # a row of its own says that the force and what is left of the bound are the bound
@@ -135,7 +136,7 @@ def _tangent(along: list[np.ndarray], k: int) -> np.ndarray:
         return along[k]
     lengths = [square_root(way @ way) for way in along]
     between = along[0] / lengths[0] + along[1] / lengths[1]
-    return between * (lengths[k] / square_root(between @ between))
+    return np.asarray(between * (lengths[k] / square_root(between @ between)))
 
 
 def _sum(column: Column, other: Column, share: Fraction) -> Column:
@@ -242,22 +243,24 @@ def check_exactly(deck: Deck, files: list[Path], rows: dict[str, list[Row]], fin
             got = "none was proven" if proven is None else f"got {float(proven[0])!r}"
             finding.faults.append(f"limit expected from exact_low to exact_high by rational arithmetic, {got}")
             return
-        ours = sum(bounds) / 2
+        ours = (bounds[0] + bounds[1]) / 2
         _keep_interval(name, min(ours, proven[0]), max(ours, proven[1]), finding)
         return
-    falls = [row["value"] for row in rows["proof_motion"][:1]]
-    carries = [row["value"] for row in rows["proof_forces"][:1]]
+    falls: list[str | None] = [row["value"] for row in rows["proof_motion"][:1]]
+    carries: list[str | None] = [row["value"] for row in rows["proof_forces"][:1]]
     if deck.searched is None:
         carries, falls = [None for _ in carries], [None for _ in falls]
     elif name == "thickness_ratio" and result["exact"]:
-        carries, falls = ([str(Fraction(result["exact"]) * (1 + way * HALF_WIDTH))] for way in (1, -1))
+        exact = Fraction(result["exact"])
+        carries, falls = [str(exact * (1 + HALF_WIDTH))], [str(exact * (1 - HALF_WIDTH))]
     for value, expected in [*((value, True) for value in carries), *((value, False) for value in falls)]:
         if not proves(scene(value), expected):
             at = "" if value is None else f" at {name} = {float(Fraction(value))!r}"
             what = "forces that carry the loads" if expected else "a mechanism that the loads drive"
             finding.faults.append(f"expected {what}{at} by rational arithmetic, none was proven")
     if deck.searched is not None and carries and falls:
-        _keep_interval(name, *sorted([Fraction(carries[0]), Fraction(falls[0])]), finding)
+        low, high = sorted(Fraction(value) for value in (carries[0], falls[0]) if value is not None)
+        _keep_interval(name, low, high, finding)
     elif carries or falls:
         at = f" at {name} = {(carries + falls)[0]}" if deck.searched is not None else ""
         what = "forces carry the loads" if carries else "the loads drive a mechanism"

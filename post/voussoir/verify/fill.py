@@ -29,12 +29,13 @@ class Chord:
     @property
     def middle(self) -> np.ndarray:
         """Half way."""
-        return (self.left + self.right) / 2
+        return np.asarray((self.left + self.right) / 2)
 
     @property
     def rise(self) -> float:
         """How much higher its right end is."""
-        return self.right[1] - self.left[1]
+        rise: float = self.right[1] - self.left[1]
+        return rise
 
 
 @dataclass
@@ -91,10 +92,11 @@ def is_covered(blocks: list[Block], block: Block, start: np.ndarray, end: np.nda
 
 def surface_of(deck: Deck, chords: list[Chord]) -> float:
     """Height of the surface of the fill."""
-    return max(max(chord.left[1], chord.right[1]) for chord in chords) + deck.number("fill%height")
+    top: float = max(max(chord.left[1], chord.right[1]) for chord in chords)
+    return top + deck.number("fill%height")
 
 
-def fill_weights(deck: Deck, blocks: list[Block]) -> list[tuple[int, np.ndarray, float]]:
+def fill_weights(deck: Deck, blocks: list[Block]) -> list[tuple[int, float, float]]:
     """Weights of what lies above the chords: the block, where the weight acts along x, and the weight."""
     chords = chords_of(deck, blocks)
     surface, backing = surface_of(deck, chords), _backing(deck, blocks)
@@ -118,7 +120,8 @@ def _backing(deck: Deck, blocks: list[Block]) -> float | None:
     if not deck.gives("fill%backing_height"):
         return None
     # corners begin at the left end of the intrados
-    return blocks[0].corners[0][1] + deck.number("fill%backing_height")
+    foot: float = blocks[0].corners[0][1]
+    return foot + deck.number("fill%backing_height")
 
 
 def _below(chord: Chord, top: float) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -85,7 +85,7 @@ def pulls_of(deck: Deck, source: Source, blocks: list[Block]) -> list[Pull]:
 def _ties_of_deck(deck: Deck) -> list[Bar]:
     """Bars of &tie."""
     ends = [deck.numbers(f"tie%{name}") for name in ("x1", "y1", "x2", "y2")]
-    strength = deck.numbers("tie%strength") or [None] * len(ends[0])
+    strength: Sequence[float | None] = deck.numbers("tie%strength") or [None] * len(ends[0])
     return [Bar(np.array(place).reshape(2, 2), most) for *place, most in zip(*ends, strength)]
 
 

@@ -235,11 +235,11 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding, apart: float =
     fastest = max(float(np.abs(velocity[:, :2]).max()), scene.length * float(np.abs(velocity[:, 2]).max()), 1e-300)
     power = 0.0
     for joint in scene.joints:
-        apart = [velocity_at(scene, velocity, joint.second, end) - velocity_at(scene, velocity, joint.first, end)
-                 for end in joint.ends]
+        ends = [velocity_at(scene, velocity, joint.second, end) - velocity_at(scene, velocity, joint.first, end)
+                for end in joint.ends]
         slides = [velocity_at(scene, velocity, number, joint.middle) for number in (joint.first, joint.second)]
         friction, slip = scene.friction(joint), abs(float((slides[1] - slides[0]) @ joint.tangent))
-        opens = [float(rate @ across) for rate, across in zip(apart, joint.across)]
+        opens = [float(rate @ across) for rate, across in zip(ends, joint.across)]
         opening, crush = min(opens), scene.crush(joint)
         beyond = max(-opening, slip)
         if math.isfinite(crush):
@@ -256,17 +256,17 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding, apart: float =
         finding.keep("law of velocities", max(0.0, beyond) / fastest)
     for block in scene.blocks:
         for point, along in [] if block.fixed else held_points(scene, block):
-            rate = velocity_at(scene, velocity, block.number, point)
-            moved = max((abs(float(rate[k])) for k in range(2) if along[k]), default=0.0)
+            speed = velocity_at(scene, velocity, block.number, point)
+            moved = max((abs(float(speed[k])) for k in range(2) if along[k]), default=0.0)
             finding.keep("law of velocities", moved / fastest)
     for pull in scene.pulls:
         rates = [velocity_at(scene, velocity, number, at) if number > 0 else np.zeros(2)
                  for number, at in zip(pull.blocks, pull.points)]
-        along = float((rates[1] - rates[0]) @ pull.direction)
+        parting = float((rates[1] - rates[0]) @ pull.direction)
         if pull.most is None:
-            finding.keep("law of velocities", max(0.0, -along) / fastest)
+            finding.keep("law of velocities", max(0.0, -parting) / fastest)
         else:
-            power += pull.most * min(0.0, along)
+            power += pull.most * min(0.0, parting)
     load = loads_on(scene.deck, scene.source, scene.blocks)
     # what the power of a decision is a share of is what the program takes, too
     size = load if scene.deck.searched is None else sizes_on(scene.deck, scene.source, scene.blocks)

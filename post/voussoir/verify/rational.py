@@ -42,8 +42,8 @@ class Factor:
     def __init__(self, columns: list[Column]) -> None:
         rows: dict[int, Column] = {k: {} for k in range(len(columns))}
         users: dict[int, set[int]] = {j: set(column) for j, column in enumerate(columns)}
-        for j, column in enumerate(columns):
-            for i, value in column.items():
+        for j, entries in enumerate(columns):
+            for i, value in entries.items():
                 rows[i][j] = value
         self.steps: list[tuple[int, int, Fraction, Column, Column]] = []
         while rows:
@@ -51,7 +51,7 @@ class Factor:
             if not rows[row]:
                 raise ZeroDivisionError("the matrix is singular")
             entries = rows.pop(row)
-            column = min(entries, key=lambda j: (len(users[j]), j))
+            _, column = min((len(users[j]), j) for j in entries)
             pivot = entries.pop(column)
             for j in entries:
                 users[j].discard(row)

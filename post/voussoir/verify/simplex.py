@@ -7,8 +7,10 @@ set of columns; the self-dual simplex method leads from any of them to the best 
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any, Union
 
 import numpy as np
 
@@ -18,6 +20,9 @@ from voussoir.verify.rational import Column, Factor
 ROUNDING, DEPENDENT = 1e-10, 1e-7
 #: Most exchanges of a column, in floating point for each row and exactly
 MOST_FLOAT, MOST_EXACT = 20, 300
+
+#: Numbers in floating point or exact ones
+_Numbers = Union[np.ndarray, Sequence[Fraction]]
 
 
 @dataclass
@@ -45,10 +50,10 @@ class _Floats:
         self.inverse = np.linalg.inv(columns[:, basis])
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        return self.inverse @ right
+        return np.asarray(self.inverse @ right)
 
     def solve_transposed(self, right: np.ndarray) -> np.ndarray:
-        return self.inverse.T @ right
+        return np.asarray(self.inverse.T @ right)
 
 
 def find_best(programme: Programme) -> Vertex | None:
@@ -90,7 +95,7 @@ def _improve_floats(columns: np.ndarray, right: np.ndarray, basis: list[int], wa
     source = np.random.default_rng(1)
     right = right / max(np.abs(right).max(), 1e-300)
     shift = columns[:, basis] @ source.uniform(1.0, 2.0, rows)
-    cost, extra = np.zeros(count), -source.uniform(1.0, 2.0, count)
+    cost, extra = np.zeros(count), -source.uniform(np.full(count, 1.0), 2.0)
     cost[-1], extra[basis] = way, 0.0
     for _ in range(MOST_FLOAT * rows):
         solver = _Floats(columns, basis)
@@ -120,7 +125,9 @@ def _improve_floats(columns: np.ndarray, right: np.ndarray, basis: list[int], wa
     return basis
 
 
-def _leaving(x, more_x, z, more_z, zero) -> tuple[float, int, int] | None:
+def _leaving(
+    x: _Numbers, more_x: _Numbers, z: _Numbers, more_z: _Numbers, zero: float
+) -> tuple[Any, int, int] | None:
     """Up to where a vertex is the best one of a disturbed programme, and the column or row that ends it."""
     rows = [(-value / more, -1, i) for i, (value, more) in enumerate(zip(x, more_x)) if value < -zero and more > 0]
     columns = [(-value / more, j, -1) for j, (value, more) in enumerate(zip(z, more_z)) if value < -zero and more > 0]
