@@ -1,9 +1,9 @@
 !> Checks of restart files and of the points of live loads
 submodule (dda_scene_check) dda_start_check
-   use dda_deck, only : deck_error, file_beside, key_error, place_of
+   use dda_deck, only : deck_error, file_beside, key_error, place_of, source_of
    use dda_deck_keys, only : deck_key
    use dda_key_names, only : live_group, load_displacement_factor, load_load_factor, &
-      & search_parameter, vehicle_group
+      & search_parameter, support_left_dx, support_right_rotation_deg, vehicle_group
    use dda_key_value, only : deck_place_t
    use dda_live_loads, only : bears_live, check_live_points
    use dda_restart, only : check_restart, load_restart
@@ -44,7 +44,7 @@ contains
       place = factor_place(deck, load_displacement_factor)
       if (place%line > 0 .and. .not. leads_points(deck)) call deck_error(error, &
          & "load%displacement_factor needs a prescribed displacement, got " &
-         & //"none; add a displacement line to a file of blocks", deck, place)
+         & //"none; add &support or a displacement line of a file of blocks", deck, place)
       if (allocated(error)) return
       place = factor_place(deck, load_load_factor)
       points = has_group(deck, live_group) .or. has_group(deck, vehicle_group)
@@ -65,12 +65,13 @@ contains
       end do
    end procedure check_live_cases
 
-   !> Whether a file of blocks leads a point
+   !> Whether a point is led
    pure logical function leads_points(deck)
       type(deck_t), intent(in) :: deck
       integer :: i
 
-      leads_points = .false.
+      leads_points = source_of(deck) == "shape" &
+         & .and. any(deck%value(support_left_dx:support_right_rotation_deg)%given)
       if (.not. allocated(deck%plan%boundary%held)) return
       do i = 1, size(deck%plan%boundary%held)
          associate (path => deck%plan%boundary%held(i)%path)

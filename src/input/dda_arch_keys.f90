@@ -5,7 +5,7 @@ module dda_arch_keys
    implicit none
    private
 
-   public :: arch_keys, fill_keys, tie_keys
+   public :: arch_keys, fill_keys, support_keys, tie_keys
 
    !> Keys of &arch
    type(key_t), parameter :: arch_keys(*) = [ &
@@ -72,6 +72,21 @@ module dda_arch_keys
             meaning="Height of the buttresses from the ground to the springings."), &
       key_t("arch", "lune_deg", unit="deg", without="1 m of depth", within=[0.0_wp, 360.0_wp], &
             above=0.0_wp, meaning="Angle of the lune of a dome about x = 0.")]
+
+   !> Keys of &support
+   type(key_t), parameter :: support_keys(*) = [ &
+      key_t("support", "left_dx", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
+            meaning="Displacement of the left springing along x."), &
+      key_t("support", "left_dy", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
+            meaning="Displacement of the left springing upwards."), &
+      key_t("support", "left_rotation_deg", unit="deg", default="0.0", &
+            within=[-90.0_wp, 90.0_wp], meaning="Its rotation about the middle of its joint."), &
+      key_t("support", "right_dx", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
+            meaning="Displacement of the right springing along x."), &
+      key_t("support", "right_dy", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
+            meaning="Displacement of the right springing upwards."), &
+      key_t("support", "right_rotation_deg", unit="deg", default="0.0", &
+            within=[-90.0_wp, 90.0_wp], meaning="Its rotation about the middle of its joint.")]
 
    !> Keys of &fill
    type(key_t), parameter :: fill_keys(*) = [ &

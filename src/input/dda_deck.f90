@@ -9,9 +9,9 @@ module dda_deck
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error, warnings_t
    use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
-      & arch_joints_deg, arch_lune_deg, arch_shape, arch_span, arch_voussoirs, fill_group, &
+      & arch_joints_deg, arch_shape, arch_span, arch_voussoirs, fill_group, &
       & ground_record, limerick_dynamic, material_compressive_strength, scene_kind, search_group, &
-      & search_parameter, tie_group
+      & search_parameter, support_right_rotation_deg, tie_group
    use dda_key_value, only : deck_place_t, deck_value_t, default_value, set_number, set_text
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
@@ -132,17 +132,18 @@ contains
 
       kind = deck%value(scene_kind)%text
       if (kind /= "arch") return
-      shaped = any(deck%value(arch_span:arch_lune_deg)%given) &
+      shaped = any(deck%value(arch_span:support_right_rotation_deg)%given) &
          & .or. has_group(deck, fill_group) .or. has_group(deck, tie_group) &
          & .or. deck%value(material_compressive_strength)%given &
          & .or. deck%value(arch_shape)%text /= "circular"
       if (.not. shaped .and. deck%searched%key > 0) then
-         shaped = deck%searched%key >= arch_shape .and. deck%searched%key <= arch_lune_deg &
+         shaped = deck%searched%key >= arch_shape &
+            & .and. deck%searched%key <= support_right_rotation_deg &
             & .or. deck%searched%key == material_compressive_strength
       else if (.not. shaped .and. has_group(deck, search_group)) then
          name = lower_case(deck%value(search_parameter)%text)
          name = name(index(name, "%") + 1:)
-         shaped = any(name == deck_key(arch_shape:arch_lune_deg)%name) &
+         shaped = any(name == deck_key(arch_shape:support_right_rotation_deg)%name) &
             & .or. name == "compressive_strength"
       end if
       if (shaped) kind = "shape"

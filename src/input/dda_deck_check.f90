@@ -5,7 +5,7 @@ submodule (dda_read_deck) dda_deck_check
    use dda_deck_sweep, only : choose_cases, turn_to_case
    use dda_key_names, only : fill_group, fill_passive_share, fill_unit_weight, ground_columns, &
       & ground_record, load_gravity, material_density, material_unit_weight, output_max_cases, &
-      & scene_analysis, tie_group, vehicle_axles
+      & scene_analysis, support_group, tie_group, vehicle_axles
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, field_of, n_columns, read_record, &
@@ -145,6 +145,10 @@ contains
       else if (kind /= "arch" .and. has_group(deck, arch_group)) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
             "'; remove one of the two", deck, deck%group(arch_group))
+      else if (kind /= "arch" .and. has_group(deck, support_group)) then
+         call deck_error(error, "&support needs an arch, got scene%kind = '"//kind// &
+            "'; remove it, and add displacement lines to a file of blocks", deck, &
+            deck%group(support_group))
       else if (kind /= "arch" .and. has_group(deck, fill_group)) then
          call deck_error(error, "&fill needs an arch, got scene%kind = '"//kind// &
             "'; remove one of the two", deck, deck%group(fill_group))

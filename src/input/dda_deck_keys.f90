@@ -3,7 +3,7 @@
 !> A new key is one entry here, its name in dda_key_names, and its paragraph in docs/input.md.
 !> Reading, range checks, --set, sweeps, searches and the printed help follow from the entry.
 module dda_deck_keys
-   use dda_arch_keys, only : arch_keys, fill_keys, tie_keys
+   use dda_arch_keys, only : arch_keys, fill_keys, support_keys, tie_keys
    use dda_deck_key, only : group_t, key_kind, key_t
    use dda_kinds, only : wp
    implicit none
@@ -15,6 +15,7 @@ module dda_deck_keys
    type(group_t), parameter :: deck_group(*) = [ &
       group_t("scene", "subject of the study"), &
       group_t("arch", "shape of an arch, with its rings, spans and piers"), &
+      group_t("support", "displacements of the springings of an arch"), &
       group_t("material", "material of the blocks"), &
       group_t("joint", "Mohr-Coulomb law of the joints"), &
       group_t("load", "loads on all blocks"), &
@@ -282,9 +283,9 @@ module dda_deck_keys
             meaning="Upper limit on the number of cases.")]
 
    !> All keys, group by group, in the order of the groups
-   type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, live_keys, vehicle_keys, fill_keys, tie_keys, ground_keys, analysis_keys, &
-      limerick_keys, &
+   type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, support_keys, material_keys, &
+      joint_keys, load_keys, live_keys, vehicle_keys, fill_keys, tie_keys, ground_keys, &
+      analysis_keys, limerick_keys, &
       search_keys, sweep_keys, output_keys]
 
 contains

@@ -13,6 +13,8 @@ module dda_key_names
          & arch_thickness, arch_crown_thickness, arch_springing_thickness, arch_joint_direction, &
          & arch_rings, arch_spans, arch_pier_width, arch_pier_height, arch_pier_courses, &
          & arch_buttress_width, arch_buttress_height, arch_lune_deg
+      enumerator :: support_left_dx, support_left_dy, support_left_rotation_deg, &
+         & support_right_dx, support_right_dy, support_right_rotation_deg
       enumerator :: material_density, material_unit_weight, material_young, material_poisson, &
          & material_compressive_strength, material_plane
       enumerator :: joint_friction_deg, joint_cohesion, joint_tension, joint_residual_deg, &
@@ -49,8 +51,8 @@ module dda_key_names
 
    !> Groups, likewise
    enum, bind(c)
-      enumerator :: scene_group = 1, arch_group, material_group, joint_group, load_group, &
-         & live_group, vehicle_group, fill_group, tie_group, ground_group, analysis_group, &
-         & limerick_group, search_group, sweep_group, output_group
+      enumerator :: scene_group = 1, arch_group, support_group, material_group, joint_group, &
+         & load_group, live_group, vehicle_group, fill_group, tie_group, ground_group, &
+         & analysis_group, limerick_group, search_group, sweep_group, output_group
    end enum
 end module dda_key_names

@@ -46,13 +46,14 @@ module dda_model_table
       model_t("limerick", "current", of_original, "dda export writes such arches as blocks")]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(19) = [ &
+   type(search_t), parameter :: search(20) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
          "for mode = 'limerick' only"), &
       search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
          "pier_width pier_height buttress_width buttress_height lune_deg", "shape", "", "", &
          "setting one makes the arch a shape"), &
       search_t("arch", "", "arch shape", "arch", "arch", "needs an arch"), &
+      search_t("support", "", "shape", "", "", "needs an arch"), &
       search_t("fill", "", "shape", "", "", "needs an arch"), &
       search_t("tie", "", "shape", "", "", "needs an arch"), &
       search_t("material", "compressive_strength", "shape blocks", "", "", &
@@ -63,8 +64,8 @@ module dda_model_table
       search_t("joint", "residual_deg slip_length", "", "", "", &
          "the verdict may change more than once: use &sweep"), &
       search_t("joint", "", all_kinds, of_original, of_original), &
-      search_t("load", "displacement_factor", "blocks", "blocks", "", &
-         "for files of blocks only"), &
+      search_t("load", "displacement_factor", "shape blocks", "blocks", "", &
+         "for &support and files of blocks only"), &
       search_t("load", "water_rise", "blocks", "blocks", "", &
          "for files of blocks only"), &
       search_t("load", "", all_kinds, of_original, of_original), &

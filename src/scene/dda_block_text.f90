@@ -213,7 +213,7 @@ contains
       call add_line(lines, "! the arch of "//deck%file//", written by dda export")
       associate (plan => assembly%plan)
          do b = 1, size(plan%fixed)
-            call add_block(trim(merge("block fixed", "block      ", plan%fixed(b))) &
+            call add_block(trim(merge("block      ", "block fixed", scene%system%equation(b) > 0)) &
                & //trim(merge(" material 2", "           ", plan%material(b) == 2)), &
                & plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1), &
                & plan%origin, lines)
@@ -229,6 +229,14 @@ contains
                call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
                   & //to_text(loaded%block)//" "//fields(loaded%point + scene%origin, " ")//" " &
                   & //fields(loaded%force%value(:, 1), " "))
+            end associate
+         end do
+      end if
+      if (allocated(scene%settings%boundary%held)) then
+         do i = 1, size(scene%settings%boundary%held)
+            associate (held => scene%settings%boundary%held(i))
+               call add_line(lines, "displacement block "//to_text(held%block)//" " &
+                  & //fields([held%point + scene%origin, held%path%value(:, 1)], " "))
             end associate
          end do
       end if

@@ -7,12 +7,13 @@ submodule (dda_deck_scene) dda_blocks_of_deck
    use dda_deck, only : has_group
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
    use dda_key_names, only : arch_lune_deg, fill_group, joint_cohesion, joint_friction_deg, &
-      & joint_residual_deg, joint_slip_length, joint_tension, load_displacement_factor, &
-      & load_gravity, load_water_rise, scene_kind, tie_group
+      & joint_residual_deg, joint_slip_length, joint_tension, load_gravity, &
+      & load_water_rise, scene_kind, tie_group
    use dda_kinds, only : pi
    use dda_line_scene, only : held_blocks
    use dda_shape_check, only : add_ties
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, lead_springings, &
+      & shape_assembly, shape_form
    implicit none
 
 contains
@@ -26,6 +27,7 @@ contains
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
       if (has_group(deck, tie_group)) call add_ties(deck, assembly%plan)
+      call lead_springings(deck, assembly%plan)
       call file_scene(deck, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
       if (deck%value(arch_lune_deg)%given) call add_lune_weights(deck%value(arch_lune_deg)%number, &
@@ -43,7 +45,6 @@ contains
    !> The scene of blocks as a file or an arch gives them
    module procedure file_scene
       type(base_t) :: base
-      integer :: i
 
       base%material = material_of(deck)
       base%unit_weight = unit_weight(deck)
@@ -54,14 +55,6 @@ contains
       base%water_rise = deck%value(load_water_rise)%number
       scene%settings = settings_of(deck, pi/2.0_wp, size(blocks%fixed))
       call block_scene(blocks, base, scene)
-      if (.not. deck%value(load_displacement_factor)%given) return
-      if (.not. allocated(scene%settings%boundary%held)) return
-      do i = 1, size(scene%settings%boundary%held)
-         associate (path => scene%settings%boundary%held(i)%path)
-            if (allocated(path%value)) path%value = &
-               & deck%value(load_displacement_factor)%number*path%value
-         end associate
-      end do
    end procedure file_scene
 
    !> Number of blocks that can move in the scene of a case

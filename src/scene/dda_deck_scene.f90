@@ -7,7 +7,8 @@ module dda_deck_scene
    use dda_deck_keys, only : deck_key
    use dda_error, only : error_t, fatal_error
    use dda_key_names, only : arch_half_angle_deg, arch_thickness_ratio, &
-      & load_gravity_direction_deg, load_horizontal_coefficient, load_load_factor
+      & load_displacement_factor, load_gravity_direction_deg, load_horizontal_coefficient, &
+      & load_load_factor
    use dda_key_value, only : number_fits
    use dda_kinds, only : degree, wp
    use dda_line_scene, only : line_scene
@@ -76,12 +77,27 @@ contains
          call line_scene(deck, scene)
       case ("blocks")
          call file_scene(deck, deck%plan, scene)
+         call scale_paths(deck%value(load_displacement_factor)%number, scene)
       case ("shape")
          call shape_scene(deck, scene)
       end select
       call move_ground(deck, scene)
       if (source_of(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
+
+   !> Multiply the displacements of points that a file of blocks leads
+   pure subroutine scale_paths(factor, scene)
+      real(wp), intent(in) :: factor         !! Their factor
+      type(scene_t), intent(inout) :: scene  !! The scene; its paths are multiplied
+      integer :: i
+
+      if (.not. allocated(scene%settings%boundary%held)) return
+      do i = 1, size(scene%settings%boundary%held)
+         associate (path => scene%settings%boundary%held(i)%path)
+            if (allocated(path%value)) path%value = factor*path%value
+         end associate
+      end do
+   end subroutine scale_paths
 
    !> Make a deck a family, its numbers read
    pure subroutine new_family(parameter, family)

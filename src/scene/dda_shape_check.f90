@@ -12,12 +12,14 @@ module dda_shape_check
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_yields
    use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
-      & arch_crown_thickness, arch_lune_deg, arch_shape, arch_thickness, arch_thickness_ratio, &
+      & arch_buttress_width, arch_crown_thickness, arch_lune_deg, arch_shape, arch_thickness, &
+      & arch_thickness_ratio, &
       & fill_backing_height, fill_backing_unit_weight, fill_friction_deg, fill_group, fill_height, &
       & fill_passive_coefficient, fill_passive_share, fill_passive_stiffness, fill_unit_weight, &
       & joint_cohesion, joint_tension, load_gravity_direction_deg, load_horizontal_coefficient, &
-      & load_live_horizontal, search_group, search_high, search_low, search_parameter, tie_ea, &
-      & tie_group, tie_prestress, tie_strength, tie_x1, tie_x2, tie_y1
+      & load_live_horizontal, search_group, search_high, search_low, search_parameter, &
+      & support_left_dx, support_right_rotation_deg, tie_ea, tie_group, tie_prestress, &
+      & tie_strength, tie_x1, tie_x2, tie_y1
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : place_text, to_text
@@ -135,6 +137,11 @@ contains
          if (deck%value(fill_backing_height)%given) key = fill_backing_height
          problem = "expected passive_stiffness in current geometry, or with strength of "// &
             & "joints, got none; give it"
+      else if (deck%value(arch_buttress_width)%given &
+         & .and. any(deck%value(support_left_dx:support_right_rotation_deg)%given)) then
+         key = arch_buttress_width
+         problem = "expected springings that &support can displace, got buttresses; remove one "// &
+            & "of the two"
       else if (deck%value(arch_lune_deg)%given) then
          key = arch_lune_deg
          if (.not. at_rest) problem = "expected a static run in reference geometry, without "// &

@@ -2,6 +2,7 @@
 module dda_shape_scene
    use dda_arch_assembly, only : arch_assembly_t, assemble_arch
    use dda_arch_form, only : arch_form_t, form_problem_t
+   use dda_block_input, only : block_plan_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_contacts, only : joint_place
@@ -11,14 +12,16 @@ module dda_shape_scene
       & arch_joint_direction, arch_joints_deg, arch_lune_deg, arch_pier_courses, &
       & arch_pier_height, arch_pier_width, arch_radius, arch_right_rise, arch_rings, arch_rise, &
       & arch_shape, arch_span, arch_spans, arch_springing, arch_springing_thickness, &
-      & arch_thickness, arch_thickness_ratio, arch_voussoirs
+      & arch_thickness, arch_thickness_ratio, arch_voussoirs, load_displacement_factor, &
+      & support_left_dx, support_right_rotation_deg
    use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
 
-   public :: add_loads, add_lune_weights, find_crown_joint, shape_assembly, shape_form
+   public :: add_loads, add_lune_weights, find_crown_joint, lead_springings
+   public :: shape_assembly, shape_form
 
    !> Default angle of the skewbacks of a flat arch [deg]
    real(wp), parameter :: usual_skewback_deg = 30.0_wp
@@ -172,6 +175,51 @@ contains
       call shape_form(deck, form, problem)
       if (len_trim(problem%text) == 0) call assemble_arch(form, assembly, problem)
    end subroutine shape_assembly
+
+   !> Displace the springings as &support says: both ends of their joints are led
+   pure subroutine lead_springings(deck, plan)
+      type(deck_t), intent(in) :: deck
+      type(block_plan_t), intent(inout) :: plan  !! Blocks of an arch without buttresses
+      integer :: block, i, key, n, side
+
+      associate (given => deck%value(support_left_dx:support_right_rotation_deg)%given, &
+         & factor => deck%value(load_displacement_factor)%number)
+         n = count([any(given(:3)), any(given(4:))])
+         if (n == 0) return
+         allocate (plan%boundary%held(2*n))
+         n = 0
+         do side = 0, 1
+            if (.not. any(given(3*side + 1:3*side + 3))) cycle
+            key = support_left_dx + 3*side
+            ! the first of the fixed blocks, and the last one
+            block = merge(size(plan%fixed), findloc(plan%fixed, .true., dim=1), side == 1)
+            plan%fixed(block) = .false.
+            associate (ends => plan%vertex(:, [plan%first_vertex(block), &
+               & plan%first_vertex(block + 1) - 1]))
+               do i = 1, 2
+                  n = n + 1
+                  plan%boundary%held(n)%block = block
+                  plan%boundary%held(n)%point = ends(:, i)
+                  plan%boundary%held(n)%path = constant_history( &
+                     & factor*[deck%value(key)%number, deck%value(key + 1)%number] &
+                     & + turned(ends(:, i) - 0.5_wp*sum(ends, 2), &
+                     & factor*degree*deck%value(key + 2)%number))
+               end do
+            end associate
+         end do
+      end associate
+
+   contains
+
+      !> Displacement of the end of an arm that is turned anticlockwise
+      pure function turned(arm, angle) result(way)
+         real(wp), intent(in) :: arm(2)  !! The arm: (2) [m]
+         real(wp), intent(in) :: angle   !! The angle [rad]
+         real(wp) :: way(2)              !! The displacement: (2) [m]
+
+         way = sin(angle)*[-arm(2), arm(1)] - 2.0_wp*sin(0.5_wp*angle)**2*arm
+      end function turned
+   end subroutine lead_springings
 
    !> Add loads to those of a scene
    pure subroutine add_loads(more, scene)

@@ -380,8 +380,9 @@ def test_everything_searched_is_right_or_refused(tmp_path: Path, kind: str, mode
     time += ", steps = 9999"
     analysis = f"&analysis mode = '{mode}'{time if mode == 'dynamic' else ''} /\n"
     for key in real_keys():
-        if kind == "arch" and (key.removeprefix("arch%") in SHAPE_KEYS or key == STRENGTH):
-            continue  # setting one makes the arch a shape, which tests/cli/test_arch_shapes.py searches
+        of_shapes = key.removeprefix("arch%") in SHAPE_KEYS or key == STRENGTH or key.startswith("support%")
+        if kind == "arch" and of_shapes:
+            continue  # setting one makes the arch a shape: test_arch_shapes.py and test_supports.py
         name = re.sub(r"[^a-z]", "_", key)
         answer = known.get(key, Answer(scene(kind), 1, 2, "refused"))
         assert (key in known) == allowed(key, kind, mode), f"{key} of {kind} in mode {mode}"

@@ -104,6 +104,9 @@ DECKS = {
     "a lune that falls": LUNE.format(0.03),
     "thickness of a lune": "&arch shape = 'circular', lune_deg = 10, voussoirs = 21, facet_deg = 2 /\n"
                            "&search parameter = 'thickness_ratio', low = 0.01, high = 0.2 /\n",
+    "a spread arch": "&arch thickness_ratio = 0.12, voussoirs = 16 /\n&support right_dx = 0.1 /\n",
+    "push on a settled arch": "&arch thickness_ratio = 0.12 /\n&support left_dy = -0.1 /\n"
+        "&search parameter = 'horizontal_coefficient' /\n",
     "a tie": TIED.format(1e5) + "&output thrust_bar = 1 /\n",
     "a weak tie": TIED.format(100),
     "strength of a tie": TIED.format(1e5) + "&search parameter = 'strength(1)', low = 0, high = 1e5 /\n",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from voussoir.verify.deck import SHAPES
+from voussoir.verify.deck import SHAPES, SUPPORTS
 
 #: Groups and keys that make an arch a shape besides those of &arch
 OTHERS = ("&fill", "&tie")
@@ -16,12 +16,13 @@ def is_shape(record: Sequence[str], searched: str | None) -> bool:
     """Whether a record is of an arch that is more than a circular ring of voussoirs."""
     words = [line.strip() for line in record]
     for number, word in enumerate(words):
-        if word in OTHERS or word.startswith(("fill%", "tie%")):
+        if word in OTHERS or word.startswith(("fill%", "tie%", "support%")):
             return True
         if word in SHAPES and not (word == "arch%shape" and words[number + 1 : number + 2] == ["circular"]):
             return True
     swept = [line.split()[1].split("%")[-1] for line in record if line.startswith("&sweep ")]
-    return any(f"arch%{name.split('%')[-1]}" in SHAPES for name in [*swept, searched or ""])
+    names = [name.split("%")[-1] for name in [*swept, searched or ""]]
+    return any(f"arch%{name}" in SHAPES or f"support%{name}" in SUPPORTS for name in names)
 
 
 def ring_joints(first: np.ndarray, second: np.ndarray, count: int, voussoirs: int) -> list[tuple[int, int]]:

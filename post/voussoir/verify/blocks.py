@@ -10,7 +10,7 @@ import numpy as np
 
 from voussoir.files import read_text
 from voussoir.verify.contacts import depth, make_block
-from voussoir.verify.deck import Deck, VerifyError
+from voussoir.verify.deck import SUPPORTS, Deck, VerifyError
 from voussoir.verify.water import Water
 
 Point = tuple[float, float]
@@ -193,6 +193,16 @@ def _take_point(entry: list[str], rows: list[list[float]], source: Source, deck:
     other = (numbers[2], numbers[3]) if entry[0] == "fix_line" else point
     along = (entry[-1] != "y", entry[-1] != "x")
     source.held.append(Held(block, (point, other), along))
+
+
+def led_springings(deck: Deck, corners: list[np.ndarray]) -> list[Held]:
+    """Springings that &support displaces: of its blocks' corners, the first and the last end the joint."""
+    places = {"left": len(corners) - int(deck.number("arch%spans")), "right": len(corners)}
+    searched = (deck.searched or "").split("%")[-1]
+    moved = {key.split("%")[1].split("_")[0] for key in SUPPORTS if deck.gives(key) or key == f"support%{searched}"}
+    return [
+        Held(place, (tuple(corners[place - 1][0]), tuple(corners[place - 1][-1])), (True, True))
+        for side, place in places.items() if side in moved]
 
 
 def arch_corners(deck: Deck) -> list[np.ndarray]:

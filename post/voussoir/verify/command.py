@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.verify.blocks import Source, arch_corners, read_blocks
+from voussoir.verify.blocks import Source, arch_corners, led_springings, read_blocks
 from voussoir.verify.contacts import TOUCH, Block, find_joints, make_block
 from voussoir.verify.deck import LENGTHS, Deck, VerifyError, read_record
 from voussoir.verify.exact import MOST_JOINTS, check_exactly
@@ -265,20 +265,22 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         source = read_lines(lines, materials, blocks, deck)
     elif deck.text("scene%kind") == "arch" and not deck.is_shape():
         _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
-        _check_supports(blocks, finding)
+        _check_supports(blocks, source, finding)
     elif deck.is_shape():
         movable = sum(1 for block in blocks if not block.fixed)
         if not 0 < deck.voussoirs <= movable:
             raise VerifyError(f"expected {deck.voussoirs:.4g} voussoirs by deck.record, got {movable} blocks that move")
-        _check_supports(blocks, finding)
+        source.held = led_springings(deck, [block.corners for block in blocks])
+        _check_supports(blocks, source, finding)
     return Scene(blocks, joints, source, deck)
 
 
-def _check_supports(blocks: list[Block], finding: Finding) -> None:
+def _check_supports(blocks: list[Block], source: Source, finding: Finding) -> None:
     """What an arch of any shape stands on is a rectangle behind a joint: as deep as that is long, or half as deep."""
-    corners = np.concatenate([block.corners for block in blocks if not block.fixed])
+    led = {held.block for held in source.held}
+    corners = np.concatenate([block.corners for block in blocks if not block.fixed and block.number not in led])
     for block in blocks:
-        if not block.fixed:
+        if not block.fixed and block.number not in led:
             continue
         apart = np.linalg.norm(block.corners[:, None, :] - corners[None, :, :], axis=2)
         ends = [corners[row.argmin()] for row in apart if row.min() <= TOUCH * block.size]

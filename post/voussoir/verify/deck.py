@@ -74,7 +74,8 @@ SHAPES = tuple(f"arch%{name}" for name in (
     "rings", "spans", "pier_width", "pier_height", "pier_courses", "buttress_width", "buttress_height", "lune_deg",
 ))
 
-
+#: Keys of the displacements of the left and the right springing, which make an arch one, too
+SUPPORTS = tuple(f"support%{side}_{name}" for side in ("left", "right") for name in ("dx", "dy", "rotation_deg"))
 #: Lengths of an arch of any shape
 LENGTHS = tuple(f"arch%{name}" for name in (
     "span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "pier_width", "pier_height",
@@ -146,9 +147,10 @@ class Deck:
         """Whether it is an arch of any shape: blocks that are taken as blocks.csv has them."""
         given = [key for key in SHAPES if self.gives(key) and self.text(key).lower() != "circular"]
         searched = (self.searched or "").split("%")[-1]
-        more = ("&fill", "fill%", "&tie", "tie%", "material%compressive_strength")
+        more = ("&fill", "fill%", "&tie", "tie%", "support%", "material%compressive_strength")
         given += [key for key in self.values if key.startswith(more)]
         given += [key for key in (f"arch%{searched}", searched) if key in (*SHAPES, "compressive_strength")]
+        given += [key for key in SUPPORTS if key == f"support%{searched}"]
         return self.text("scene%kind") == "arch" and bool(given)
 
     def with_value(self, name: str, value: str) -> Deck:
@@ -158,7 +160,7 @@ class Deck:
             raise VerifyError(f"expected the name of a parameter, got {name!r}")
         group, key, item = match.groups()
         # keys of &scene do not vary
-        names = [full.split("%") for full in (*DEFAULTS, *OTHERS, *SHAPES) if not full.startswith("scene%")]
+        names = [full.split("%") for full in (*DEFAULTS, *OTHERS, *SHAPES, *SUPPORTS) if not full.startswith("scene%")]
         known = ["%".join(name) for name in names if name[1] == key and group in (None, name[0])]
         values = dict(self.values)
         if known:

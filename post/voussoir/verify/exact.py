@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.verify.blocks import Source, arch_corners, read_blocks
+from voussoir.verify.blocks import Source, arch_corners, led_springings, read_blocks
 from voussoir.verify.contacts import Joint, find_joints, make_block
 from voussoir.verify.deck import Deck, VerifyError
 from voussoir.verify.lines import read_lines
@@ -63,6 +63,7 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
         for row in rows:
             corners_of.setdefault(int(row["block"]), []).append([Fraction(row["x"]), Fraction(row["y"])])
         corners, still = [np.array(corners_of[n]) for n in sorted(corners_of)], [fixed[n] for n in sorted(corners_of)]
+        source.held = led_springings(deck, corners)
     rounded = [make_block(k + 1, c.astype(float), f) for k, (c, f) in enumerate(zip(corners, still))]
     blocks = [make_block(k + 1, c, f) for k, (c, f) in enumerate(zip(corners, still))]
     if deck.gives("scene%analysis"):
