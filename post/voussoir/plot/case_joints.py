@@ -38,10 +38,16 @@ TOUCHES = {
 }
 
 
-def roles_of(joints: Table) -> np.ndarray:
-    """Motion of each joint: in the collapse if there is one, else at the end of the run."""
-    mechanism = joints["mechanism"]
-    return mechanism if np.any(mechanism != "none") else joints["state"]
+def roles_of(joints: Table, moved: bool = False) -> np.ndarray:
+    """Motion of each joint: in the collapse if there is one, else at the end of the run.
+
+    A collapse from a moved shape has the hinges of that shape, too: it has begun with them.
+    """
+    mechanism, state = joints["mechanism"], joints["state"]
+    if not np.any(mechanism != "none"):
+        return state
+    kept = moved & (mechanism == "none") & np.isin(state, ("hinge_intrados", "hinge_extrados"))
+    return np.asarray(np.where(kept, state, mechanism))
 
 
 def thrust_points(joints: Table) -> np.ndarray:
@@ -76,11 +82,11 @@ class JointMarks:
         for name, x, y in (("in", "x_intrados", "y_intrados"), ("out", "x_extrados", "y_extrados"), ("at", "x", "y")):
             there = np.column_stack((joints[x], joints[y]))
             self.sides[name] = (motion.carried(there, first), motion.carried(there, second))
-        self.roles = roles_of(joints)
-        self.collapses = self.roles is joints["mechanism"]
+        self.collapses = bool(np.any(joints["mechanism"] != "none"))
+        self.roles = roles_of(joints, scene.moves)
         long = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
         # a joint of one corner turns about it always: it is marked in a collapse only
-        self.marked = long | (joints["mechanism"] != "none")
+        self.marked = long | (joints["mechanism"] != "none") | (self.collapses and scene.moves)
         self.slides = np.isfinite(joints["slides_x"])
         self.opens = np.isin(self.roles, ("hinge_intrados", "hinge_extrados", "open")) & self.marked
         lengths = np.hypot(*(self._middle("out") - self._middle("in")).T)
