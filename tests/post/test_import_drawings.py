@@ -212,6 +212,22 @@ def test_dropped_pieces_are_not_judged_unless_allowed(tmp_path: Path, capfd) -> 
     capfd.readouterr()
 
 
+def test_a_block_that_is_not_there_is_dropped_with_its_line(tmp_path: Path, capsys) -> None:
+    text = drawing(polyline("fixed", box(0, 0, 1, 1)), insert("façade", "wall"), blocks=block("other"))
+    line_of_insert = text.splitlines().index("INSERT")  # it begins with the code above
+    assert read(tmp_path, text)[0] == 0
+    assert f"dropped: INSERT on layer wall: no outline, at line {line_of_insert}\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("state", [(62, -7), (70, 1)])
+def test_hidden_layers_are_left_out_and_said(tmp_path: Path, capsys, state: tuple[int, int]) -> None:
+    table = "\n".join(groups(0, "SECTION", 2, "TABLES", 0, "LAYER", 2, "Old", *state, 0, "ENDSEC"))
+    text = table + "\n" + drawing(polyline("fixed", box(0, 0, 1, 1)), polyline("OLD", box(0, 1, 1, 1)))
+    assert read(tmp_path, text)[0] == 0
+    printed = capsys.readouterr().out
+    assert "left out: hidden layer OLD" in printed and "1 blocks, 1 of them fixed" in printed
+
+
 def test_depth_is_said_or_refused(tmp_path: Path, capsys) -> None:
     def stones(depths: tuple[float, float], axis: int) -> str:
         rows = []

@@ -97,8 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if made.dropped and not arguments.allow_dropped:
         raise ValueError(
-            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped; correct it, or run the "
-            "rest with --allow-dropped")
+            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped (see above); correct it, or run "
+            "the rest with --allow-dropped")
     return _run_deck(deck) if made.fixed else 2
 
 
@@ -159,7 +159,7 @@ def _short_ends(content: Content, scale: float) -> str:
     count = "an end that stops" if len(gaps) == 1 else f"{len(gaps)} ends that stop"
     return (
         f"expected lines that meet, got {count} at most {max(gaps):.3g} m short of another line, on {layer} at "
-        f"({end.real * scale:.6g}, {end.imag * scale:.6g}); join them with --snap {1.01 * max(gaps):.3g}, "
+        f"({end.real * scale:.10g}, {end.imag * scale:.10g}); join them with --snap {1.01 * max(gaps):.3g}, "
         "or drop them with --allow-dropped")
 
 

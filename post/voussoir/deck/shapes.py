@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -98,18 +99,21 @@ def _polygons(rows: list[tuple[str, Any, str]], notes: Notes) -> Iterator[tuple[
     shape, validation = load("shapely.geometry", "an outline"), load("shapely.validation", "an outline")
     for words, geometry, layer in rows:
         if geometry is None:
-            notes.dropped.append(words)
+            notes.drop(words, layer)
             continue
         if geometry.geom_type in ("LineString", "LinearRing") and geometry.is_closed and len(geometry.coords) > 3:
             notes.repaired.append(f"{words}: a closed line is taken as an outline")
             geometry = shape.Polygon(geometry.coords)
         found, lost = polygons_of(geometry)
-        notes.dropped += [f"{words}: {what}" for what in lost]
+        for what in lost:
+            place = "" if geometry.is_empty else f"near ({geometry.centroid.x:.10g}, {geometry.centroid.y:.10g})"
+            notes.drop(f"{words}: {what}", place)
         for polygon in found:
             if not polygon.is_valid:
                 parts = polygons_of(validation.make_valid(polygon))[0]
                 if len(parts) != 1 or abs(parts[0].area - polygon.area) > 1e-9 * polygon.area:
-                    notes.dropped.append(f"{words}: an outline that crosses itself")
+                    x, y = map(float, re.findall(r"[^\s\[\]]+", validation.explain_validity(polygon).partition("[")[2]))
+                    notes.drop(f"{words}: an outline that crosses itself", f"at ({x:.10g}, {y:.10g})")
                     continue
                 notes.repaired.append(f"{words}: a part of the outline that encloses no area is cut off")
                 polygon = parts[0]
@@ -124,7 +128,7 @@ def _snapped_shapes(shapes: list[tuple[Any, str, str]], snap: float, notes: Note
     found = []
     for polygon, (_, layer, words) in zip(polygons, shapes):
         if polygon.is_empty or not polygon.is_valid or not polygon.area > 0.0:
-            notes.dropped.append(f"{words}: no outline is left where corners are joined")
+            notes.drop(f"{words}: no outline is left where corners are joined")
             continue
         found.append((polygon, layer))
     return found

@@ -44,10 +44,13 @@ class Drawing:
                 self._bases[name] = entry.point(10, (0.0, 0.0, 0.0))
             elif entry.kind not in ("SECTION", "ENDBLK") and self._blocks:
                 self._blocks[next(reversed(self._blocks))].append(entry)
-        nameless = next((entry for entry in self._sections.get("TABLES", []) if entry.kind == "LAYER"
-                         and not entry.text(2)), None)
+        layers = [entry for entry in self._sections.get("TABLES", []) if entry.kind == "LAYER"]
+        nameless = next((entry for entry in layers if not entry.text(2)), None)
         if nameless:
             raise ValueError(f"{nameless.place}: expected a layer with a name in group 2, got none")
+        #: Layers that are off (a colour below 0) or frozen, in small letters
+        self.hidden = frozenset(
+            entry.text(2).lower() for entry in layers if entry.whole(62, 7) < 0 or entry.whole(70) & 1)
 
     def metres(self) -> float | None:
         """The unit that the drawing names [m]; None if it names none."""
@@ -98,11 +101,11 @@ class Drawing:
             number += 1
             own = entry.text(8) or "0"
             own = layer if own == "0" else own
-            if entry.kind == "INSERT":
-                name = entry.text(2).lower()
-                for inner in placement.inserts(entry, self._bases.get(name, (0.0, 0.0, 0.0)),
+            name = entry.text(2).lower()
+            if entry.kind == "INSERT" and name in self._blocks:
+                for inner in placement.inserts(entry, self._bases[name],
                                                _repeats(entry, 70), _repeats(entry, 71)):
-                    yield from self._placed(self._blocks.get(name, []), inner, own)
+                    yield from self._placed(self._blocks[name], inner, own)
                 continue
             vertices = []
             if entry.kind == "POLYLINE":
@@ -122,16 +125,19 @@ def read_dxf(drawing: Drawing, tolerance: float, snap: float, plane: Plane, note
     drawn: list[Drawn] = []
     for entry, vertices, placement, layer in drawing.entities():
         words = f"{entry.kind} on layer {layer}"
+        if layer.lower() in drawing.hidden:
+            notes.left_out.append(f"hidden layer {layer}")
+            continue
         if entry.kind in _REMARKS:
             notes.left_out.append(words)
             continue
         shape = curves_of(entry, vertices)
         if shape is None:
-            notes.dropped.append(f"{words}: no outline")
+            notes.drop(f"{words}: no outline", f"at {entry.place}")
             continue
         curves = tuple(curve for curve in shape.placed(placement, plane) if not _is_point(curve))
         if not curves:
-            notes.dropped.append(f"{words}: no length")
+            notes.drop(f"{words}: no length", f"at {entry.place}")
             continue
         drawn.append(Drawn(words, layer, curves, shape.is_closed, shape.may_close))
     yield from outlines(drawn, tolerance, snap, notes)

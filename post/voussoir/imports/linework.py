@@ -18,7 +18,7 @@ from voussoir.imports.snapping import Ends
 #: Ends and corners as near as this share of the tolerance are one
 SAME = 0.1
 _PURPOSE = "a DXF drawing"
-#: What a reader gives: words for messages, a geometry or None where there is none, the layer
+#: What a reader gives: words for messages, a geometry and its layer, or None and the place of what is none
 Found = Iterator[tuple[str, Any, str]]
 
 
@@ -67,10 +67,15 @@ def outlines(drawn: list[Drawn], tolerance: float, snap: float, notes: Notes) ->
         if len(points) > 2:
             yield one.words, shape.Polygon([(point.real, point.imag) for point in points]), one.layer
         else:
-            yield f"{one.words}: no area", None, ""
+            yield f"{one.words}: no area", None, _at(points[0] if points else one.curves[0].start)
     for layer in layers.values():
         layer.drawn = [one for one in layer.drawn if not one.is_closed]
         yield from _enclosed(layer, rows, reach, notes)
+
+
+def _at(point: complex) -> str:
+    """A place in words, in the file's own unit."""
+    return f"at ({point.real:.10g}, {point.imag:.10g})"
 
 
 def _gap(one: Drawn) -> float:
@@ -212,7 +217,9 @@ def _enclosed(layer: _Layer, rows: dict[int, list[list[complex]]], reach: float,
         words = " encloses" if left == 1 else "s enclose"
         notes.short += [
             (f"layer {layer.name}", end, gap) for end, gap in _short_ends(network, dangles, reach)]
-        yield f"{' and '.join(kinds)} on layer {layer.name}: {left} piece{words} nothing", None, ""
+        lost = next(piece for pieces in (dangles, cuts, rings) for piece in pieces.geoms)
+        yield (f"{' and '.join(kinds)} on layer {layer.name}: {left} piece{words} nothing", None,
+               _at(complex(*lost.coords[0])))
 
 
 def _short_ends(network: Any, dangles: Any, reach: float) -> Iterator[tuple[complex, float]]:
