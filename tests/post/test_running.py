@@ -54,8 +54,12 @@ def test_unknown_and_ambiguous_keys_are_refused_with_the_nearest() -> None:
         voussoir.run(ARCH, fricton_deg=40)
     with pytest.raises(ValueError, match="expected 'search%parameter' or 'sweep%parameter'"):
         voussoir.run(ARCH, parameter="friction_deg")
-    with pytest.raises(TypeError, match="expected a number"):
+    with pytest.raises(TypeError, match="or a list of them as joint%friction_deg, got <object"):
         voussoir.run(ARCH, friction_deg=object())
+    with pytest.raises(TypeError, match="as arch%joints_deg, got None"):
+        voussoir.run(TEXT, joints_deg=[0, None])
+    with pytest.raises(ValueError, match="expected the keys of &search as a dict, got 3"):
+        voussoir.run(ARCH, search=3)
 
 
 def test_what_the_program_refuses_is_an_exception_with_its_message() -> None:

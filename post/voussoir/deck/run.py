@@ -146,5 +146,5 @@ def _settings(changes: Groups) -> list[str]:
     for group, keys in changes.items():
         if group == "search" and not keys:  # nothing of a search is set: its first key starts one
             keys = {"parameter": "thickness_ratio"}
-        given += [f"{group}%{key}={value_text(value)}" for key, value in dict(keys).items()]
+        given += [f"{group}%{key}={value_text(value, f'{group}%{key}')}" for key, value in dict(keys).items()]
     return given

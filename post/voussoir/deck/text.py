@@ -20,8 +20,11 @@ _KEY = re.compile(r"[a-z]\w*(\(\d+\))?", re.ASCII | re.IGNORECASE)
 _MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "material"}
 
 
-def value_text(value: Any) -> str:
-    """A value as a deck writes it (".true.", "0.5", "'no-slip'", "0, 54.5, 90"); TypeError if it has no such value."""
+def value_text(value: Any, key: str = "") -> str:
+    """A value as a deck writes it (".true.", "0.5", "'no-slip'", "0, 54.5, 90").
+
+    TypeError, with the key where it is known, if a deck has no such value.
+    """
     if hasattr(value, "tolist"):  # NumPy
         value = value.tolist()
     if isinstance(value, bool):
@@ -33,8 +36,9 @@ def value_text(value: Any) -> str:
             raise ValueError(f"expected a text of one line, got {value!r}")
         return "'" + str(value).replace("'", "''") + "'"
     if isinstance(value, (list, tuple, range)):
-        return ", ".join(map(value_text, value))
-    raise TypeError(f"expected a number, a flag, a text or a list of them, got {value!r}")
+        return ", ".join(value_text(item, key) for item in value)
+    of_key = f" as {key}" if key else ""
+    raise TypeError(f"expected a number, a flag, a text or a list of them{of_key}, got {value!r}")
 
 
 def deck_text(groups: Groups) -> str:
@@ -42,7 +46,7 @@ def deck_text(groups: Groups) -> str:
     lines = []
     for group, keys in checked(groups).items():
         for one in _as_list(keys):
-            words = ", ".join(f"{key} = {value_text(value)}" for key, value in one.items())
+            words = ", ".join(f"{key} = {value_text(value, f'{group}%{key}')}" for key, value in one.items())
             lines.append(f"&{group} {words} /".replace("  ", " "))
     return "\n".join(lines) + "\n"
 
@@ -119,8 +123,10 @@ def _is_plain_key(name: str, value: Any, owners: Mapping[str, tuple[str, ...]]) 
 
 def _group_of(name: str, value: Any) -> Any:
     """Keys of a group that was given whole."""
-    if name == "search" and not isinstance(value, Mapping):
-        return {"parameter": value} if isinstance(value, str) else {}
+    if name == "search" and isinstance(value, str):
+        return {"parameter": value}
+    if name == "search" and value is True:
+        return {}
     if isinstance(value, Mapping) or (name == "sweep" and isinstance(value, (list, tuple))):
         return value
     raise ValueError(f"expected the keys of &{name} as a dict, got {value!r}")
