@@ -602,3 +602,26 @@ def test_two_thicknesses_that_are_equal_have_the_safety_of_one(tmp_path: Path) -
         safety.append(row_with_safety(compute(tmp_path / str(number), text), 1)["safety_thickness"])
     assert 1.0 < safety[0] < 2.0
     assert safety[1] == pytest.approx(safety[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(("fill", "surface"), [("", None), ("&fill height = 0.5, unit_weight = 18e3 /\n", 2.05)])
+def test_axles_are_drawn_where_the_vehicle_stands_worst(tmp_path: Path, fill: str, surface: float | None) -> None:
+    """On the extrados, or on the surface of the fill; the crown's extrados is 1.55 m high."""
+    run = compute(tmp_path, "&arch shape = 'segmental', span = 5, rise = 1.2, thickness = 0.35, voussoirs = 26 /\n"
+                  + fill + "&vehicle axles = 20e3, 30e3, spacings = 2.0, worst = .true. /\n"
+                  "&search parameter = 'load_factor' /\n")
+    with house_style():
+        axes = draw_case(run, 1, magnify=0.0).axes[0]
+    row = run.case(1)
+    tips = {round(text.xy[0], 9): text.xy[1] for text in axes.texts if getattr(text, "arrow_patch", None)}
+    said = {text.get_text() for text in axes.texts}
+    assert {"20 kN/m", "30 kN/m"} <= said
+    start = row["worst_position"]
+    if surface is not None:
+        assert tips == {round(x, 9): pytest.approx(surface) for x in (start, start + 2.0)}
+        return
+    radius = (2.5**2 + 1.2**2) / 2.4 + 0.35
+    above = {x: y for x, y in tips.items() if abs(x) < 2.4}
+    assert above
+    for x, y in above.items():  # the chords of the voussoirs are at most 3 mm below the circle
+        assert y == pytest.approx(1.55 - radius + np.sqrt(radius**2 - x**2), abs=3e-3)

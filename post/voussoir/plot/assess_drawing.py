@@ -53,7 +53,7 @@ def dimensions(run: Results, scene: CaseScene) -> list[Dimension]:
         return whole
     left, right = inner
     middle = 0.5 * (left[0] + right[0])
-    crown = crossings(scene, middle)
+    crown = scene.crossings(middle)
     if len(crown) < 2:
         return whole
     base = min(left[1], right[1])
@@ -88,16 +88,6 @@ def springings(run: Results, corners: np.ndarray) -> tuple[np.ndarray, np.ndarra
             return None
         ends.append(corners[best])
     return ends[0], ends[1]
-
-
-def crossings(scene: CaseScene, x: float) -> list[float]:
-    """Heights at which the outlines of the blocks cross a vertical line, in ascending order."""
-    heights = []
-    for shape in scene.shapes(0.0):
-        for start, end in zip(shape, np.roll(shape, -1, axis=0)):
-            if min(start[0], end[0]) <= x <= max(start[0], end[0]) and start[0] != end[0]:
-                heights.append(float(start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])))
-    return sorted(heights)
 
 
 def draw_scheme(found: Assessment, sheet: Sheet = Sheet()) -> tuple[Figure, str]:

@@ -35,7 +35,8 @@ def entry(label: str, **style: Any) -> Line2D:
 
 def load_arrows(source: Source, size: float, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     """Tails and tips of the loads, the longest of a fixed share of the picture: (n, 2) each [m]."""
-    tips = np.array([motion.placed(point) for point, _, _ in source.loads]).reshape(-1, 2)
+    points = [point if point in source.still else motion.placed(point) for point, _, _ in source.loads]
+    tips = np.array(points).reshape(-1, 2)
     forces = np.array([force for _, force, _ in source.loads]).reshape(-1, 2)
     largest = float(np.hypot(*forces.T).max(initial=0.0))
     return tips - forces * (LOAD_LENGTH * size / (largest or 1.0)), tips
@@ -84,10 +85,11 @@ def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> l
 
 
 def draw_water(axes: Axes, source: Source) -> list[Artist]:
-    """Draw lines of heads, and faces that let waves out; gives the entries of the legend."""
+    """Draw lines of heads, the surface of fill, faces that let waves out; gives the entries of the legend."""
     limits = axes.axis()
     styles: tuple[tuple[Any, str, dict[str, Any]], ...] = (
         (source.water, "piezometric line", {"color": "#1f77b4", "linewidth": 1.6, "linestyle": "-."}),
+        (source.surface, "surface of the fill", {"color": INK[3], "linewidth": 0.9, "linestyle": "-"}),
         (source.absorbing, "face that lets waves out", {"color": INK[0], "linewidth": 2.2, "linestyle": ":"}),
     )
     entries: list[Artist] = []

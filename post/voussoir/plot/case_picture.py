@@ -20,7 +20,7 @@ from voussoir.plot.case_title import title_of
 from voussoir.plot.figure_style import INK, TINTS
 from voussoir.plot.motion import Motion, motion_of
 from voussoir.plot.sheet import Sheet
-from voussoir.plot.source_file import source_of
+from voussoir.plot.source_file import add_vehicle, source_of
 from voussoir.plot.units import length_text, rounded
 from voussoir.results import Results, Table
 
@@ -59,6 +59,7 @@ def draw_case(
     """
     title = title_of(row_with_safety(run, number), run) if sheet.title else ""
     scene, source = scene_of(run, number), source_of(run)
+    add_vehicle(run, number, scene, source)
     joints = run.joints_of(number) if run.joints is not None else None
     ways = run.points_of(number)
     written = 1.0 if scene.moves else 0.0

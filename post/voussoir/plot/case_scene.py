@@ -40,6 +40,15 @@ class CaseScene:
             return [block.corners for block in self.blocks]
         return [block.corners + factor * block.displacement for block in self.blocks]
 
+    def crossings(self, x: float) -> list[float]:
+        """Heights at which the outlines of the blocks cross a vertical line, in ascending order."""
+        heights = []
+        for shape in self.shapes(0.0):
+            for start, end in zip(shape, np.roll(shape, -1, axis=0)):
+                if min(start[0], end[0]) <= x <= max(start[0], end[0]) and start[0] != end[0]:
+                    heights.append(float(start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])))
+        return sorted(heights)
+
 
 def scene_of(run: Results, number: int) -> CaseScene:
     """The shapes of one case; KeyError if the folder has no blocks of it."""

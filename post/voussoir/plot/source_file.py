@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from voussoir.files import read_text
+from voussoir.plot.case_scene import CaseScene
 from voussoir.results import Results
 
 Point = tuple[float, float]
@@ -20,9 +25,11 @@ class Source:
     #: Where forces act [m], at the end of their histories [N/m], and whether they are live
     loads: list[tuple[Point, Point, bool]] = field(default_factory=list)
     #: Points and lines that are held: both ends [m], and "x", "y" or "" for both directions
+    still: set[Point] = field(default_factory=set)  #: Of these points those of no block: they do not move
     held: list[tuple[Point, Point, str]] = field(default_factory=list)
     bars: list[tuple[Point, Point]] = field(default_factory=list)  #: Ends of bolts, anchors and ties [m]
     water: list[list[Point]] = field(default_factory=list)  #: Lines of heads at the end of their histories [m]
+    surface: list[list[Point]] = field(default_factory=list)  #: The level surface of the fill [m]
     absorbing: list[tuple[Point, Point]] = field(default_factory=list)  #: Lines of faces that let waves out [m]
     missing: list[str] = field(default_factory=list)  #: What is not known, for its file is not there or not read
 
@@ -53,6 +60,31 @@ def source_of(run: Results) -> Source:
     else:  # of a plain file of lines, rows of seven numbers are bolts
         source.bars += source_of_lines(text).bars
     return source
+
+
+def add_vehicle(run: Results, number: int, scene: CaseScene, source: Source) -> None:
+    """Add the axles of &vehicle where they are in a case, and the surface of the fill below them."""
+    corners = np.vstack(scene.shapes(0.0))
+    (left, _), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    row, depth = run.case(number), run.setting("fill%height")
+    level = None if depth is None else float(top) + float(row.get("height", depth))
+    axles, spacings = _lists(run, source, "vehicle", "axles", "spacings")
+    place = float(row.get("worst_position", math.nan))
+    if math.isnan(place):
+        place = float(row.get("position") or run.setting("vehicle%position") or math.nan)
+    if row.get("worst_direction") == "backward":
+        axles, spacings = axles[::-1], spacings[::-1]
+    places = [] if math.isnan(place) else list(itertools.accumulate(spacings, initial=place))
+    for axle, x in zip(axles, places):
+        # those beside the arch stand as high as its ends
+        heights = scene.crossings(min(max(x, float(left)), float(right))) if level is None else [level]
+        point = x, max(heights, default=float(top))
+        source.loads.append((point, (0.0, -axle), True))
+        if level is not None or not left <= x <= right:
+            source.still.add(point)
+    if level is not None:
+        ends = [float(left), float(right), *places]
+        source.surface.append([(min(ends), level), (max(ends), level)])
 
 
 def _raise_water(run: Results, source: Source) -> None:
