@@ -97,8 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if made.dropped and not arguments.allow_dropped:
         raise ValueError(
-            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped (see above); correct it, or run "
-            "the rest with --allow-dropped")
+            f"expected a file all of whose pieces make blocks, got {made.dropped} dropped (see above); correct it, or "
+            "run the rest with --allow-dropped")
     return _run_deck(deck) if made.fixed else 2
 
 
