@@ -76,17 +76,19 @@ module dda_arch_keys
    !> Keys of &support
    type(key_t), parameter :: support_keys(*) = [ &
       key_t("support", "left_dx", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
-            meaning="Displacement of the left springing along x."), &
+            meaning="Displacement of the left springing, positive to the right."), &
       key_t("support", "left_dy", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
-            meaning="Displacement of the left springing upwards."), &
+            meaning="Displacement of the left springing, positive upwards."), &
       key_t("support", "left_rotation_deg", unit="deg", default="0.0", &
-            within=[-90.0_wp, 90.0_wp], meaning="Its rotation about the middle of its joint."), &
+            within=[-90.0_wp, 90.0_wp], &
+            meaning="Rotation about the middle of its joint, anticlockwise."), &
       key_t("support", "right_dx", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
-            meaning="Displacement of the right springing along x."), &
+            meaning="Displacement of the right springing, positive to the right."), &
       key_t("support", "right_dy", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
-            meaning="Displacement of the right springing upwards."), &
+            meaning="Displacement of the right springing, positive upwards."), &
       key_t("support", "right_rotation_deg", unit="deg", default="0.0", &
-            within=[-90.0_wp, 90.0_wp], meaning="Its rotation about the middle of its joint.")]
+            within=[-90.0_wp, 90.0_wp], &
+            meaning="Rotation about the middle of its joint, anticlockwise.")]
 
    !> Keys of &fill
    type(key_t), parameter :: fill_keys(*) = [ &

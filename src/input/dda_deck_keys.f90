@@ -91,7 +91,7 @@ module dda_deck_keys
       key_t("load", "live_horizontal", kind=key_kind%flag, default=".false.", &
             meaning="Treat the forces of horizontal_coefficient as live loads."), &
       key_t("load", "displacement_factor", default="1.0", within=[-1.0e12_wp, 1.0e12_wp], &
-            meaning="Factor of the prescribed displacements of a file of blocks."), &
+            meaning="Factor of the displacements of &support and of a file of blocks."), &
       key_t("load", "water_rise", unit="m", default="0.0", within=[-1.0e9_wp, 1.0e9_wp], &
             meaning="Rise of the piezometric lines of a file of blocks.")]
 

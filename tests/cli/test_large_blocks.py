@@ -83,7 +83,7 @@ def test_many_points_find_their_blocks(tmp_path: Path) -> None:
     lines = "".join(f"fix_line {b}.3 0.2 {b}.7 0.8 y\n" for b in range(n)) + f"fix_line 0 0.9 {n} 0.9 y\n"
     done = check(tmp_path, row(n) + points + lines)
     assert done.returncode == 0 and done.stderr == ""
-    assert f"{5 * n} fixed or prescribed, {n} loaded, {n} measured" in done.stdout
+    assert f"{5 * n} fixed or prescribed, {n} loaded, {n} monitoring" in done.stdout
 
 
 def test_many_points_of_one_block_may_be_held(tmp_path: Path) -> None:

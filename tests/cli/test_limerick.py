@@ -164,7 +164,7 @@ def test_dynamic_run_is_completed(tmp_path: Path) -> None:
         ("&analysis mode = 'limerick', geometry = 'reference' /", "blocks always move"),
         (
             "&analysis mode = 'limerick' /\n&limerick dynamic = T /\n&search /",
-            "neither stable nor collapsed",
+            "with velocities it ends 'completed'",
         ),
         ("&analysis mode = 'limerick' /\n&limerick overlap_deg = 60 /", "overlap_deg"),
     ],

@@ -312,7 +312,8 @@ class World:
         if self.friction > 0.0 and contacts:
             change = (self.acceleration(contacts, *moved) - self.acceleration([], *moved)).ravel()
             states = [self.last[c] for c in contacts]
-            deep.append(self.beyond((normal, tangent), states, change) / (FORCE * np.abs(change).max() + 1e-12) * self.size)
+            beyond = self.beyond((normal, tangent), states, change)
+            deep.append(beyond / (FORCE * np.abs(change).max() + 1e-12) * self.size)
         slow = -tangent @ moved[1].ravel() * slips if slips.any() else np.zeros(0)
         return np.append(np.array(deep) / self.size - 1.0, slow / (SLOW * self.fastest) + 0.5)
 
