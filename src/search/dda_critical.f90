@@ -50,6 +50,7 @@ contains
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(critical_t), intent(out) :: critical
+      type(critical_t) :: between
       type(search_t) :: part
       real(wp) :: value
       logical :: differs, done
@@ -64,8 +65,15 @@ contains
       differs = value > search%low
       if (.not. differs) then
          call close_bracket(family, part, critical)
-         if (any(critical%verdict == [verdict%stable, verdict%collapsed])) &
-            & call look_between(family, search, critical, value, differs)
+         if (any(critical%verdict == [verdict%stable, verdict%collapsed])) then
+            between = critical
+            call look_between(family, search, between, value, differs)
+            critical%steps = between%steps
+            critical%passes = between%passes
+            critical%factorisations = between%factorisations
+            ! without a value that differs, the decision at the end is reported
+            if (differs) critical = between
+         end if
       end if
       if (differs) call close_both(family, search, value, critical)
       if (family%load /= searched_load%none .and. allocated(critical%fallen)) then

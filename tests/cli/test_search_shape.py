@@ -58,3 +58,11 @@ def test_run_in_time_without_moving_blocks_says_that_it_shows_no_collapse(
     assert "geometry = 'reference' shows no collapse" in done.stdout
     way = float(log.split("displacement is ")[1].split(" m")[0])
     assert (way > 0.1) == moves
+
+
+def test_search_in_vain_reports_the_mechanism_of_the_thickest_arch(tmp_path: Path) -> None:
+    """A semicircle with friction of 15 degrees slides at any thickness; a thin one would rotate as well."""
+    (tmp_path / "arch.nml").write_text("&arch voussoirs = 16 /\n&joint friction_deg = 15 /\n&search /\n")
+    assert run_dda("run", "arch.nml", "--quiet", cwd=tmp_path).returncode == 0
+    (row,) = rows_of(tmp_path / "arch" / "results.csv")
+    assert (row["verdict"], row["collapse_mode"], row["sliding_share"]) == ("collapsed", "sliding", "1")
