@@ -3,6 +3,7 @@
 # (variables: SOURCE, folder of the sources; COMPILED_BY; OUT, the file)
 file(GLOB_RECURSE sources RELATIVE ${SOURCE} ${SOURCE}/*.f90 ${SOURCE}/*.inc)
 list(SORT sources)
+list(APPEND sources ../docs/input.md)
 set(text "${COMPILED_BY}")
 foreach(file IN LISTS sources)
   file(SHA256 ${SOURCE}/${file} digest)

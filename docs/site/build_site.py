@@ -48,6 +48,7 @@ CHAPTERS = {
     },
     "Reference": {
         "input.md": "The input deck",
+        "joint_map.md": "The joint map",
         "keys.md": "Every key",
         "tables.md": "Tables and columns",
         "messages.md": "Messages",

@@ -5,7 +5,7 @@ module dda_deck
    use dda_boundary, only : history_t
    use dda_cut_model, only : cut_model_t
    use dda_deck_key, only : full_name, key_kind, key_t, near_key, word_length
-   use dda_deck_keys, only : deck_group, deck_key, group_index
+   use dda_deck_keys, only : deck_group, deck_key
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error, warnings_t
    use dda_key_names, only : analysis_geometry, analysis_mode, arch_half_angle_deg, &
@@ -26,7 +26,7 @@ module dda_deck
    public :: number_or, refuse, source_of
    public :: add_file_mark, file_beside
    public :: follow_joints, put_number, put_text
-   public :: split_name, find_parameter, parameter_name
+   public :: split_name, find_parameter, parameter_name, group_index, key_index
 
    !> A key, or one item of its list
    type :: parameter_t
@@ -86,6 +86,21 @@ module dda_deck
    end type deck_t
 
 contains
+
+   !> Place of a key in the registry, counted from 1; 0 if there is no such key
+   pure integer function key_index(group, name)
+      character(len=*), intent(in) :: group  !! Name of the group, lower case
+      character(len=*), intent(in) :: name   !! Name of the key, lower case
+
+      key_index = findloc(deck_key%group == group .and. deck_key%name == name, .true., dim=1)
+   end function key_index
+
+   !> Place of a group in the registry, counted from 1; 0 if there is no such group
+   pure integer function group_index(name)
+      character(len=*), intent(in) :: name  !! Name of the group, lower case
+
+      group_index = findloc(deck_group%name == name, .true., dim=1)
+   end function group_index
 
    !> A deck of defaults
    pure subroutine new_deck(deck, file)

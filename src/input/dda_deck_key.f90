@@ -38,7 +38,7 @@ module dda_deck_key
       character(len=8) :: unit = ""            !! Unit of the value; empty if it has none
       !> Default as one would write it in a deck; empty if there is none
       character(len=24) :: default = ""
-      character(len=56) :: without = ""  !! What happens without the key where it has no default
+      character(len=80) :: without = ""  !! What happens without the key where it has no default
       !> Smallest and largest value that is allowed: (2)
       real(wp) :: within(2) = [-huge(1.0_wp), huge(1.0_wp)]
       real(wp) :: above = -huge(1.0_wp)  !! Bound of these that the value must exceed
@@ -50,13 +50,13 @@ module dda_deck_key
       logical :: bare = .true.
       real(wp) :: search_low = -huge(1.0_wp)  !! Lower end of a search that gives none
       real(wp) :: search_high = huge(1.0_wp)  !! Upper end of a search that gives none
-      character(len=100) :: meaning = ""      !! What the key means, in one sentence
+      character(len=180) :: meaning = ""      !! What the key means, in one sentence
    end type key_t
 
    !> One group of a deck
    type :: group_t
       character(len=16) :: name = ""     !! Name of the group
-      character(len=72) :: meaning = ""  !! What the group describes
+      character(len=120) :: meaning = ""  !! What the group describes
    end type group_t
 
    !> Maximum length of words compared for suggestions [characters]
@@ -190,7 +190,7 @@ contains
       logical :: fits(size(keys))
       integer :: i
 
-      i = findloc(keys%name == name, .true., dim=1)
+      i = findloc(keys%name == name .and. keys%bare, .true., dim=1)
       if (i > 0) then
          text = "it is a key of &"//trim(keys(i)%group)//"; move it there"
          return

@@ -1,10 +1,10 @@
 !> Reading of a deck: file, --set values, sweeps, and all checks
 module dda_read_deck
    use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside, find_parameter, &
-      & follow_joints, has_group, new_deck, parameter_t, put_text, split_name
+      & follow_joints, group_index, has_group, new_deck, parameter_t, put_text, split_name
    use dda_deck_check_loads, only : check_block_file
    use dda_deck_key, only : full_name, key_kind, key_t, near_group
-   use dda_deck_keys, only : deck_group, deck_key, group_index
+   use dda_deck_keys, only : deck_group, deck_key
    use dda_deck_scan, only : scan_values
    use dda_deck_sweep, only : add_sweep, few_cases, n_cases
    use dda_deck_token, only : deck_scan_t, shown

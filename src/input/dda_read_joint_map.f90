@@ -7,19 +7,20 @@ module dda_read_joint_map
    use dda_key_value, only : deck_value_t
    use dda_kinds, only : degree, wp
    use dda_line_model, only : role_name
-   use dda_map_keys, only : bolts_from_deg, bolts_inset, bolts_length, bolts_number, &
+   use dda_map_keys, only : map_group, map_key
+   use dda_map_names, only : bolts_from_deg, bolts_inset, bolts_length, bolts_number, &
       & bolts_opening, bolts_prestress, bolts_stiffness, bolts_to_deg, joint_set_bridge, &
       & joint_set_bridge_randomness, joint_set_dip_deg, joint_set_dip_spread_deg, &
       & joint_set_material, joint_set_region_x, joint_set_region_y, joint_set_seed, &
-      & joint_set_spacing, joint_set_spacing_randomness, joint_set_through_x, joint_set_through_y, &
-      & joint_set_trace, joint_set_trace_randomness, line_material, line_prestress, line_role, &
-      & line_stiffness, line_x, line_y, lines_edge_node_ratio, lines_form, lines_seed, map_group, &
-      & map_key, opening_corner_x, opening_corner_y, opening_excavated, opening_height, &
-      & opening_material, opening_rise, opening_shape, opening_sides, opening_wall, opening_width, &
-      & opening_x, opening_y, outline_fixed, outline_hold_depth, outline_left, outline_material, &
-      & outline_top, outline_x, outline_y, point_role, point_x, point_y, slope_bench_height, &
-      & slope_bench_width, slope_benches, slope_face_deg, slope_foot_x, slope_foot_y, slope_x, &
-      & slope_y
+      & joint_set_spacing, joint_set_spacing_randomness, joint_set_through_x, &
+      & joint_set_through_y, joint_set_trace, joint_set_trace_randomness, line_material, &
+      & line_prestress, line_role, line_stiffness, line_x, line_y, lines_edge_node_ratio, &
+      & lines_form, lines_seed, opening_corner_x, opening_corner_y, opening_excavated, &
+      & opening_height, opening_material, opening_rise, opening_shape, opening_sides, &
+      & opening_wall, opening_width, opening_x, opening_y, outline_fixed, outline_hold_depth, &
+      & outline_left, outline_material, outline_top, outline_x, outline_y, point_role, point_x, &
+      & point_y, slope_bench_height, slope_bench_width, slope_benches, slope_face_deg, &
+      & slope_foot_x, slope_foot_y, slope_x, slope_y
    use dda_polygon, only : find_crossing
    use dda_text, only : lower_case, place_text, short_text, to_text
    use dda_text_file, only : read_text_file

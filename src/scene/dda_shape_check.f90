@@ -5,9 +5,10 @@ module dda_shape_check
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_block_sites, only : block_at, site_t, survey
-   use dda_deck, only : deck_error, deck_t, has_group, key_error, place_of, put_number, source_of
+   use dda_deck, only : deck_error, deck_t, has_group, key_error, key_index, place_of, &
+      & put_number, source_of
    use dda_deck_key, only : full_name
-   use dda_deck_keys, only : deck_key, key_index
+   use dda_deck_keys, only : deck_key
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_yields

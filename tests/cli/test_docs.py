@@ -48,6 +48,7 @@ ELSEWHERE = {
     "howto_bridges.md": "axle loads of vehicles",
     "howto_fortran.md": "a program of Fortran; test_install.py builds it and compares what it prints",
     "input.md": "ranges and defaults; test_input_doc.py compares them",
+    "joint_map.md": "ranges and defaults; test_input_doc.py compares them",
     "installation.md": "versions",
     "limerick.md": "the original program, which is not here; test_limerick.py runs what needs it not",
     "limits.md": "scenes of tests/physics and tests/cli, which the page names",

@@ -247,7 +247,7 @@ def test_help_on_a_group_a_key_or_both() -> None:
     radius = help_on("help", "radius")
     assert radius == help_on("help", "arch%radius") and radius.count("\n") == 4
     owners = re.findall(r"^&(\w+)", help_on("help", "friction_deg"), flags=re.MULTILINE)
-    assert owners[:2] == ["joint", "fill"]
+    assert owners[:2] == ["fill", "joint"]
     assert re.findall(r"^&(\w+)", help_on("help", "analysis"), flags=re.MULTILINE) == ["scene", "analysis"]
     assert help_on("help", "outline").startswith("&outline   ")
 

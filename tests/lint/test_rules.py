@@ -169,20 +169,6 @@ def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: st
     assert len(found) == 1 and rule in found[0], found
 
 
-@pytest.mark.parametrize(("names", "registry"), [
-    ("dda_key_names", ("dda_deck_keys", "dda_arch_keys")), ("dda_map_keys", ("dda_map_keys",))])
-def test_keys_are_named_in_the_order_of_the_registry(names: str, registry: tuple[str, ...]) -> None:
-    folder = REPOSITORY / "src" / "input"
-    enums = (folder / f"{names}.f90").read_text(encoding="utf-8").split("end enum")[:-1]
-    named = [[word for line in re.findall(r"enumerator :: ((?:[^\n]*&\n)*[^\n]*)", enum)
-              for word in re.findall(r"[a-z]\w+", line)] for enum in enums]
-    text = "".join((folder / f"{name}.f90").read_text(encoding="utf-8") for name in registry)
-    groups = re.findall(r'group_t\("(\w+)"', text)
-    keys = re.findall(r'key_t\("(\w+)", "(\w+)"', text)
-    assert named[0] == [f"{group}_{key}" for group in groups for other, key in keys if other == group]
-    assert named[1:] in ([], [[f"{group}_group" for group in groups]])
-
-
 def test_pages_of_the_sources_have_every_module_and_threshold(tmp_path: Path) -> None:
     sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
     import source_pages
