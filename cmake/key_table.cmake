@@ -4,6 +4,9 @@
 #
 # "### GROUP" begins a group, and the first sentence below says what it is. A row of its table is
 # | `KEY` | UNIT | RANGE | `DEFAULT` or (what holds without the key) | MEANING |
+# with a cell of what the key requires before the last where any key of the table requires anything:
+# `GROUP%KEY = 'WORD' or 'WORD'`, a key of the group that must be given, or `no` and one that must not.
+# Groups but that of &analysis are named.
 # A range is text, name (of another key), flag, list of numbers, list of words, `'WORD'`, `'WORD'`,
 # or an interval, which may have "list in " before it or ", whole" behind it. Behind a range may stand
 # ", search from LOW to HIGH", ", not swept", and ", swept as GROUP%KEY" for a name of two groups.
@@ -92,14 +95,16 @@ endfunction()
 
 # Read a row of a table
 function(read_row)
-  if(NOT line MATCHES "^\\| `([a-z0-9_]+)` \\|([^|]*)\\|([^|]+)\\|([^|]+)\\| ([^|\"]+) \\|$")
+  if(NOT line MATCHES
+      "^\\| `([a-z0-9_]+)` \\|([^|]*)\\|([^|]+)\\|([^|]+)\\|(([^|]*)\\|)? ([^|\"]+) \\|$")
     refuse("a row | `KEY` | UNIT | RANGE | DEFAULT | MEANING |")
   endif()
   set(name ${CMAKE_MATCH_1})
+  string(STRIP "${CMAKE_MATCH_6}" needs)
   string(STRIP "${CMAKE_MATCH_2}" unit)
   string(STRIP "${CMAKE_MATCH_3}" range)
   string(STRIP "${CMAKE_MATCH_4}" default)
-  literal(meaning "${CMAKE_MATCH_5}")
+  literal(meaning "${CMAKE_MATCH_7}")
   if(default MATCHES "^`(.+)`$")
     set(default "default=\"${CMAKE_MATCH_1}\"")
   elseif(default MATCHES "^\\((.+)\\)$")
@@ -108,6 +113,10 @@ function(read_row)
     refuse("`DEFAULT` or (what holds without the key)")
   endif()
   read_range(takes "${range}")
+  if(NOT needs STREQUAL "")
+    string(REPLACE "`" "" needs "${needs}")
+    string(APPEND takes ", &\n            needs=\"${needs}\"")
+  endif()
   set(names "${names}, &\n         & ${group}_${name}" PARENT_SCOPE)
   set(keys "${keys}, &
       key_t(\"${group}\", \"${name}\", unit=\"${unit}\", ${default}, &

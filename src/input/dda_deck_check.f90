@@ -135,8 +135,7 @@ contains
    pure subroutine check_kind(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: kind, problem
-      integer :: key
+      character(len=:), allocatable :: kind
 
       kind = deck%value(scene_kind)%text
       if (kind /= "arch" .and. .not. deck%value(scene_geometry)%given) then
@@ -157,16 +156,6 @@ contains
             "'; remove it, and add bar lines to a file of blocks", deck, &
             deck%group(tie_group))
       end if
-      do key = scene_geometry, scene_contact_tolerance
-         if (allocated(error) .or. .not. deck%value(key)%given) cycle
-         problem = ""
-         if (kind == "arch") problem = "'lines' or 'blocks'"
-         if (kind /= "lines" .and. key == scene_analysis) problem = "'lines'"
-         if (kind /= "blocks" .and. key == scene_contact_tolerance) problem = "'blocks'"
-         if (len(problem) == 0) cycle
-         call key_error(error, full_name(deck_key(key))//" needs scene%kind = "//problem// &
-            ", got '"//kind//"'; change the one or remove the other", deck, key)
-      end do
    end subroutine check_kind
 
    !> Check what is searched

@@ -1,20 +1,18 @@
 !> Consistency of the keys of one case
 module dda_deck_check_case
-   use dda_key_names, only : analysis_damping, analysis_duration, analysis_flow, &
-      & analysis_geometry, analysis_mode, analysis_restart, analysis_restitution, &
-      & analysis_start, analysis_unknowns, arch_facet_deg, arch_group, arch_half_angle_deg, &
-      & arch_joints_deg, arch_voussoirs, joint_residual_deg, joint_slip_length, load_gravity, &
-      & material_unit_weight, output_energy, output_frames, output_restart, scene_analysis, &
-      & scene_kind, search_high, search_low, search_parameter
-   use dda_key_value, only : deck_place_t, number_problem
+   use dda_key_names, only : analysis_geometry, analysis_mode, analysis_unknowns, &
+      & arch_facet_deg, arch_group, arch_half_angle_deg, arch_joints_deg, arch_voussoirs, &
+      & load_gravity, material_unit_weight, scene_analysis, scene_kind, search_high, search_low, &
+      & search_parameter
+   use dda_key_value, only : deck_place_t, deck_value_t, default_value, number_problem
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : short_text, to_text
    use dda_deck_keys, only : deck_key
-   use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, number_or, &
-      & parameter_name, put_number, refuse, source_of
+   use dda_deck, only : deck_error, deck_t, geometry_of, keeps_velocities, key_error, key_index, &
+      & number_or, parameter_name, put_number, refuse, source_of
    use dda_deck_check_loads, only : check_ground, check_live, check_strength
-   use dda_deck_key, only : full_name
+   use dda_deck_key, only : full_name, key_t
    use dda_model_table, only : model_problem, search_problem
    implicit none
    private
@@ -33,8 +31,7 @@ contains
       integer :: unknowns
 
       call check_model(deck, error)
-      if (.not. allocated(error)) call check_use(deck, error)
-      call check_slip(deck, error)
+      if (.not. allocated(error)) call check_needs(deck, error)
       if (.not. allocated(error)) call check_live(deck, error)
       if (.not. allocated(error)) call check_ground(deck, error)
       if (.not. allocated(error)) call check_strength(deck, error)
@@ -78,67 +75,66 @@ contains
          "; 'dda help models' lists them", deck, search_parameter)
    end subroutine check_model
 
-   !> Check that the mode and the geometry have a use for the keys that are given
-   pure subroutine check_use(deck, error)
+   !> Check that a case has what its keys require, unless they have their defaults
+   pure subroutine check_needs(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: mode
-      logical :: in_time, moves
+      type(error_t), allocatable, intent(out) :: error
+      integer :: key, first, last
 
-      mode = deck%value(analysis_mode)%text
-      in_time = mode == "dynamic"
-      moves = deck%value(analysis_geometry)%text == "current"
-      associate (value => deck%value)
-         call refuse(value(analysis_restitution)%number > 0.0_wp &
-            & .and. .not. (in_time .and. moves), "restitution needs mode = "// &
-            & "'dynamic' and geometry = 'current'", deck, analysis_restitution, error)
-         call refuse(value(analysis_damping)%number > 0.0_wp .and. .not. in_time, &
-            & "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two", deck, &
-            & analysis_damping, error)
-         call refuse(value(analysis_duration)%given .and. .not. in_time, &
-            & "duration needs mode = 'dynamic': a static run has no time", deck, &
-            & analysis_duration, error)
-         call refuse(value(analysis_restart)%given .and. .not. in_time, "analysis%restart "// &
-            & "needs mode = 'dynamic': a static run has no time", deck, &
-            & analysis_restart, error)
-         call refuse(value(analysis_start)%text == "static" .and. (.not. in_time &
-            & .or. value(analysis_restart)%given), "start = 'static' needs mode = 'dynamic' "// &
-            & "and a run from its beginning; remove it", deck, analysis_start, error)
-         call refuse(value(analysis_flow)%text == "associated" .and. mode /= "static", &
-            & "flow = 'associated' needs mode = 'static', got '"//mode//"'; remove one of the "// &
-            & "two", deck, analysis_flow, error)
-         if (mode == "limerick") then
-            call refuse(value(analysis_unknowns)%given, "analysis%unknowns needs another mode "// &
-               & "than 'limerick', whose blocks have 6; remove it", deck, analysis_unknowns, error)
-            call refuse(value(output_energy)%flag, "output%energy needs mode = 'dynamic', got "// &
-               & "'limerick'; remove one of the two", deck, output_energy, error)
-            call refuse(value(output_restart)%flag, "output%restart needs mode = 'dynamic', "// &
-               & "got 'limerick'; remove one of the two", deck, output_restart, error)
-         else
-            call refuse(nint(value(output_frames)%number) > 0 .and. .not. moves, &
-               & "output%frames needs geometry = 'current': in reference geometry no block "// &
-               & "moves; change one of the two", deck, output_frames, error)
-         end if
-      end associate
-   end subroutine check_use
-
-   !> Check that joints may lose strength by slip
-   pure subroutine check_slip(deck, error)
-      type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(inout) :: error
-      integer :: key
-
-      if (allocated(error)) return
-      do key = joint_residual_deg, joint_slip_length
-         if (.not. deck%value(key)%given) cycle
-         if (any(deck%value(scene_kind)%text == ["lines ", "blocks"]) &
-            & .and. deck%value(analysis_mode)%text /= "limerick" &
-            & .and. deck%value(analysis_flow)%text /= "associated") cycle
-         call key_error(error, full_name(deck_key(key))//" needs scene%kind = 'lines' or "// &
-            "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, key)
-         return
+      do key = 1, size(deck_key)
+         if (deck_key(key)%needs == "" .or. .not. acts(deck%value(key), deck_key(key))) cycle
+         first = 1
+         do while (first <= len_trim(deck_key(key)%needs) .and. .not. allocated(error))
+            last = first + index(trim(deck_key(key)%needs(first:))//", ", ", ") - 2
+            call check_need(deck, key, deck_key(key)%needs(first:last), error)
+            first = last + 3
+         end do
+         if (allocated(error)) return
       end do
-   end subroutine check_slip
+   end subroutine check_needs
+
+   !> Whether a value is given and not the default
+   pure logical function acts(value, key)
+      type(deck_value_t), intent(in) :: value
+      type(key_t), intent(in) :: key
+      type(deck_value_t) :: default
+
+      acts = value%given
+      if (.not. acts .or. key%default == "") return
+      default = default_value(key)
+      acts = abs(value%number - default%number) > 0.0_wp .or. (value%flag .neqv. default%flag)
+      if (allocated(value%text)) acts = value%text /= default%text
+   end function acts
+
+   !> Check that a case has one thing that a key requires
+   pure subroutine check_need(deck, key, need, error)
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: key            !! Place of the key in the registry
+      character(len=*), intent(in) :: need  !! What it requires: one of key_t%needs
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: group, found, name
+      integer :: other
+
+      name = need(:index(need//" = ", " = ") - 1)
+      if (index(name, "no ") == 1) name = name(4:)
+      group = trim(deck_key(key)%group)
+      if (index(need, " = ") > 0) group = "analysis"
+      if (index(name, "%") > 0) group = name(:index(name, "%") - 1)
+      other = key_index(group, name(index(name, "%") + 1:))
+      if (index(need, "no ") == 1) then
+         call refuse(deck%value(other)%given, full_name(deck_key(key))//" needs "//need &
+            & //", got one; remove one of the two", deck, key, error)
+      else if (index(need, " = ") == 0) then
+         call refuse(.not. deck%value(other)%given, full_name(deck_key(key))//" needs "//need &
+            & //", got none; give it", deck, key, error)
+      else
+         found = deck%value(other)%text
+         if (other == analysis_geometry) found = trim(geometry_of(deck))
+         call refuse(index(need, "'"//found//"'") == 0, full_name(deck_key(key))//" needs " &
+            & //need//", got '"//found//"'; change it, or remove "//trim(deck_key(key)%name), &
+            & deck, key, error)
+      end if
+   end subroutine check_need
 
    !> Check the joints of the arch
    pure subroutine check_shape(deck, error)

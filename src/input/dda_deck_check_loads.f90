@@ -5,7 +5,7 @@ module dda_deck_check_loads
    use dda_deck_key, only : full_name
    use dda_error, only : error_t
    use dda_key_names, only : analysis_collapse_displacement, analysis_collapse_point, &
-      & analysis_collapse_rotation_deg, analysis_duration, analysis_flow, analysis_geometry, &
+      & analysis_duration, analysis_flow, analysis_geometry, &
       & analysis_mode, analysis_restart, ground_amplitude, ground_direction_deg, &
       & ground_duration, ground_frequency, ground_group, ground_pulse, ground_record, &
       & ground_unit, joint_cohesion, joint_residual_deg, joint_tension, live_fx, live_fy, &
@@ -32,8 +32,7 @@ contains
       type(deck_place_t) :: place
       integer :: key
 
-      call check_collapse(deck, error)
-      if (.not. allocated(error) .and. deck%searched%key > 0) call check_search_in_time(deck, error)
+      if (deck%searched%key > 0) call check_search_in_time(deck, error)
       if (allocated(error)) return
       key = ground_key(deck)
       if (.not. has_group(deck, ground_group) .and. key == 0) return
@@ -186,27 +185,6 @@ contains
          & "mode = 'dynamic' needs search%low and search%high; give both", deck, &
          & search_parameter, error)
    end subroutine check_search_in_time
-
-   !> Check what means collapse in a dynamic run
-   pure subroutine check_collapse(deck, error)
-      type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      integer :: key
-
-      do key = analysis_collapse_rotation_deg, analysis_collapse_point
-         call refuse(deck%value(key)%given .and. (deck%value(analysis_mode)%text /= "dynamic" &
-            & .or. deck%value(analysis_geometry)%text /= "current"), full_name(deck_key(key)) &
-            & //" needs mode = 'dynamic' and geometry = 'current'; remove it", deck, key, error)
-      end do
-      if (.not. deck%value(analysis_collapse_point)%given) return
-      call refuse(deck%value(scene_kind)%text /= "blocks", "analysis%collapse_point needs a "// &
-         & "file of blocks with monitoring points, got kind = '"//deck%value(scene_kind)%text &
-         & //"'", deck, analysis_collapse_point, error)
-      call refuse(.not. deck%value(analysis_collapse_displacement)%given, &
-         & "analysis%collapse_point needs collapse_displacement, the "// &
-         & "displacement of that point that means collapse, got none; give it", deck, &
-         & analysis_collapse_point, error)
-   end subroutine check_collapse
 
    !> Check the live loads of one case
    pure subroutine check_live(deck, error)

@@ -48,6 +48,9 @@ module dda_deck_key
       logical :: varies = .true.
       !> Whether its name alone means it where groups share the name
       logical :: bare = .true.
+      !> What it requires, separated by a comma and a blank: KEY = 'WORD' or 'WORD', KEY for one
+      !> that must be given, no KEY for one that must not
+      character(len=120) :: needs = ""
       real(wp) :: search_low = -huge(1.0_wp)  !! Lower end of a search that gives none
       real(wp) :: search_high = huge(1.0_wp)  !! Upper end of a search that gives none
       character(len=180) :: meaning = ""      !! What the key means, in one sentence

@@ -80,7 +80,9 @@ contains
       else if (len_trim(key%without) > 0) then
          text = text//"   (without it: "//trim(key%without)//")"
       end if
-      text = text//lf//indent//trim(key%meaning)//lf//indent//wanted(key)//lf
+      text = text//lf//indent//trim(key%meaning)//lf//indent//wanted(key)
+      if (len_trim(key%needs) > 0) text = text//"; needs "//trim(key%needs)
+      text = text//lf
    end function key_help
 
    !> A registry as JSON: groups with their keys
@@ -117,6 +119,7 @@ contains
       text = text//bound("from", key%within(1))//bound("to", key%within(2)) &
          & //bound("above", key%above)//bound("below", key%below)
       if (key%words /= "") text = text//", ""words"": ["""//joined(trim(key%words))//"""]"
+      if (key%needs /= "") text = text//", "//pair("needs", trim(key%needs))
       text = text//", ""sweep"": "//truth(key%varies)//", ""search"": " &
          & //truth(key%varies .and. key%kind == key_kind%number)//", " &
          & //pair("meaning", trim(key%meaning))

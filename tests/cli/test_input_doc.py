@@ -17,7 +17,7 @@ GROUPS = {group["name"]: {key["name"]: key for key in group["keys"]}
 
 
 def rows(page: str) -> list[list[str]]:
-    """Group, key, unit, range, default and meaning of each row of a page."""
+    """Group, key, unit, range, default, requirement (of tables that have it) and meaning of each row of a page."""
     found = []
     text = (ROOT / "docs" / page).read_text(encoding="utf-8").split("## Groups and keys\n")[1].split("\n## ")[0]
     for section in re.split(r"^### ", text, flags=re.M)[1:]:
@@ -29,9 +29,9 @@ def rows(page: str) -> list[list[str]]:
 
 @pytest.mark.parametrize("row", rows("input.md"), ids=lambda row: f"{row[0]}%{row[1]}")
 def test_row_is_what_the_program_says(row: list[str]) -> None:
-    group, name, unit, range_, default, meaning = row
+    group, name, unit, range_, default, *needs, meaning = row
     key = GROUPS[group][name]
-    assert (key.get("unit", ""), key["meaning"]) == (unit, meaning)
+    assert (key.get("unit", ""), key["meaning"], key.get("needs", "")) == (unit, meaning, "".join(needs))
     assert default in (key.get("default"), f"({key.get('without')})")
     range_, *marks = re.split(r", (?=search|not swept|swept as)", range_)
     assert key["sweep"] == (group not in ("scene", "sweep", "output") and "not swept" not in marks and range_ != "name")
@@ -76,13 +76,13 @@ def registry(folder: Path, row: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no CMake")
 def test_new_key_is_one_row(tmp_path: Path) -> None:
-    row = "| `tilt` | deg | (-90, 90], whole, search from 0 to 45 | `0` | [Tilt](#arch). |"
+    row = "| `tilt` | deg | (-90, 90], whole, search from 0 to 45 | `0` | `mode = 'static'` | [Tilt](#arch). |"
     assert registry(tmp_path, row).returncode == 0
     text = (tmp_path / "keys.f90").read_text(encoding="utf-8")
     assert re.search(r"& arch_radius, &\n\s+& arch_tilt, &\n\s+& arch_thickness_ratio", text)
     entry = " ".join(text.split('key_t("arch", "tilt"')[1].split("), &\n")[0].split())
     assert entry == (', unit="deg", default="0", & kind=key_kind%whole, search_low=0.0_wp, search_high=45.0_wp, '
-                     'within=[-90.0_wp, 90.0_wp], above=-90.0_wp, & meaning="Tilt."')
+                     'within=[-90.0_wp, 90.0_wp], above=-90.0_wp, & needs="mode = \'static\'", & meaning="Tilt."')
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no CMake")

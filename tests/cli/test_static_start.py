@@ -88,9 +88,11 @@ def test_a_search_in_time_begins_in_balance(tmp_path: Path) -> None:
     assert float(row["critical"]) == pytest.approx(9.81 * 0.25, rel=1e-5)
 
 
-@pytest.mark.parametrize("keys", ["mode = 'static'", "mode = 'limerick'", "mode = 'dynamic', restart = 'x.restart'"])
-def test_only_dynamic_runs_from_their_beginning_have_a_start(tmp_path: Path, keys: str) -> None:
+@pytest.mark.parametrize(("keys", "needs"), [
+    ("mode = 'static'", "mode = 'dynamic', got 'static'"), ("mode = 'limerick'", "mode = 'dynamic', got 'limerick'"),
+    ("mode = 'dynamic', restart = 'x.restart'", "no restart, got one")])
+def test_only_dynamic_runs_from_their_beginning_have_a_start(tmp_path: Path, keys: str, needs: str) -> None:
     (tmp_path / "deck.nml").write_text(f"&analysis {keys}, start = 'static' /\n")
     done = run_dda("check", "deck.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert "deck.nml:1: error: start = 'static' needs mode = 'dynamic'" in done.stderr
+    assert f"deck.nml:1: error: analysis%start needs {needs}" in done.stderr
