@@ -1,128 +1,67 @@
-!> Models, and the parameters that can be searched in them. Decks are checked by it; `dda check`
-!> prints what it says of a deck, `dda help models` all of it
+!> Models, and the parameters that can be searched in them: the tables of docs/input.md. Decks are
+!> checked by them; `dda check` prints what they say of a deck, `dda help models` all of them
 module dda_model_table
-   use dda_deck_key, only : has_word, key_t, listed_words, word_length
+   use dda_deck_key, only : key_t
+   use dda_model_rows, only : model_row, search_row
    implicit none
    private
 
    public :: model_problem, models_of, models_help, search_problem, searches_of
 
-   !> What blocks are made from
-   character(len=*), parameter :: all_kinds = "arch shape lines blocks"
-   !> Those that the scheme of the original runs
-   character(len=*), parameter :: of_original = "arch lines blocks"
-   !> What a number of the method is no answer to
-   character(len=*), parameter :: of_the_method = "a number of the method, not of the structure"
-   !> End of a line
-   character(len=1), parameter :: lf = achar(10)
-
-   !> A mode with a geometry
-   type :: model_t
-      character(len=8) :: mode = ""      !! Word of analysis%mode
-      character(len=9) :: geometry = ""  !! Word of analysis%geometry
-      character(len=24) :: kinds = ""    !! Kinds of scene%kind that it runs, parted by blanks
-      character(len=60) :: why = ""      !! Why it runs no others
-   end type model_t
-
-   !> Keys that are searched alike
-   type :: search_t
-      character(len=16) :: group = ""  !! Their group
-      !> Their names, parted by blanks; all others of the group if there are none
-      character(len=160) :: names = ""
-      !> Kinds of scene%kind with mode = 'static' in which they are searched, parted by blanks
-      character(len=24) :: static = ""
-      character(len=24) :: dynamic = ""   !! Likewise with mode = 'dynamic'
-      character(len=24) :: limerick = ""  !! Likewise with mode = 'limerick'
-      character(len=60) :: why = ""       !! Why not in the others
-   end type search_t
-
-   !> All modes and geometries
-   type(model_t), parameter :: model(6) = [ &
-      model_t("static", "reference", all_kinds), &
-      model_t("static", "current", all_kinds), &
-      model_t("dynamic", "reference", all_kinds), &
-      model_t("dynamic", "current", all_kinds), &
-      model_t("limerick", "reference", "", "its blocks always move"), &
-      model_t("limerick", "current", of_original, "dda export writes such arches as blocks")]
-
-   !> All keys that have real values
-   type(search_t), parameter :: search(20) = [ &
-      search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
-         "for mode = 'limerick' only"), &
-      search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
-         "pier_width pier_height buttress_width buttress_height lune_deg", "shape", "", "", &
-         "setting one makes the arch a shape"), &
-      search_t("arch", "", "arch shape", "arch", "arch", "needs an arch"), &
-      search_t("support", "", "shape", "", "", "needs an arch"), &
-      search_t("fill", "", "shape", "", "", "needs an arch"), &
-      search_t("tie", "", "shape", "", "", "needs an arch"), &
-      search_t("material", "compressive_strength", "shape blocks", "", "", &
-         "for limit analysis of arches and blocks only"), &
-      search_t("material", "", all_kinds, of_original, of_original), &
-      search_t("joint", "cohesion tension", all_kinds, of_original, "", &
-         "joints of Shi's scheme start open, without bonds"), &
-      search_t("joint", "residual_deg slip_length", "", "", "", &
-         "the verdict may change more than once: use &sweep"), &
-      search_t("joint", "", all_kinds, of_original, of_original), &
-      search_t("load", "displacement_factor", "shape blocks", "blocks", "", &
-         "for &support and files of blocks only"), &
-      search_t("load", "water_rise", "blocks", "blocks", "", &
-         "for files of blocks only"), &
-      search_t("load", "", all_kinds, of_original, of_original), &
-      search_t("live", "", all_kinds, of_original, "", "Shi's scheme has no &live"), &
-      search_t("vehicle", "", all_kinds, of_original, "", &
-         "Shi's scheme has no &vehicle"), &
-      search_t("ground", "", "", all_kinds, "", "needs mode = 'dynamic'"), &
-      search_t("analysis", "restitution damping", "", of_original, "", &
-         "needs mode = 'dynamic'"), &
-      search_t("analysis", "", "", "", "", of_the_method), &
-      search_t("limerick", "", "", "", "", of_the_method)]
+   !> Kinds of blocks in the order of the columns
+   character(len=6), parameter :: kind_name(4) = [character(len=6) :: "arch", "shape", "lines", &
+      & "blocks"]
+   !> Columns before those of the kinds
+   integer, parameter :: before_models = 2, before_searches = 1
 
 contains
 
    !> Why blocks of a kind cannot be run so
    pure function model_problem(kind, mode, geometry) result(why)
-      character(len=*), intent(in) :: kind      !! Word of scene%kind
+      character(len=*), intent(in) :: kind      !! One of kind_name
       character(len=*), intent(in) :: mode      !! Word of analysis%mode
       character(len=*), intent(in) :: geometry  !! Word of analysis%geometry
       character(len=:), allocatable :: why      !! The reason; empty if they can
+      character(len=:), allocatable :: head
       integer :: i
 
       why = "there is no such model"
-      do i = 1, size(model)
-         if (model(i)%mode /= mode .or. model(i)%geometry /= geometry) cycle
-         why = trim(model(i)%why)
-         if (has_word(model(i)%kinds, kind)) why = ""
+      head = "| `"//mode//"` | `"//geometry//"` |"
+      do i = 1, size(model_row)
+         if (model_row(i)(:len(head)) /= head) cycle
+         why = trim(cell(model_row(i), before_models + size(kind_name) + 1))
+         if (cell(model_row(i), before_models + place(kind)) == "yes") why = ""
       end do
    end function model_problem
 
-   !> Why a key cannot be searched
+   !> Why a key cannot be searched: the first row of it or of the numbers of its group says so
    pure function search_problem(key, kind, mode) result(why)
       type(key_t), intent(in) :: key        !! The key, which has real values
       character(len=*), intent(in) :: kind, mode
       character(len=:), allocatable :: why  !! The reason; empty if it can
-      integer :: i
+      character(len=:), allocatable :: name, group
+      integer :: i, last
 
       why = "no rule says what it does"
-      do i = size(search), 1, -1
-         if (search(i)%group /= key%group) cycle
-         if (search(i)%names /= "" .and. .not. has_word(search(i)%names, key%name)) cycle
-         why = trim(search(i)%why)
-         if (has_word(kinds_of(search(i), mode), kind)) why = ""
+      name = "`"//trim(key%name)//"`"
+      group = "`&"//trim(key%group)//"`"
+      do i = 1, size(search_row)
+         last = index(search_row(i)(2:), "|")
+         if (index(search_row(i)(:last), name) == 0 &
+            & .and. index(search_row(i)(:last), group) == 0) cycle
+         why = trim(cell(search_row(i), before_searches + size(kind_name) + 1))
+         if (is_searched(i, kind, mode)) why = ""
+         return
       end do
    end function search_problem
 
-   !> Kinds in which keys are searched with a mode
-   pure function kinds_of(rule, mode) result(list)
-      type(search_t), intent(in) :: rule
-      character(len=*), intent(in) :: mode
-      character(len=24) :: list  !! The kinds, parted by blanks
+   !> Whether the keys of a row are searched
+   pure logical function is_searched(i, kind, mode)
+      integer, intent(in) :: i  !! Place of the row
+      character(len=*), intent(in) :: kind, mode
 
-      list = ""
-      if (mode == "static") list = rule%static
-      if (mode == "dynamic") list = rule%dynamic
-      if (mode == "limerick") list = rule%limerick
-   end function kinds_of
+      is_searched = index(cell(search_row(i), before_searches + place(kind)), mode) > 0
+   end function is_searched
 
    !> Modes and geometries that blocks of a kind are run with
    pure function models_of(kind) result(text)
@@ -131,9 +70,9 @@ contains
       integer :: i
 
       text = ""
-      do i = 1, size(model)
-         if (has_word(model(i)%kinds, kind)) text = text//", "//trim(model(i)%mode)//" " &
-            & //trim(model(i)%geometry)
+      do i = 1, size(model_row)
+         if (cell(model_row(i), before_models + place(kind)) == "yes") text = text//", " &
+            & //trim(cell(model_row(i), 1))//" "//trim(cell(model_row(i), 2))
       end do
       text = text(3:)
    end function models_of
@@ -145,79 +84,51 @@ contains
       integer :: i
 
       text = ""
-      do i = 1, size(search)
-         if (has_word(kinds_of(search(i), mode), kind)) text = text//", "//name_of(search(i), "")
+      do i = 1, size(search_row)
+         if (is_searched(i, kind, mode)) text = text//", "//trim(cell(search_row(i), 1))
       end do
       text = text(3:)
    end function searches_of
 
-   !> Names of keys that are searched alike
-   pure function name_of(rule, quote) result(text)
-      type(search_t), intent(in) :: rule
-      character(len=*), intent(in) :: quote  !! What stands before and after a name
-      character(len=:), allocatable :: text  !! Such as: tension, or: other numbers of &joint
-      character(len=word_length), allocatable :: list(:)
-      integer :: i
-
-      if (rule%names == "") then
-         text = "numbers of "//quote//"&"//trim(rule%group)//quote
-         if (count(search%group == rule%group) > 1) text = "other "//text
-         return
-      end if
-      list = listed_words(rule%names)
-      text = ""
-      do i = 1, size(list)
-         text = text//", "//quote//trim(list(i))//quote
-      end do
-      text = text(3:)
-   end function name_of
-
    !> Both tables as docs/input.md has them
    pure function models_help() result(text)
       character(len=:), allocatable :: text  !! Lines, each ended by a line feed
-      character(len=word_length), allocatable :: kinds(:)
-      integer :: i, k
+      integer :: i
 
-      kinds = listed_words(all_kinds)
-      text = "| mode | geometry | arch | shape | lines | blocks | why not |"//lf &
-         & //"| --- | --- | --- | --- | --- | --- | --- |"//lf
-      do i = 1, size(model)
-         text = text//"| `"//trim(model(i)%mode)//"` | `"//trim(model(i)%geometry)//"` |"
-         do k = 1, size(kinds)
-            text = text//" "//trim(merge("yes", "no ", has_word(model(i)%kinds, kinds(k))))//" |"
-         end do
-         text = text//ending(model(i)%why)
+      text = ""
+      do i = 1, size(model_row)
+         text = text//trim(model_row(i))//achar(10)
       end do
-      text = text//lf//"| searched | arch | shape | lines | blocks | why not |"//lf &
-         & //"| --- | --- | --- | --- | --- | --- |"//lf
-      do i = 1, size(search)
-         text = text//"| "//name_of(search(i), "`")//" |"
-         do k = 1, size(kinds)
-            text = text//" "//modes_of(search(i), trim(kinds(k)))//" |"
-         end do
-         text = text//ending(search(i)%why)
+      text = text//achar(10)
+      do i = 1, size(search_row)
+         text = text//trim(search_row(i))//achar(10)
       end do
    end function models_help
 
-   !> Modes in which keys are searched in scenes of a kind
-   pure function modes_of(rule, kind) result(text)
-      type(search_t), intent(in) :: rule
+   !> Place of a kind among the columns of kinds
+   pure integer function place(kind)
       character(len=*), intent(in) :: kind
-      character(len=:), allocatable :: text  !! Such as: static, limerick
 
+      place = findloc(kind_name, kind, dim=1)
+   end function place
+
+   !> Text of a row in one of its columns, without marks
+   pure function cell(row, column) result(text)
+      character(len=*), intent(in) :: row  !! Such as: | `static` | `reference` | yes |
+      integer, intent(in) :: column        !! Number of the column, from 1
+      character(len=len(row)) :: text
+      integer :: first, i, k, n
+
+      first = 2
+      do i = 2, column
+         first = first + index(row(first:), "|")
+      end do
+      n = 0
       text = ""
-      if (has_word(rule%static, kind)) text = ", static"
-      if (has_word(rule%dynamic, kind)) text = text//", dynamic"
-      if (has_word(rule%limerick, kind)) text = text//", limerick"
-      if (text == "") text = ", no"
-      text = text(3:)
-   end function modes_of
-
-   !> Last field of a row
-   pure function ending(why) result(text)
-      character(len=*), intent(in) :: why    !! Why something is not; may be empty
-      character(len=:), allocatable :: text  !! The field and the end of the line
-
-      text = trim(" "//why)//" |"//lf
-   end function ending
+      do k = first + 1, first + index(row(first:), "|") - 2
+         if (row(k:k) == "`") cycle
+         n = n + 1
+         text(n:n) = row(k:k)
+      end do
+   end function cell
 end module dda_model_table
