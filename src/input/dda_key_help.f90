@@ -120,6 +120,7 @@ contains
          & //bound("above", key%above)//bound("below", key%below)
       if (key%words /= "") text = text//", ""words"": ["""//joined(trim(key%words))//"""]"
       if (key%needs /= "") text = text//", "//pair("needs", trim(key%needs))
+      if (.not. key%bare) text = text//", ""bare"": false"
       text = text//", ""sweep"": "//truth(key%varies)//", ""search"": " &
          & //truth(key%varies .and. key%kind == key_kind%number)//", " &
          & //pair("meaning", trim(key%meaning))

@@ -36,6 +36,11 @@ def test_set_keys_by_bare_name_with_group_and_as_groups() -> None:
     assert pushed.setting("scene%title") == "l'arche"
 
 
+def test_bare_name_of_two_groups_is_the_one_that_a_sweep_means() -> None:
+    run = voussoir.run({"arch": {"voussoirs": 3}}, mode="dynamic", duration=0.01, unknowns=3)
+    assert run.setting("analysis%duration") == "0.01"
+
+
 def test_sweeps_of_a_dict_and_of_a_text() -> None:
     sweep = {"parameter": "voussoirs", "values": [12, 18]}
     for deck in (ARCH, TEXT.replace("&arch voussoirs = 12 /\n", "")):

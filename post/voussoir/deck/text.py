@@ -16,8 +16,6 @@ Groups = Mapping[str, Union[Mapping[str, Any], list[Any]]]
 #: Names of groups and keys; a key may have the number of a joint
 _NAME = re.compile(r"[a-z]\w*", re.ASCII | re.IGNORECASE)
 _KEY = re.compile(r"[a-z]\w*(\(\d+\))?", re.ASCII | re.IGNORECASE)
-#: What a bare name means that several groups have, as in &sweep
-_MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "material"}
 
 
 def value_text(value: Any, key: str = "") -> str:
@@ -87,14 +85,18 @@ def _as_list(keys: Any) -> list[Any]:
 
 @lru_cache(maxsize=4)
 def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
-    """Which groups have a key, as the program says it; a group's own name, with its mark, stands for itself."""
+    """Which groups a key's name means, as in &sweep, or else have it; a group's own name, with its mark, is its own."""
     done = subprocess.run([dda, "help", "keys", "--json"], capture_output=True, text=True, check=True)
+    groups = json.loads(done.stdout)["groups"]
     owners: dict[str, tuple[str, ...]] = {}
-    for group in json.loads(done.stdout)["groups"]:
+    meant: dict[str, tuple[str, ...]] = {}
+    for group in groups:
         owners["&" + group["name"]] = (group["name"],)
         for key in group["keys"]:
             owners[key["name"]] = (*owners.get(key["name"], ()), group["name"])
-    return owners
+            if key["sweep"] and key.get("bare", True):
+                meant[key["name"]] = (*meant.get(key["name"], ()), group["name"])
+    return owners | meant
 
 
 def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
@@ -136,8 +138,6 @@ def _only_owner(key: str, owners: Mapping[str, tuple[str, ...]]) -> str:
     """The group that has a key."""
     plain = re.sub(r"\(\d+\)$", "", key)
     groups = owners.get(plain, ())
-    if plain in _MEANT:
-        return _MEANT[plain]
     if len(groups) == 1:
         return groups[0]
     if groups:
