@@ -178,7 +178,7 @@ contains
       end if
    end subroutine take_subcommand
 
-   !> Whether a word is a command of voussoir alone
+   !> True for a command that voussoir has and dda has not
    pure logical function is_of_voussoir(word)
       character(len=*), intent(in) :: word
 

@@ -53,7 +53,7 @@ contains
          if (allocated(boundary%change)) &
             & call enter_stage(scene%settings, last, scene%system, scene%contacts)
       end associate
-      ! a chain proves that it collapses; how it does is told by all of its blocks, if they can
+      ! the chain proves the collapse; the decision of all blocks, if there is one, has its motion
       if (decided .and. this%decision%outcome%verdict /= verdict%collapsed) this%decision = proof
    end procedure compute_decision
 

@@ -65,7 +65,7 @@ contains
       end do
    end procedure check_live_cases
 
-   !> Whether a point is led
+   !> True if the deck prescribes displacements
    pure logical function leads_points(deck)
       type(deck_t), intent(in) :: deck
       integer :: i

@@ -110,7 +110,7 @@ contains
       if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
    end function parting_line
 
-   !> Whether a line is crossed later than another one, or at the same time and is farther
+   !> True if a line is crossed later than another one, or at the same time with a larger gap
    pure logical function is_later(line, other)
       type(line_t), intent(in) :: line, other
 

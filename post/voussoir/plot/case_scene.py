@@ -1,4 +1,4 @@
-"""What the picture of one case shows, as `dda run` has written it: shapes, supports, the piece of plane."""
+"""Read the picture of one case from the tables of a run: shapes, supports, and the drawn part of the plane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a file of blocks or lines says of loads, restraints, bars and materials, for pictures."""
+"""Read loads, restraints, bars and materials from a file of blocks or lines, for pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the rows of a case are those that the program wrote: their checksum in sizes.record."""
+"""Compare the checksum of the rows of a case with that in sizes.record."""
 
 from __future__ import annotations
 
