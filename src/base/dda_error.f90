@@ -1,4 +1,4 @@
-!> Failures as values, the last argument of every procedure that can fail; warnings are values too
+!> Errors and warnings as values; an error is the last argument of every procedure that can fail
 module dda_error
    use dda_text, only : to_text
    implicit none
@@ -7,26 +7,26 @@ module dda_error
    public :: error_t, fatal_error, place_error, error_line
    public :: warning_t, warnings_t, add_warning, warning_line
 
-   !> What went wrong and where; an allocated error_t means failure
+   !> An error with its place; an allocated error_t means failure
    type :: error_t
-      !> What was wanted, in which unit, and what was found
+      !> Expected and actual value, with the unit, and the correction
       character(len=:), allocatable :: message
-      !> File that the message speaks of; unallocated if none
+      !> File that the message refers to; unallocated if none
       character(len=:), allocatable :: file
-      !> Line of that file, counted from 1; 0 if the whole file is meant
+      !> Line of that file, counted from 1; 0 for the whole file
       integer :: line = 0
    end type error_t
 
-   !> A warning, and how often it came again
+   !> A warning with the number of its repetitions
    type, extends(error_t) :: warning_t
-      integer :: repeats = 0  !! How many of the same words were given for later lines
+      integer :: repeats = 0  !! Number of later lines with the same message
    end type warning_t
 
-   !> A list of warnings; a file of a million faults has a short one
+   !> A list of warnings, of limited length for any number of faults
    type :: warnings_t
-      !> The warnings, each message once; unallocated if there is none
+      !> The warnings, each message once; unallocated if there are none
       type(warning_t), allocatable :: item(:)
-      integer :: left_out = 0  !! How many other ones found no place in it
+      integer :: left_out = 0  !! Number of other warnings that exceed the limit
    end type warnings_t
 
    !> Maximum length of a list in a message
@@ -37,8 +37,8 @@ contains
    !> Make an error
    pure subroutine fatal_error(error, message, file, line)
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: message         !! What was wanted and what was found
-      character(len=*), intent(in), optional :: file  !! File that the message speaks of
+      character(len=*), intent(in) :: message         !! Expected and actual value
+      character(len=*), intent(in), optional :: file  !! File that the message refers to
       integer, intent(in), optional :: line           !! Line of that file
 
       allocate (error)
@@ -47,7 +47,7 @@ contains
       if (present(line)) error%line = line
    end subroutine fatal_error
 
-   !> Say in which line an error is, if there is one that does not say so itself
+   !> Set the line of an error that has none
    pure subroutine place_error(error, line)
       type(error_t), allocatable, intent(inout) :: error
       integer, intent(in) :: line
@@ -68,7 +68,7 @@ contains
    !> Add a warning
    pure subroutine add_warning(warnings, message, file, line)
       type(warnings_t), intent(inout) :: warnings
-      character(len=*), intent(in) :: message  !! What was found, and what was made of it
+      character(len=*), intent(in) :: message  !! The fault and its consequence
       character(len=*), intent(in) :: file
       integer, intent(in) :: line
       type(error_t), allocatable :: new

@@ -6,7 +6,7 @@ module dda_growth
 
    public :: make_room
 
-   !> Make sure that an array has room for so many items; those that it holds stay
+   !> Make sure that an array has room for n items; existing items are kept
    interface make_room
       module procedure room_for_integers
       module procedure room_for_logicals
@@ -16,18 +16,18 @@ module dda_growth
 
 contains
 
-   !> Room that an array is given where it has too little
+   !> New capacity of an array that is too small
    pure integer function next_room(room, n)
-      integer, intent(in) :: room  !! Room that it has
-      integer, intent(in) :: n     !! Room that it needs
+      integer, intent(in) :: room  !! Current capacity
+      integer, intent(in) :: n     !! Required capacity
 
       next_room = max(n, 8, room + min(room, huge(room) - room))
    end function next_room
 
-   !> Room for whole numbers
+   !> Room for integers
    pure subroutine room_for_integers(array, n)
       integer, allocatable, intent(inout) :: array(:)  !! The numbers
-      integer, intent(in) :: n                         !! How many there may be
+      integer, intent(in) :: n                         !! Required number of items
       integer, allocatable :: longer(:)
 
       if (.not. allocated(array)) allocate (array(0))
@@ -37,7 +37,7 @@ contains
       call move_alloc(longer, array)
    end subroutine room_for_integers
 
-   !> Room for truth values
+   !> Room for logical values
    pure subroutine room_for_logicals(array, n)
       logical, allocatable, intent(inout) :: array(:)  !! The values
       integer, intent(in) :: n
@@ -50,9 +50,9 @@ contains
       call move_alloc(longer, array)
    end subroutine room_for_logicals
 
-   !> Room for columns of numbers
+   !> Room for columns of real numbers
    pure subroutine room_for_columns(array, n)
-      !> The columns, at least one of them if their height is not 2
+      !> The columns; unallocated only if their height is 2
       real(wp), allocatable, intent(inout) :: array(:, :)
       integer, intent(in) :: n
       real(wp), allocatable :: longer(:, :)
@@ -64,7 +64,7 @@ contains
       call move_alloc(longer, array)
    end subroutine room_for_columns
 
-   !> Room for slices of numbers
+   !> Room for slices of real numbers
    pure subroutine room_for_slices(array, n)
       real(wp), allocatable, intent(inout) :: array(:, :, :)  !! The slices, allocated
       integer, intent(in) :: n

@@ -1,4 +1,4 @@
-!> A set of whole numbers with lookup in constant time
+!> A set of integers with lookup in constant time
 module dda_key_set
    use, intrinsic :: iso_fortran_env, only : int64
    implicit none
@@ -6,22 +6,22 @@ module dda_key_set
 
    public :: key_set_t, add_key, has_key, new_key_set
 
-   !> Numbers in places that they themselves tell, or behind these where others stand already
+   !> Hash table with open addressing
    type :: key_set_t
       private
-      !> The numbers, 0 where there is none; as many places as a power of two: (0:n - 1)
+      !> The numbers, 0 for an empty place; the size n is a power of two: (0:n - 1)
       integer(int64), allocatable :: key(:)
    end type key_set_t
 
-   !> A prime number, so that numbers in any step are spread
+   !> Prime modulus of the hash, which spreads numbers of any stride
    integer(int64), parameter :: prime = 2147483647_int64
 
 contains
 
-   !> A set without numbers
+   !> Make an empty set
    pure subroutine new_key_set(set, most)
       type(key_set_t), intent(out) :: set
-      integer, intent(in) :: most  !! How many numbers it will hold at most
+      integer, intent(in) :: most  !! Maximum number of items
       integer :: n
 
       n = 8
@@ -31,7 +31,7 @@ contains
       allocate (set%key(0:n - 1), source=0_int64)
    end subroutine new_key_set
 
-   !> Whether a number is in a set
+   !> True if a number is in a set
    pure logical function has_key(set, key)
       type(key_set_t), intent(in) :: set
       integer(int64), intent(in) :: key  !! The number, above 0
@@ -39,15 +39,15 @@ contains
       has_key = set%key(place_of(set, key)) == key
    end function has_key
 
-   !> Put a number into a set; nothing happens if it is there already
+   !> Add a number to a set; a number that is present is not repeated
    pure subroutine add_key(set, key)
-      type(key_set_t), intent(inout) :: set  !! The set; it holds fewer than it is made for
+      type(key_set_t), intent(inout) :: set  !! The set, not full
       integer(int64), intent(in) :: key
 
       set%key(place_of(set, key)) = key
    end subroutine add_key
 
-   !> Where a number is, or would be
+   !> Place of a number, or the empty place for it
    pure integer function place_of(set, key)
       type(key_set_t), intent(in) :: set
       integer(int64), intent(in) :: key

@@ -11,12 +11,12 @@ module dda_random
 
    !> Moduli of the two recurrences: (2)
    integer(int64), parameter :: modulus(2) = [4294967087_int64, 4294944443_int64]
-   !> Factors that mix a seed, round by round, and their modulus
+   !> Factors that mix a seed, one per round, and their modulus
    integer(int64), parameter :: mix_factor(4) = [1103515245_int64, 48271_int64, 69621_int64, &
       & 630360016_int64]
    integer(int64), parameter :: mix_modulus = 2147483647_int64
 
-   !> A generator and where it is
+   !> A generator with its state
    type :: random_t
       private
       integer(int64) :: state(3, 2) = 1_int64  !! The last three numbers of both recurrences: (3, 2)
@@ -24,10 +24,10 @@ module dda_random
 
 contains
 
-   !> A generator at its beginning
+   !> Make a generator from a seed
    pure subroutine new_random(seed, stream, random)
       integer, intent(in) :: seed    !! Any number
-      integer, intent(in) :: stream  !! Number of the sequence among those of the seed
+      integer, intent(in) :: stream  !! Number of the sequence for this seed
       type(random_t), intent(out) :: random
       integer(int64) :: x
       integer :: i, k
@@ -41,7 +41,7 @@ contains
       end do
    end subroutine new_random
 
-   !> A number of 31 bits that tells nothing of the one that it is made of
+   !> Hash of a number: 31 bits without visible correlation to it
    pure integer(int64) function mixed(number)
       integer(int64), intent(in) :: number  !! Any number
       integer :: i
@@ -52,7 +52,7 @@ contains
       end do
    end function mixed
 
-   !> The next number between 0 and 1, neither of them
+   !> Return the next uniform number between 0 and 1, both excluded
    pure subroutine draw(random, number)
       type(random_t), intent(inout) :: random
       real(wp), intent(out) :: number  !! The number
@@ -67,7 +67,7 @@ contains
       number = (real(modulo(next(1) - next(2), modulus(1)), wp) + 0.5_wp)/real(modulus(1), wp)
    end subroutine draw
 
-   !> The next number of the standard normal law (Box and Muller)
+   !> Return the next number of the standard normal distribution (Box and Muller)
    pure subroutine draw_normal(random, number)
       type(random_t), intent(inout) :: random
       real(wp), intent(out) :: number

@@ -5,7 +5,7 @@ submodule (dda_text) dda_read_number
 
    !> Maximum length of a number [characters]
    integer, parameter :: longest_number = 400
-   !> Decimal exponent that numbers stay below
+   !> Upper limit of decimal exponents, excluded
    integer, parameter :: border = 308
 
    interface
@@ -13,14 +13,15 @@ submodule (dda_text) dda_read_number
       pure function c_strtod(text, rest) bind(c, name="strtod") result(value)
          import :: c_char, c_double, c_ptr
          character(kind=c_char), intent(in) :: text(*)  !! The number, ended by a null character
-         type(c_ptr), intent(in), value :: rest         !! Where it ends; null if nobody asks
+         type(c_ptr), intent(in), value :: rest         !! Receives the place after the number; null
+                                                        !! if not needed
          real(c_double) :: value
       end function c_strtod
    end interface
 
 contains
 
-   !> Read one decimal number below 1e308, and nothing else, from a text
+   !> Read one decimal number below 1e308 from a text that has nothing else
    module procedure read_number
       character(len=len(text) + 1) :: c_text
       integer :: exponent, first, mark, point, power
@@ -32,7 +33,7 @@ contains
       ok = len(text) <= longest_number .and. is_decimal(text(:mark - 1))
       if (ok .and. mark <= len(text)) call read_integer(text(mark + 1:), exponent, ok)
       if (.not. ok) return
-      ! power of ten of the first digit that is not zero: nothing may overflow, which could trap
+      ! power of ten of the first nonzero digit: checked first, because an overflow could trap
       first = scan(text(:mark - 1), "123456789")
       point = index(text(:mark - 1), ".")
       if (point == 0) point = mark
@@ -44,7 +45,7 @@ contains
       value = c_strtod(c_text, c_null_ptr)
    end procedure read_number
 
-   !> Read one integer, and nothing else, from a text
+   !> Read one integer from a text that has nothing else
    module procedure read_integer
       character(len=12) :: form
       integer :: stat
@@ -58,9 +59,9 @@ contains
       if (.not. ok) value = 0
    end procedure read_integer
 
-   !> Whether a text is digits with at most one point among them, after a sign or none
+   !> True for digits with at most one decimal point and an optional sign
    pure logical function is_decimal(text)
-      character(len=*), intent(in) :: text  !! Text to look at
+      character(len=*), intent(in) :: text  !! Text to check
       character(len=*), parameter :: digits = "0123456789"
       integer :: first
 

@@ -1,10 +1,10 @@
-!> Numbers in the form that people write
+!> Numbers formatted for messages and reports
 submodule (dda_text) dda_short_text
    implicit none
 
 contains
 
-   !> A number for people: at most six significant digits, and a power of ten from a million on
+   !> A number for messages: at most six significant digits, exponential form from one million on
    module procedure short_text
       character(len=13) :: form
       real(wp) :: mantissa, near
@@ -16,13 +16,13 @@ contains
       read (form, "(f8.0, 1x, i4)", iostat=stat) mantissa, exponent
       if (stat == 0) read (form, "(f13.0)", iostat=stat) near
       if (stat /= 0) return
-      ! no zero has a sign
+      ! adding zero removes the sign of a negative zero
       text = to_text(near + 0.0_wp)
       if (exponent >= 6) text = to_text(mantissa)//"e"//to_text(exponent)
    end procedure short_text
 
-   !> A point for people: coordinates of six significant digits, or whole millimetres where these
-   !> are more
+   !> A point for messages: coordinates of six significant digits, or to the millimetre if that is
+   !> finer
    module procedure place_text
       text = "("//coordinate_text(place(1))//", "//coordinate_text(place(2))//")"
    end procedure place_text
@@ -31,7 +31,7 @@ contains
    pure function coordinate_text(value) result(text)
       real(wp), intent(in) :: value          !! The coordinate [m]
       character(len=:), allocatable :: text  !! The coordinate
-      ! from here on six digits are coarser, and up to there 1/1000 is no rounding
+      ! within these bounds six digits are coarser than 1/1000, and 1/1000 is above round-off
       real(wp), parameter :: from = 1.0e3_wp, to = 1.0e12_wp
 
       if (abs(value) < from .or. abs(value) > to) then
@@ -53,7 +53,7 @@ contains
       if (stat == 0) text = to_text(raised)
    end procedure raised_text
 
-   !> A number of things with their name, in the plural for all numbers but one
+   !> A number with its noun, in the plural for all numbers except one
    module procedure counted
       text = to_text(number)//" "//thing
       if (number /= 1) text = text//"s"

@@ -12,17 +12,17 @@ module dda_sort
 
 contains
 
-   !> Order by a whole number, then by a real one; what is equal keeps its order
+   !> Order by an integer, then by a real number; equal items keep their order
    pure function sorted_order(major, minor) result(order)
-      integer, intent(in) :: major(:)   !! What counts first: (n)
-      real(wp), intent(in) :: minor(:)  !! What counts where the first is equal: (n)
+      integer, intent(in) :: major(:)   !! First sort key: (n)
+      real(wp), intent(in) :: minor(:)  !! Second sort key: (n)
       integer :: order(size(major))     !! Places of the items, smallest first: (n)
 
       order = rising_order(ordered_bits(minor))
       order = order(rising_order(int(major(order), int64)))
    end function sorted_order
 
-   !> Whole number that rises with a real one: its bits, those of a negative one turned
+   !> Integer with the order of real numbers: its bits, inverted for negative numbers
    elemental integer(int64) function ordered_bits(number)
       real(wp), intent(in) :: number  !! The real number
 
@@ -31,10 +31,10 @@ contains
       if (ordered_bits < 0) ordered_bits = ieor(ordered_bits, huge(ordered_bits))
    end function ordered_bits
 
-   !> Places of numbers in rising order, equal ones as they came
+   !> Order of numbers, ascending; equal numbers keep their order
    pure function rising_order(number) result(order)
       integer(int64), intent(in) :: number(:)  !! Any numbers: (n)
-      integer :: order(size(number))           !! number(order) rises: (n)
+      integer :: order(size(number))           !! Permutation with number(order) ascending: (n)
       integer :: i, j
 
       order = [(i, i=1, size(number))]
@@ -51,10 +51,11 @@ contains
       end do
    end function rising_order
 
-   !> Items owner by owner: those of owner i are item(first(i)) to item(first(i + 1) - 1), rising
+   !> List items per owner: owner i has item(first(i)) to item(first(i + 1) - 1), ascending
    pure subroutine list_by_owner(owner, first, item)
       integer, intent(in) :: owner(:)   !! Owner of each item, 0 for none: (n)
-      integer, intent(out) :: first(:)  !! Where each owner begins, and the end: (n_owner + 1)
+      integer, intent(out) :: first(:)  !! First item of each owner, and one past the end: (n_owner
+                                        !! + 1)
       integer, allocatable, intent(out) :: item(:)  !! The items that have an owner
       integer :: i
 
@@ -66,7 +67,7 @@ contains
          first(i) = first(i - 1) + first(i)
       end do
       allocate (item(first(size(first))))
-      ! the place behind each owner's last item, from which it is filled backwards
+      ! start after each owner's last item and fill backwards
       first = first + 1
       do i = size(owner), 1, -1
          if (owner(i) == 0) cycle
@@ -75,14 +76,14 @@ contains
       end do
    end subroutine list_by_owner
 
-   !> Put numbers in rising order
+   !> Sort numbers in ascending order
    pure subroutine sort_numbers(number)
       integer, intent(inout) :: number(:)  !! The numbers: (n)
 
       number = number(rising_order(int(number, int64)))
    end subroutine sort_numbers
 
-   !> Sort by digits, the last one first, each keeping the order of the one before; linear
+   !> Radix sort from the last digit; each pass keeps the order of the one before. Linear cost
    pure subroutine radix_sort(number, order)
       integer(int64), intent(in) :: number(:)
       integer, intent(inout) :: order(:)  !! Places of the items, smallest first: (n)
@@ -90,7 +91,7 @@ contains
       integer(int64) :: differing
       integer :: next(0:2**bits - 1), other(size(order)), digit, i, shift
 
-      ! beyond the highest bit in which two numbers differ all digits are equal
+      ! all digits above the highest differing bit are equal
       differing = iany(ieor(number, number(1)))
       do shift = 0, 63, bits
          if (ishft(differing, -shift) == 0) exit
@@ -113,7 +114,7 @@ contains
 
    contains
 
-      !> The digit that is sorted by; the sign bit is turned, so that negative numbers come first
+      !> Digit that is sorted by; the sign bit is inverted, so that negative numbers come first
       pure integer function digit_of(value)
          integer(int64), intent(in) :: value  !! A number
 
@@ -121,10 +122,10 @@ contains
       end function digit_of
    end subroutine radix_sort
 
-   !> First place of a number among rising ones, or of the next larger
+   !> First place of a number in an ascending list, or of the next larger one
    pure integer function place_in(rising, number)
-      integer(int64), intent(in) :: rising(:)  !! Rising numbers: (n)
-      integer(int64), intent(in) :: number     !! What is looked for
+      integer(int64), intent(in) :: rising(:)  !! Ascending numbers: (n)
+      integer(int64), intent(in) :: number     !! Number to find
       integer :: above, middle
 
       place_in = 1

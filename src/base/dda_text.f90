@@ -1,4 +1,4 @@
-!> Numbers to text, text to numbers, string functions, and growing texts
+!> Numbers to text, text to numbers, string functions, text built line by line
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
@@ -27,52 +27,53 @@ module dda_text
 
    interface
 
-      !> Read one decimal number below 1e308, and nothing else, from a text
+      !> Read one decimal number below 1e308 from a text that has nothing else
       pure module subroutine read_number(text, value, ok)
          character(len=*), intent(in) :: text  !! Text such as -1.5e-3 or 1d3
-         real(wp), intent(out) :: value        !! The number; 0 if the text is none
-         logical, intent(out) :: ok            !! Whether the whole text is one such number
+         real(wp), intent(out) :: value        !! The number; 0 if ok is false
+         logical, intent(out) :: ok            !! True if the whole text is one such number
       end subroutine read_number
 
-      !> Read one integer, and nothing else, from a text
+      !> Read one integer from a text that has nothing else
       pure module subroutine read_integer(text, value, ok)
          character(len=*), intent(in) :: text  !! Text such as -12
-         integer, intent(out) :: value         !! The number; 0 if the text is none
-         logical, intent(out) :: ok            !! Whether the whole text is one integer that fits
+         integer, intent(out) :: value         !! The number; 0 if ok is false
+         logical, intent(out) :: ok            !! True if the whole text is one integer in range
       end subroutine read_integer
 
-      !> A number for people: at most six significant digits, and a power of ten from a million on
+      !> A number for messages: at most six significant digits, exponential form from one million on
       pure module function short_text(value) result(text)
          real(wp), intent(in) :: value          !! Number to write
          character(len=:), allocatable :: text  !! Text without blanks, such as -1e12 or 0.107426
       end function short_text
 
-      !> A point for people: coordinates of six significant digits, or whole millimetres where
-      !> these are more
+      !> A point for messages: coordinates of six significant digits, or to the millimetre if that
+      !> is finer
       pure module function place_text(place) result(text)
          real(wp), intent(in) :: place(2)       !! Its coordinates: (2) [m]
-         character(len=:), allocatable :: text  !! Such as (1.5, -2)
+         character(len=:), allocatable :: text  !! Text such as (1.5, -2)
       end function place_text
 
-      !> A positive number, at most three significant digits, rounded up: a bound that holds
+      !> A positive number with at most three significant digits, rounded up: an upper bound
       pure module function raised_text(value) result(text)
          real(wp), intent(in) :: value          !! Number to write
          character(len=:), allocatable :: text  !! Text without blanks
       end function raised_text
 
-      !> A number of things with their name, in the plural for all numbers but one
+      !> A number with its noun, in the plural for all numbers except one
       pure module function counted(number, thing) result(text)
-         integer, intent(in) :: number          !! How many
-         character(len=*), intent(in) :: thing  !! Their name, whose plural ends in s
+         integer, intent(in) :: number          !! The number
+         character(len=*), intent(in) :: thing  !! The noun, with a plural in s
          character(len=:), allocatable :: text
       end function counted
 
    end interface
 
-   !> Lines put together so far
+   !> A text built line by line
    type :: growing_text_t
       private
-      character(len=:), allocatable :: text  !! The lines, each with its end, and room behind them
+      character(len=:), allocatable :: text  !! The lines, each with its line end, and spare room
+                                             !! after them
       integer :: length = 0                  !! Length of the lines
    end type growing_text_t
 
@@ -89,10 +90,10 @@ contains
       text = buffer(:n)
    end function real_to_text
 
-   !> Put the shortest decimal text that reads back as the same double into a text
+   !> Write the shortest decimal text that reads back as the same double
    pure subroutine print_number(value, text, n)
       real(wp), intent(in) :: value
-      character(len=longest), intent(out) :: text  !! Receives it, without blanks before
+      character(len=longest), intent(out) :: text  !! Receives the number, left-aligned
       integer, intent(out) :: n                    !! Its length
       character(len=24) :: buffer
       integer(int64) :: digits
@@ -128,14 +129,14 @@ contains
       call put_plain(digits, exponent, text, n)
    end subroutine print_number
 
-   !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, up to the
-   !> 44th the sum of two, and so is the product of two doubles
+   !> Compute the 17 digits of a number of common size. A power of ten up to the 22nd is a double,
+   !> up to the 44th the sum of two doubles, and so is the product of two doubles
    pure subroutine scale(value, digits, exponent, beyond, known)
       real(wp), intent(in) :: value          !! The number, positive
-      integer(int64), intent(out) :: digits  !! Its digits, rounded, as one whole number
+      integer(int64), intent(out) :: digits  !! Its digits, rounded, as an integer
       integer, intent(out) :: exponent       !! Power of ten of the first digit
-      real(wp), intent(out) :: beyond        !! What rounding has taken from the digits
-      logical, intent(out) :: known          !! Whether they could be found so
+      real(wp), intent(out) :: beyond        !! Rounding error of the digits
+      logical, intent(out) :: known          !! True if the digits were found
       real(wp) :: high, low, product, rest
 
       digits = 0
@@ -148,7 +149,8 @@ contains
       if (16 - exponent > 22) call exact_product(1.0e22_wp, 10.0_wp**(-6 - exponent), high, low)
       call exact_product(value, high, product, rest)
       rest = rest + value*low
-      ! beyond 2**53 the product is whole; what is left of it rounds, but for a tie
+      ! above 2**53 the product is an integer; its rounding error decides the last digit, except in
+      ! a tie
       known = product > 1.0e16_wp .and. product < 0.9999e17_wp &
          & .and. abs(rest - anint(rest)) < 0.5_wp - rounding
       if (.not. known) return
@@ -158,13 +160,13 @@ contains
 
    !> Product of two doubles as the sum of two (Dekker 1971)
    pure subroutine exact_product(a, b, product, rest)
-      real(wp), intent(in) :: a         !! One factor
-      real(wp), intent(in) :: b         !! The other
+      real(wp), intent(in) :: a         !! First factor
+      real(wp), intent(in) :: b         !! Second factor
       real(wp), intent(out) :: product  !! The product, rounded
-      real(wp), intent(out) :: rest     !! What rounding has taken from it
+      real(wp), intent(out) :: rest     !! Rounding error of the product
       real(wp) :: high(2), low(2)
 
-      ! numbers of half the digits that add up to each
+      ! split into two halves of the digits; the halves add up to the number
       high = 134217729.0_wp*[a, b]
       high = high - (high - [a, b])
       low = [a, b] - high
@@ -172,13 +174,13 @@ contains
       rest = ((high(1)*high(2) - product) + high(1)*low(2) + low(1)*high(2)) + low(1)*low(2)
    end subroutine exact_product
 
-   !> Leave out of 17 digits those that the number does not need to be read back
+   !> Remove trailing digits of 17 that are not needed to read the number back
    pure subroutine shorten(value, beyond, doubt, digits, exponent, known)
       real(wp), intent(in) :: value, beyond
-      real(wp), intent(in) :: doubt            !! How far that may be wrong
-      integer(int64), intent(inout) :: digits  !! Its 17 digits in, the shorter ones out
+      real(wp), intent(in) :: doubt            !! Bound on the error of beyond
+      integer(int64), intent(inout) :: digits  !! 17 digits on entry, the shorter ones on return
       integer, intent(in) :: exponent
-      !> Whether it could be told without reading the digits back, so that they were changed
+      !> True if the digits were shortened without reading them back
       logical, intent(out) :: known
       integer(int64) :: short, unit
       real(wp) :: off, half_step
@@ -186,7 +188,7 @@ contains
 
       known = abs(exponent) < 280
       if (.not. known) return
-      ! half the way to the next double, and all distances, in units of the 17th digit
+      ! half the distance to the next double, and all distances, in units of the 17th digit
       half_step = 0.5_wp*spacing(value)*10.0_wp**(16 - exponent)
       do places = 15, 16
          unit = 10_int64**(17 - places)
@@ -194,7 +196,7 @@ contains
          if (beyond < 0.0_wp .and. mod(digits, unit) == unit/2) short = short - 1
          off = abs(real(digits - short*unit, wp) + beyond)
          if (off - doubt > 1.000001_wp*half_step) cycle
-         ! below a power of two the next double is only half as far; a tie may round either way
+         ! the next double below a power of two is only half as far; a tie may round either way
          known = off + doubt < 0.499999_wp*half_step .or. off + doubt < 0.999999_wp*half_step &
             & .and. abs(fraction(value)) > 0.5_wp
          known = known .and. 2.0_wp*off < real(unit, wp) .and. short < 10_int64**places
@@ -203,7 +205,7 @@ contains
       end do
    end subroutine shorten
 
-   !> The fewest digits that read back as the same number, by reading them
+   !> Find the fewest digits that read back as the same number, by trial
    pure subroutine try_forms(value, digits, exponent)
       real(wp), intent(in) :: value
       integer(int64), intent(out) :: digits
@@ -221,11 +223,11 @@ contains
       call take_digits(buffer, digits, exponent)
    end subroutine try_forms
 
-   !> Digits and exponent of a number as an ES edit descriptor writes it
+   !> Digits and exponent of a text written with an ES edit descriptor
    pure subroutine take_digits(scientific, digits, exponent)
       !> The text
       character(len=*), intent(in) :: scientific
-      integer(int64), intent(out) :: digits  !! All digits before the exponent, as one whole number
+      integer(int64), intent(out) :: digits  !! All digits before the exponent, as an integer
       integer, intent(out) :: exponent       !! The exponent
       integer :: code, e, i
 
@@ -241,12 +243,12 @@ contains
       if (scientific(e + 1:e + 1) == "-") exponent = -exponent
    end subroutine take_digits
 
-   !> Plain decimals where they are as short as scientific notation
+   !> Write plain decimals where they are as short as scientific notation
    pure subroutine put_plain(number, exponent, text, n)
-      !> Significant digits as a whole number; zeros at its end do not count
+      !> Significant digits as an integer, trailing zeros allowed
       integer(int64), intent(in) :: number
       integer, intent(in) :: exponent
-      !> Receives them without trailing zeros, with at least one digit after a point
+      !> Receives the text without trailing zeros, with at least one digit after a point
       character(len=*), intent(inout) :: text
       integer, intent(inout) :: n
       character(len=20) :: digits
@@ -281,9 +283,9 @@ contains
       n = n + n_digits
    end subroutine put_plain
 
-   !> How many digits a whole number has
+   !> Number of decimal digits of an integer
    pure integer function count_digits(number)
-      integer(int64), intent(in) :: number  !! The number, not negative
+      integer(int64), intent(in) :: number  !! The integer, not negative
       integer(int64) :: rest
 
       rest = number
@@ -294,11 +296,11 @@ contains
       end do
    end function count_digits
 
-   !> Write the digits of a whole number
+   !> Write the digits of an integer
    pure subroutine put_digits(number, digits, n)
       integer(int64), intent(in) :: number
-      character(len=20), intent(out) :: digits  !! The digits, from the left, and zeros behind them
-      integer, intent(out) :: n                 !! How many
+      character(len=20), intent(out) :: digits  !! The digits, left-aligned, followed by zeros
+      integer, intent(out) :: n                 !! Number of digits
       character(len=20) :: right
       integer(int64) :: rest
       integer :: i
@@ -325,7 +327,7 @@ contains
       text = repeat("-", merge(1, 0, value < 0))//digits(:n)
    end function integer_to_text
 
-   !> The same text with A-Z turned into a-z
+   !> The text in lower case (ASCII letters only)
    pure function lower_case(text) result(lower)
       character(len=*), intent(in) :: text  !! Any text
       character(len=len(text)) :: lower     !! Text of the same length
@@ -338,7 +340,7 @@ contains
       end do
    end function lower_case
 
-   !> Put a line below the others
+   !> Append a line
    pure subroutine add_line(lines, line)
       type(growing_text_t), intent(inout) :: lines
       character(len=*), intent(in) :: line  !! The line
@@ -356,7 +358,7 @@ contains
       lines%length = room
    end subroutine add_line
 
-   !> The lines, parted by line ends, none behind the last
+   !> The lines separated by line ends, none after the last
    pure function lines_of(lines) result(text)
       type(growing_text_t), intent(in) :: lines
       character(len=:), allocatable :: text  !! The text; empty if there are none
@@ -365,29 +367,29 @@ contains
       if (lines%length > 0) text = lines%text(:lines%length - 1)
    end function lines_of
 
-   !> Bytes of the lines with their ends
+   !> Bytes of the lines with their line ends
    pure integer function bytes_of(lines)
       type(growing_text_t), intent(in) :: lines
 
       bytes_of = lines%length
    end function bytes_of
 
-   !> Numbers with something between them
+   !> Numbers joined by a separator
    pure function fields(value, between) result(text)
       real(wp), intent(in) :: value(:)            !! The numbers: (n), one or more
-      character, intent(in), optional :: between  !! A comma where it is left out
+      character, intent(in), optional :: between  !! Separator; a comma if absent
       character(len=:), allocatable :: text
       character(len=33*size(value)) :: buffer
-      character :: parting
+      character :: separator
       integer :: i, k, n
 
-      parting = ","
-      if (present(between)) parting = between
+      separator = ","
+      if (present(between)) separator = between
       n = 0
       do i = 1, size(value)
          if (i > 1) then
             n = n + 1
-            buffer(n:n) = parting
+            buffer(n:n) = separator
          end if
          call print_number(value(i), buffer(n + 1:n + 32), k)
          n = n + k

@@ -5,10 +5,10 @@ module dda_utf_8
 
    public :: bad_byte, byte_name
 
-   !> Bytes that begin a character: those of a row, and the bounds of the byte that follows. Codes
-   !> that are too long, halves of UTF-16 and what lies beyond the last character are none
+   !> First bytes of characters of two or more bytes, with the bounds of the second byte. Overlong
+   !> codes, UTF-16 surrogates and codes above the last character are excluded
    integer, parameter :: n_lead = 8
-   !> First and last byte of a row, bounds of the next byte, and how many follow in all
+   !> First and last lead byte of a row, bounds of the next byte, number of bytes that follow
    integer, parameter :: lead(5, n_lead) = reshape([ &
       & 194, 223, 128, 191, 1, &
       & 224, 224, 160, 191, 2, &
@@ -21,7 +21,7 @@ module dda_utf_8
 
 contains
 
-   !> Place of the first byte that is no part of a character in UTF-8; 0 if there is none
+   !> Place of the first byte that is not valid UTF-8; 0 if there is none
    pure integer function bad_byte(text)
       character(len=*), intent(in) :: text  !! Any bytes
       integer :: i
@@ -39,7 +39,7 @@ contains
       bad_byte = 0
    end function bad_byte
 
-   !> Number of bytes of the character, not ASCII, that a text begins with; 0 if it is none
+   !> Number of bytes of the character, not ASCII, at the start of a text; 0 if invalid
    pure integer function character_length(text) result(length)
       character(len=*), intent(in) :: text  !! Any bytes, at least one
       integer :: code(4), i, row
@@ -58,10 +58,10 @@ contains
       length = lead(5, row) + 1
    end function character_length
 
-   !> A byte as a message shows it
+   !> Hexadecimal text of a byte for messages
    pure function byte_name(byte) result(name)
       character, intent(in) :: byte  !! Any byte
-      character(len=4) :: name  !! Such as 0xE9
+      character(len=4) :: name  !! Text such as 0xE9
 
       write (name, "(a, z2.2)") "0x", ichar(byte)
    end function byte_name

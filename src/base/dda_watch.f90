@@ -6,19 +6,19 @@ module dda_watch
 
    public :: watch_t
 
-   !> Is told of a task now and then, and makes of it what it likes
+   !> Receiver of progress reports
    type, abstract :: watch_t
    contains
-      procedure(tell_of_task), deferred :: tell  !! Tell of the task
+      procedure(tell_of_task), deferred :: tell  !! Report the progress of a task
    end type watch_t
 
    abstract interface
-      !> Tell how far a task is
+      !> Report the progress of a task
       subroutine tell_of_task(watch, task, share)
          import :: watch_t, wp
          class(watch_t), intent(inout) :: watch
-         character(len=*), intent(in) :: task  !! What is done
-         !> How much of it is done, from 0 to 1; below 0 if that is not known
+         character(len=*), intent(in) :: task  !! Name of the task
+         !> Completed share from 0 to 1; negative if not known
          real(wp), intent(in) :: share
       end subroutine tell_of_task
    end interface
