@@ -1,5 +1,5 @@
-!> Files written through the C library, which reports a full disk. Whatever fails on the way is
-!> reported when the file is flushed or closed
+!> Files written through the C library, which detects a full disk. Write errors are reported when
+!> the file is flushed or closed
 module dda_binary_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
       & c_ptr, c_size_t
@@ -20,20 +20,20 @@ module dda_binary_file
       character(len=:), allocatable :: name  !! Name of the file, for messages
    end type binary_file_t
 
-   !> Folder whose files are devices, and never removed
+   !> Folder of devices, which are never removed
    character(len=*), parameter :: devices = "/dev/"
-   !> What a write that failed may have met
+   !> Message about a failed write
    character(len=*), parameter :: no_room = "cannot write the results: no space left on the "// &
       & "disk, or above the limit of a file (ulimit -f); make room or write elsewhere"
 
 contains
 
-   !> Begin a file. A link of its name is replaced, and where it leads stays as it is
+   !> Open a file for writing. A symbolic link of that name is replaced; its target is not changed
    subroutine open_binary(name, file, error, keep)
       character(len=*), intent(in) :: name   !! Name of the file; one that exists is replaced
       type(binary_file_t), intent(out) :: file
       type(error_t), allocatable, intent(out) :: error
-      logical, intent(in), optional :: keep  !! Whether what it holds is kept and added to instead
+      logical, intent(in), optional :: keep  !! True to append to the present contents
       character(len=:), allocatable :: mode
       integer(c_int) :: failed
       logical :: kept
@@ -45,7 +45,7 @@ contains
       else if (index(name, devices) == 1) then
          mode = "wb"
       else
-         ! a file of its own: C's x refuses whatever still has the name
+         ! C's x fails if the name still exists, so the file is a new one
          mode = "wbx"
          failed = c_unlink(name//c_null_char)
       end if
@@ -56,7 +56,7 @@ contains
          & name, 1)
    end subroutine open_binary
 
-   !> Remove a link; files and folders of that name stay
+   !> Remove a symbolic link; files and folders of that name are kept
    subroutine remove_link(name)
       character(len=*), intent(in) :: name  !! Name of the link
       integer(c_int) :: failed
@@ -64,7 +64,7 @@ contains
       if (is_link(name)) failed = c_unlink(name//c_null_char)
    end subroutine remove_link
 
-   !> Whether a name is that of a symbolic link
+   !> True if a name is that of a symbolic link
    logical function is_link(name)
       character(len=*), intent(in) :: name
       character(len=1) :: target(1)
@@ -72,18 +72,18 @@ contains
       is_link = c_readlink(name//c_null_char, target, 1_c_size_t) >= 0
    end function is_link
 
-   !> Take over a file that the system has opened already
+   !> Use a file that the system has already opened
    subroutine open_descriptor(descriptor, name, file)
-      integer, intent(in) :: descriptor     !! The system's number of the file
-      character(len=*), intent(in) :: name  !! Name that messages will show
-      !> The file; not open if there is none of that number
+      integer, intent(in) :: descriptor     !! File descriptor
+      character(len=*), intent(in) :: name  !! Name for messages
+      !> The file; not open if the descriptor is invalid
       type(binary_file_t), intent(out) :: file
 
       file%name = name
       file%handle = c_fdopen(int(descriptor, c_int), "w"//c_null_char)
    end subroutine open_descriptor
 
-   !> The system's number of a file; negative for one that is not open
+   !> File descriptor; negative if the file is not open
    integer function descriptor_of(file)
       type(binary_file_t), intent(in) :: file
 
@@ -91,10 +91,10 @@ contains
       if (c_associated(file%handle)) descriptor_of = int(c_fileno(file%handle))
    end function descriptor_of
 
-   !> Write so that all up to here survives the end of the program
+   !> Flush a file, so that its contents survive the end of the program
    subroutine flush_binary(file, error)
       type(binary_file_t), intent(in) :: file
-      !> Allocated if anything could not be written since the file was opened
+      !> Allocated if any write since opening failed
       type(error_t), allocatable, intent(out) :: error
       integer(c_int) :: failed(2)
 
@@ -102,9 +102,9 @@ contains
       if (any(failed /= 0)) call fatal_error(error, no_room, file%name, 1)
    end subroutine flush_binary
 
-   !> Write so that all up to here survives a loss of power
+   !> Sync a file to disk, so that its contents survive a power failure
    subroutine sync_binary(file, error)
-      type(binary_file_t), intent(in) :: file  !! The file; nothing happens to one that is not open
+      type(binary_file_t), intent(in) :: file  !! The file; no effect if it is not open
       type(error_t), allocatable, intent(inout) :: error
 
       if (.not. c_associated(file%handle) .or. allocated(error)) return
@@ -130,7 +130,7 @@ contains
    !> Write a whole file
    subroutine write_file(name, text, error)
       character(len=*), intent(in) :: name  !! Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: text  !! What it holds
+      character(len=*), intent(in) :: text  !! Contents of the file
       type(error_t), allocatable, intent(out) :: error
       type(binary_file_t) :: file
 
@@ -140,7 +140,7 @@ contains
       call close_binary(file, error)
    end subroutine write_file
 
-   !> Write characters as they are; C keeps in mind whether that failed
+   !> Append characters; a failure is reported by flush_binary or close_binary
    subroutine append_text(file, text)
       type(binary_file_t), intent(in) :: file
       character(len=*), intent(in), target :: text  !! The characters

@@ -13,53 +13,53 @@ module dda_c_files
          import :: c_char, c_ptr
          !> Its name, ended by a null character
          character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted of it, ended by a null character
+         !> Access mode, ended by a null character
          character(kind=c_char), intent(in) :: mode(*)
          !> The file, null if it cannot be opened
          type(c_ptr) :: handle
       end function c_fopen
 
-      !> C: a file that the system has opened already
+      !> C: use a file that the system has already opened
       function c_fdopen(descriptor, mode) bind(c, name="fdopen") result(handle)
          import :: c_char, c_int, c_ptr
-         integer(c_int), intent(in), value :: descriptor  !! The system's number of the file
+         integer(c_int), intent(in), value :: descriptor  !! File descriptor
          character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if there is none of that number
+         !> The file, null if the descriptor is invalid
          type(c_ptr) :: handle
       end function c_fdopen
 
       !> C: write items
       function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
          import :: c_ptr, c_size_t
-         type(c_ptr), intent(in), value :: items        !! Where the items are
+         type(c_ptr), intent(in), value :: items        !! Address of the items
          integer(c_size_t), intent(in), value :: size   !! Size of an item
          integer(c_size_t), intent(in), value :: count  !! Number of items
          type(c_ptr), intent(in), value :: handle
          integer(c_size_t) :: written                   !! Number of items written
       end function c_fwrite
 
-      !> C: hand what is buffered to the system
+      !> C: pass buffered data to the system
       function c_fflush(handle) bind(c, name="fflush") result(failed)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
-         integer(c_int) :: failed  !! 0 if all is well
+         integer(c_int) :: failed  !! 0 on success
       end function c_fflush
 
-      !> C: the system's number of a file
+      !> C: file descriptor
       function c_fileno(handle) bind(c, name="fileno") result(descriptor)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
          integer(c_int) :: descriptor
       end function c_fileno
 
-      !> C: wait until the disk has what the system was given
+      !> C: wait until the data are on the disk
       function c_fsync(descriptor) bind(c, name="fsync") result(failed)
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: failed
       end function c_fsync
 
-      !> C: whether anything has failed since the file was opened
+      !> C: error indicator of a file
       function c_ferror(handle) bind(c, name="ferror") result(failed)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
@@ -76,61 +76,61 @@ module dda_c_files
       !> C: read items
       function c_fread(items, size, count, handle) bind(c, name="fread") result(got)
          import :: c_ptr, c_size_t
-         type(c_ptr), intent(in), value :: items  !! Where the items go
+         type(c_ptr), intent(in), value :: items  !! Address that receives the items
          integer(c_size_t), intent(in), value :: size, count
          type(c_ptr), intent(in), value :: handle
          !> Number of items read; fewer at the end of the file
          integer(c_size_t) :: got
       end function c_fread
 
-      !> C: what may be done with a file
+      !> C: check access to a file
       function c_access(path, mode) bind(c, name="access") result(failed)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(in), value :: mode  !! What is wanted; 0: that it exists
-         integer(c_int) :: failed                   !! 0 if it may be done
+         integer(c_int), intent(in), value :: mode  !! Access to check; 0 for existence
+         integer(c_int) :: failed                   !! 0 if the access is allowed
       end function c_access
 
-      !> C: open a file by the system alone
+      !> C: open a file without buffer
       function c_open(path, flags) bind(c, name="open") result(descriptor)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), intent(in), value :: flags  !! How to open it
-         !> The system's number; negative after a failure
+         integer(c_int), intent(in), value :: flags  !! Open mode
+         !> File descriptor; negative after a failure
          integer(c_int) :: descriptor
       end function c_open
 
-      !> C: close what c_open has opened
+      !> C: close a file descriptor
       function c_close(descriptor) bind(c, name="close") result(failed)
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: failed
       end function c_close
 
-      !> C: go to a place of a file
+      !> C: move to a position in a file
       function c_lseek(descriptor, offset, origin) bind(c, name="lseek") result(place)
          import :: c_int, c_int64_t
          integer(c_int), intent(in), value :: descriptor
          integer(c_int64_t), intent(in), value :: offset  !! Distance from the origin [bytes]
-         integer(c_int), intent(in), value :: origin      !! 0: the begin, 2: the end
-         !> The place from the begin [bytes]; negative for a pipe or a terminal
+         integer(c_int), intent(in), value :: origin      !! 0: from the beginning, 2: from the end
+         !> Position from the beginning [bytes]; negative for a pipe or a terminal
          integer(c_int64_t) :: place
       end function c_lseek
 
-      !> C: remove a file or a link, no folder
+      !> C: remove a file or a link, but no folder
       function c_unlink(path) bind(c, name="unlink") result(failed)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: failed  !! 0 if it was removed
       end function c_unlink
 
-      !> C: where a link leads
+      !> C: read the target of a symbolic link
       function c_readlink(path, target, size) bind(c, name="readlink") result(length)
          import :: c_char, c_intptr_t, c_size_t
          character(kind=c_char), intent(in) :: path(*)
-         character(kind=c_char), intent(out) :: target(*)  !! Receives it
-         integer(c_size_t), intent(in), value :: size      !! Room for it
-         !> Its length; negative if there is no link
+         character(kind=c_char), intent(out) :: target(*)  !! Receives the target
+         integer(c_size_t), intent(in), value :: size      !! Size of target
+         !> Length of the target; negative if the path is no link
          integer(c_intptr_t) :: length
       end function c_readlink
    end interface

@@ -1,8 +1,7 @@
 !> Checksums: the CRC-32 of a text, and the sum over its lines
 !>
-!> The sum does not depend on the order of the lines: the sums of several tables add up to one,
-!> however their lines were written in turns. zlib and Python know CRC-32, so that others can
-!> compute it too.
+!> The sum does not depend on the order of the lines, so the sums of several tables can be added.
+!> CRC-32 is that of zlib and Python
 module dda_check_sum
    use, intrinsic :: iso_fortran_env, only : int32, int64
    implicit none
@@ -17,11 +16,11 @@ module dda_check_sum
 
 contains
 
-   !> CRC-32 of a text, half a byte at a time
+   !> CRC-32 of a text, computed for half a byte at a time
    pure integer(int64) function crc_32(text)
       character(len=*), intent(in) :: text  !! Any bytes
       integer :: i
-      ! what four bits do to a remainder, one after the other
+      ! effect of each four bits on a remainder
       integer(int32), parameter :: half_byte(0:15) = [(int(i, int32), i=0, 15)]
       integer(int32), parameter :: bits_1(0:15) = ieor(shiftr(half_byte, 1), &
          & merge(polynomial, 0_int32, btest(half_byte, 0)))
@@ -42,7 +41,7 @@ contains
       crc_32 = iand(int(not(rest), int64), shiftl(1_int64, bits) - 1)
    end function crc_32
 
-   !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
+   !> Sum of the CRC-32 of the lines of a text; the last line may lack a line feed
    pure integer(int64) function line_sum(text)
       character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
       integer :: first, length
@@ -57,10 +56,10 @@ contains
       end do
    end function line_sum
 
-   !> Two sums as one
+   !> Combine two sums
    elemental integer(int64) function add_sums(first, second)
-      integer(int64), intent(in) :: first   !! One sum; a negative one is taken away
-      integer(int64), intent(in) :: second  !! The other
+      integer(int64), intent(in) :: first   !! One sum; a negative one is subtracted
+      integer(int64), intent(in) :: second  !! The other sum
 
       add_sums = modulo(first + second, shiftl(1_int64, bits))
    end function add_sums

@@ -1,6 +1,6 @@
-!> Tokens of a deck, and the cursor on its text
+!> Tokens of a deck, and the scanner of its text
 !>
-!> Tokens are places in the text, not copies: groups, keys, values and group ends in their order.
+!> Tokens are positions in the text, not copies: groups, keys, values and group ends in order.
 module dda_deck_token
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text, lower_case
@@ -12,18 +12,18 @@ module dda_deck_token
 
    !> Maximum number of tokens in a deck
    integer, parameter :: max_tokens = 2000000
-   !> Blanks of a namelist: blank, tab, line feed
+   !> Blank characters of a namelist: blank, tab, line feed
    character(len=3), parameter :: blanks = " "//achar(9)//achar(10)
-   !> What ends a word without quotes
+   !> Characters that end a word without quotes
    character(len=9), parameter :: word_ends = blanks//",/=!'"""
 
-   !> What a token is
+   !> Kinds of tokens
    type :: token_kind_enum
       integer :: group = 1    !! & and the name of a group
       integer :: key = 2      !! Name before an equals sign
       integer :: word = 3     !! Value without quotes
       integer :: quoted = 4   !! Value in quotes
-      integer :: nothing = 5  !! Nothing between two commas
+      integer :: nothing = 5  !! Empty value between two commas
       integer :: close = 6    !! Slash that ends a group
    end type token_kind_enum
 
@@ -33,27 +33,27 @@ module dda_deck_token
    !> One token of a deck
    type :: token_t
       integer :: kind = 0   !! One of token_kind
-      integer :: first = 1  !! First character in the text; quotes and repeat count left out
+      integer :: first = 1  !! First character in the text, without quotes and repeat count
       integer :: last = 0   !! Last character in the text
       integer :: line = 0   !! Line of the text, counted from 1
       integer :: count = 1  !! Repeat count r of r*c
    end type token_t
 
-   !> A text and its tokens, and the place of the scanner while it works
+   !> A text, its tokens and the state of the scanner
    type :: deck_scan_t
       character(len=:), allocatable :: text   !! The text, its lines ended by line feeds
       type(token_t), allocatable :: token(:)  !! Tokens in their order: (n)
       integer :: n = 0                        !! Number of tokens
-      integer :: position = 1                 !! Next character to look at
+      integer :: position = 1                 !! Next character to read
       integer :: line = 1                     !! Line of that character
-      !> Whether a comma stands before that character with no value between
+      !> True if a comma precedes that character without a value
       logical :: after_comma = .false.
-      integer :: open_group = 0  !! Token of the group that is open; 0 between groups
+      integer :: open_group = 0  !! Token of the open group; 0 between groups
    end type deck_scan_t
 
 contains
 
-   !> Text of a token: names in lower case, doubled quotes made single
+   !> Text of a token: names in lower case, doubled quotes reduced to one
    pure function token_text(scan, i) result(text)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: i  !! Place of the token
@@ -78,7 +78,7 @@ contains
       end associate
    end function token_text
 
-   !> Text fit for a message: no control characters, not too long
+   !> Text prepared for a message: no control characters, limited length
    pure function shown(text) result(clean)
       character(len=*), intent(in) :: text  !! Any text
       !> One line of at most 60 characters; each character that is not ASCII becomes one '?'
@@ -101,7 +101,7 @@ contains
       clean = buffer(:n)
    end function shown
 
-   !> Stand at the beginning of a text
+   !> Start the scanner at the beginning of a text
    pure subroutine start(text, scan)
       character(len=*), intent(in) :: text
       type(deck_scan_t), intent(out) :: scan  !! Scanner without tokens
@@ -117,19 +117,19 @@ contains
       integer, intent(in) :: first                      !! First character
       integer, intent(in) :: last                       !! Last character
       integer, intent(in) :: count                      !! Repeat count
-      type(error_t), allocatable, intent(out) :: error  !! Too many tokens
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for too many tokens
 
       if (scan%n == max_tokens) call fatal_error(error, "expected at most "//to_text(max_tokens) &
          & //" groups, keys and values, got more; split the deck")
       if (allocated(error)) return
-      ! the second half is room
+      ! double the capacity
       if (scan%n == size(scan%token)) scan%token = [scan%token, scan%token]
       scan%n = scan%n + 1
       scan%token(scan%n) = token_t(kind, first, last, scan%line, count)
       scan%after_comma = .false.
    end subroutine add_token
 
-   !> Go to the next character that is neither blank nor comment
+   !> Move to the next character that is neither blank nor in a comment
    pure subroutine skip_blanks(scan)
       type(deck_scan_t), intent(inout) :: scan
       integer :: next
@@ -148,8 +148,8 @@ contains
       end do
    end subroutine skip_blanks
 
-   !> Place of the last letter of the word at the scanner's place; one before the
-   !> scanner's if a word end stands there
+   !> Last letter of the word at the scanner's position; one before the position if no word starts
+   !> there
    pure integer function word_end(scan)
       type(deck_scan_t), intent(in) :: scan
 

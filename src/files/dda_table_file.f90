@@ -1,4 +1,4 @@
-!> Tables with separately written lines, and detection of unfinished lines
+!> Tables written line by line, and detection of incomplete lines
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only : int64
@@ -14,11 +14,11 @@ module dda_table_file
    public :: keep_line, part_name, rename_part, table_lines_t, open_lines, next_line, close_lines
    public :: first_line, n_fields, field_ends, field, field_number, without_field
 
-   !> An open table
+   !> A table open for writing
    type :: table_file_t
-      type(binary_file_t) :: file   !! Its file
+      type(binary_file_t) :: file   !! File of the table
       integer(int64) :: length = 0  !! Length of its lines, 0 if it is not open [bytes]
-      integer(int64) :: sum = 0     !! Check sum of the lines that were appended since it was opened
+      integer(int64) :: sum = 0     !! Checksum of the lines appended since it was opened
    end type table_file_t
 
    interface
@@ -29,11 +29,11 @@ module dda_table_file
          integer(c_int) :: failed                       !! 0 if it was removed
       end function c_remove
 
-      !> C: give a file another name; one of that name is replaced at once, never half
+      !> C: rename a file; a file of the new name is replaced atomically
       function c_rename(from, to) bind(c, name="rename") result(failed)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: from(*)  !! Its name, ended by a null character
-         character(kind=c_char), intent(in) :: to(*)    !! Its new name, likewise
+         character(kind=c_char), intent(in) :: to(*)    !! New name, ended by a null character
          integer(c_int) :: failed                       !! 0 if it was renamed
       end function c_rename
    end interface
@@ -44,11 +44,11 @@ module dda_table_file
    !> A table that is read line by line
    type :: table_lines_t
       private
-      integer :: unit = 0                     !! Fortran's unit
-      logical :: is_open = .false.            !! Whether there is a file
+      integer :: unit = 0                     !! Fortran unit
+      logical :: is_open = .false.            !! True if the file is open
       integer(int64) :: left = 0              !! Bytes not read yet
-      character(len=:), allocatable :: ahead  !! Bytes read but not handed out
-      integer :: first = 1                    !! Place of the first of them
+      character(len=:), allocatable :: ahead  !! Bytes read but not yet returned
+      integer :: first = 1                    !! First unreturned byte in ahead
    end type table_lines_t
 
 contains
@@ -65,7 +65,7 @@ contains
       if (.not. allocated(error)) call append_line(table, header, error)
    end subroutine open_table
 
-   !> Write one line, or several, so that it survives the end of the program; nothing is no line
+   !> Write and flush one or several lines; an empty text writes nothing
    subroutine append_line(table, line, error)
       type(table_file_t), intent(inout) :: table
       character(len=*), intent(in) :: line  !! The line
@@ -80,7 +80,7 @@ contains
    !> Close a table
    subroutine close_table(table, error)
       type(table_file_t), intent(inout) :: table
-      !> An earlier failure, or that of closing it
+      !> Kept if allocated; otherwise set if closing fails
       type(error_t), allocatable, intent(inout) :: error
       type(error_t), allocatable :: late
 
@@ -88,15 +88,15 @@ contains
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
    end subroutine close_table
 
-   !> Name of a file that is not whole yet
+   !> Name of an incomplete file
    pure function part_name(file) result(name)
-      character(len=*), intent(in) :: file  !! Name that it will have
+      character(len=*), intent(in) :: file  !! Name of the complete file
       character(len=:), allocatable :: name
 
       name = file//".part"
    end function part_name
 
-   !> Write one line that need not be safe yet
+   !> Write one line without flushing
    subroutine keep_line(table, line)
       type(table_file_t), intent(inout) :: table
       character(len=*), intent(in) :: line
@@ -105,7 +105,7 @@ contains
       call append_text(table%file, line//new_line("a"))
    end subroutine keep_line
 
-   !> Give a file begun beside another one the other's name
+   !> Rename a complete file from its temporary name, replacing an older file
    subroutine rename_part(file, error)
       character(len=*), intent(in) :: file
       type(error_t), allocatable, intent(out) :: error  !! Allocated if it cannot be replaced
@@ -115,7 +115,7 @@ contains
          & "--out", file)
    end subroutine rename_part
 
-   !> Remove a file of an earlier run; one that is not there is no failure
+   !> Remove a file of an earlier run; a missing file is no error
    subroutine remove_file(file)
       character(len=*), intent(in) :: file
       integer(c_int) :: failed
@@ -123,11 +123,11 @@ contains
       failed = c_remove(file//c_null_char)
    end subroutine remove_file
 
-   !> Begin to read; a file that is not there has no lines
+   !> Start reading; a missing file has no lines
    subroutine open_lines(file, lines, most)
       character(len=*), intent(in) :: file  !! Name of the file
       type(table_lines_t), intent(out) :: lines
-      !> How much of it is read at most [bytes]; all of it without this
+      !> Maximum number of bytes to read [bytes]; the whole file if absent
       integer(int64), intent(in), optional :: most
       integer :: stat
 
@@ -140,11 +140,11 @@ contains
       lines%is_open = stat == 0
    end subroutine open_lines
 
-   !> The next line that has its end; what follows the last line end was cut off and is no line
+   !> Return the next complete line; text after the last line end is incomplete and ignored
    subroutine next_line(lines, line, found)
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable, intent(out) :: line  !! The line without its end
-      logical, intent(out) :: found                       !! Whether there was one
+      logical, intent(out) :: found                       !! True if there was a line
       integer :: length
 
       found = .false.
@@ -160,10 +160,10 @@ contains
       lines%first = lines%first + length
    end subroutine next_line
 
-   !> First line of a file, as far as it is read at a time; empty if there is none
+   !> First line of a file, at most one chunk; empty if there is none
    function first_line(file) result(line)
       character(len=*), intent(in) :: file
-      character(len=:), allocatable :: line  !! The line with its end, if it has one
+      character(len=:), allocatable :: line  !! The line with its line end, if it has one
       type(table_lines_t) :: lines
       logical :: found
 
@@ -177,7 +177,7 @@ contains
       call close_lines(lines)
    end function first_line
 
-   !> Read more of the file
+   !> Read the next chunk
    subroutine read_ahead(lines)
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable :: more
@@ -194,7 +194,7 @@ contains
       lines%first = 1
    end subroutine read_ahead
 
-   !> End reading
+   !> Close the file
    subroutine close_lines(lines)
       type(table_lines_t), intent(inout) :: lines
 
@@ -204,9 +204,9 @@ contains
 
    !> Number of fields of a line
    pure integer function n_fields(line, separator)
-      !> Fields parted by commas; commas between double quotes part nothing
+      !> Fields separated by commas; commas in double quotes do not separate
       character(len=*), intent(in) :: line
-      character, intent(in), optional :: separator  !! What parts them instead of commas
+      character, intent(in), optional :: separator  !! Separator; a comma if absent
       character :: mark
       logical :: quoted
       integer :: i
@@ -221,10 +221,10 @@ contains
       end do
    end function n_fields
 
-   !> Text of a field; empty if there is none of that number
+   !> Text of a field; empty if there is no such field
    pure function field(line, number) result(text)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number  !! Which, from 1
+      integer, intent(in) :: number  !! Number of the field, from 1
       character(len=:), allocatable :: text
       integer :: ends(2)
 
@@ -232,10 +232,10 @@ contains
       text = line(ends(1):ends(2))
    end function field
 
-   !> A line without what one of its fields holds; the whole line if there is none of that number
+   !> A line with the contents of one field removed; unchanged if there is no such field
    pure function without_field(line, number) result(text)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number  !! Which, from 1
+      integer, intent(in) :: number  !! Number of the field, from 1
       character(len=:), allocatable :: text
       integer :: ends(2)
 
@@ -243,11 +243,11 @@ contains
       text = line(:ends(1) - 1)//line(ends(2) + 1:)
    end function without_field
 
-   !> First and last character of a field; the last before the first if it is empty or not there
+   !> First and last character of a field; the last precedes the first if it is empty or missing
    pure function field_ends(line, number, separator) result(ends)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number                 !! Which, from 1
-      character, intent(in), optional :: separator  !! What parts fields instead of commas
+      integer, intent(in) :: number                 !! Number of the field, from 1
+      character, intent(in), optional :: separator  !! Separator; a comma if absent
       integer :: ends(2)
       character :: mark
       logical :: quoted

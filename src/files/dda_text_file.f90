@@ -1,4 +1,4 @@
-!> A text file as one string, or an error with its line; and the checksum of its contents
+!> Read a text file into one string, report errors with their line, and compute a checksum
 module dda_text_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t
@@ -19,12 +19,12 @@ module dda_text_file
    integer, parameter :: megabyte = 1024**2
    !> Maximum size of a file [bytes]
    integer, parameter :: max_file_size = 512*megabyte
-   !> The message about a file of length 0, or a device without a length
+   !> Message about an empty file or a device without a length
    character(len=*), parameter :: no_bytes = "the file is empty; write into it"
-   !> What the shell calls a pipe into the program, which has somebody who writes
+   !> Names that the shell uses for pipes into the program; these always have a writer
    character(len=*), parameter :: stream(*) = [character(len=14) :: "/dev/stdin", "/dev/fd/", &
       & "/proc/self/fd/"]
-   !> C's O_NONBLOCK on Linux, beside O_RDONLY, which is 0: a pipe is opened at once
+   !> C's O_NONBLOCK on Linux, added to O_RDONLY (0): opening a pipe does not block
    integer(c_int), parameter :: at_once = 2048
 
 contains
@@ -33,9 +33,9 @@ contains
    subroutine read_text_file(file, text, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Its text as plain_text makes it; empty after a failure
+      !> Its normalised text (see plain_text); empty after a failure
       character(len=:), allocatable, intent(out) :: text
-      !> Missing, no plain file, too large, unreadable or not text
+      !> Allocated if the file is missing, irregular, too large, unreadable or not text
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: raw
 
@@ -47,7 +47,7 @@ contains
       error%file = file
    end subroutine read_text_file
 
-   !> Read a whole file as it is, be it a pipe from the shell
+   !> Read a whole file unchanged, also from a pipe of the shell
    subroutine read_bytes(file, bytes, error)
       character(len=*), intent(in) :: file
       character(len=:), allocatable, intent(out) :: bytes  !! Its bytes; empty after a failure
@@ -73,8 +73,8 @@ contains
       failed = c_fclose(handle)
    end subroutine read_bytes
 
-   !> Open a file. Others than those of the shell must be plain: a pipe may have nobody who writes,
-   !> a terminal or device no end
+   !> Open a file for reading. Only names of the shell may be pipes or devices: other pipes may have
+   !> no writer, and devices no end
    subroutine open_to_read(file, handle, error)
       character(len=*), intent(in) :: file
       type(c_ptr), intent(out) :: handle  !! C's handle of the file
@@ -100,7 +100,7 @@ contains
          & "the file cannot be read; check its permissions")
    end subroutine open_to_read
 
-   !> Whether a name is one that the shell gives a pipe
+   !> True if the shell uses this name for a pipe
    pure logical function is_stream(file)
       character(len=*), intent(in) :: file
       integer :: i
@@ -108,10 +108,10 @@ contains
       is_stream = any([(index(file, trim(stream(i))) == 1, i=1, size(stream))])
    end function is_stream
 
-   !> Open a file without waiting for who writes into it
+   !> Open a file without waiting for a writer
    subroutine open_plain(file, descriptor, length)
       character(len=*), intent(in) :: file
-      integer(c_int), intent(out) :: descriptor    !! The system's number; negative after a failure
+      integer(c_int), intent(out) :: descriptor    !! File descriptor; negative after a failure
       !> Its length, -1 for a pipe or a terminal; 0 for other devices [bytes]
       integer(c_int64_t), intent(out) :: length
       integer(c_int), parameter :: from_begin = 0, from_end = 2
@@ -123,7 +123,7 @@ contains
       if (c_lseek(descriptor, 0_c_int64_t, from_begin) /= 0) length = -1
    end subroutine open_plain
 
-   !> Whether there is a file of a name, or a device, but no pipe
+   !> True for an existing file or device that is no pipe
    logical function is_plain_file(file)
       character(len=*), intent(in) :: file
       integer(c_int) :: descriptor, failed
@@ -134,7 +134,7 @@ contains
       is_plain_file = length >= 0
    end function is_plain_file
 
-   !> Whether a name stands for something that may be a file
+   !> Check that a name can be that of a file
    subroutine check_name(file, error)
       character(len=*), intent(in) :: file
       type(error_t), allocatable, intent(out) :: error
@@ -153,10 +153,10 @@ contains
       end if
    end subroutine check_name
 
-   !> Read an open file to its end, or to one byte more than is allowed
+   !> Read an open file to its end, or to one byte above the size limit
    subroutine read_to_end(handle, bytes)
       type(c_ptr), intent(in) :: handle                    !! C's handle of the file
-      character(len=:), allocatable, intent(out) :: bytes  !! What was read
+      character(len=:), allocatable, intent(out) :: bytes  !! The bytes that were read
       character(len=:), allocatable, target :: room, longer
       integer(c_size_t) :: n, got
 
@@ -173,12 +173,14 @@ contains
       bytes = room(:n)
    end subroutine read_to_end
 
-   !> One kind of line end, no byte order mark, no control characters but the tab, UTF-8
+   !> Normalise a text: line feeds as line ends, no byte order mark. Only UTF-8 without control
+   !> characters except tabs is accepted
    pure subroutine plain_text(raw, text, error)
       character(len=*), intent(in) :: raw  !! Bytes of a file
-      !> The text: lines end in a line feed, whether they ended in CR LF, CR or LF
+      !> The text; lines end in a line feed instead of CR LF, CR or LF
       character(len=:), allocatable, intent(out) :: text
-      type(error_t), allocatable, intent(out) :: error  !! What is no text, with its line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the bytes are no text, with
+                                                        !! the line
       character(len=1), parameter :: lf = achar(10), cr = achar(13), tab = achar(9)
       character(len=3), parameter :: mark = char(239)//char(187)//char(191)
       integer :: i, n, line, code
@@ -210,7 +212,7 @@ contains
          & //"; save the file as UTF-8", line=line)
    end subroutine plain_text
 
-   !> The mark of a file: its length and check sum; a dash for one that cannot be read
+   !> Identification of a file: its length and checksum; a dash if it cannot be read
    function file_mark(file) result(mark)
       character(len=*), intent(in) :: file  !! Name of the file
       character(len=:), allocatable :: mark
@@ -222,7 +224,7 @@ contains
       if (.not. allocated(error)) mark = text_mark(bytes)
    end function file_mark
 
-   !> The mark of a text
+   !> Identification of a text: its length and checksum
    pure function text_mark(text) result(mark)
       character(len=*), intent(in) :: text  !! The text
       character(len=:), allocatable :: mark

@@ -1,5 +1,5 @@
-!> A text as words separated by blanks, each with its line. What takes or checks them does nothing
-!> after an error: the first one stays
+!> A text as words separated by blanks, each with its line. Procedures that take or check words do
+!> nothing after an error, so the first error is kept
 module dda_word_list
    use dda_deck_token, only : shown
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
@@ -17,12 +17,12 @@ module dda_word_list
    !> Largest material number
    integer, parameter :: largest_material = 1000000
 
-   !> Words of a text, and the one that is taken next
+   !> Words of a text, and the position of the next one to take
    type :: word_list_t
       character(len=:), allocatable :: text  !! The text
       character(len=:), allocatable :: file  !! Name of its file
       integer :: n = 0                       !! Number of words
-      integer :: next = 1                    !! The word that is taken next
+      integer :: next = 1                    !! Next word to take
       integer, allocatable :: start(:)       !! First character of each word: (n)
       integer, allocatable :: finish(:)      !! Last character of each word: (n)
       !> Line of each word, and of the end of the text: (n + 1)
@@ -31,9 +31,9 @@ module dda_word_list
 
 contains
 
-   !> A piece of a file as a message may show it
+   !> Part of a file prepared for a message
    pure function quoted(text) result(piece)
-      character(len=*), intent(in) :: text    !! The piece
+      character(len=*), intent(in) :: text    !! Text of the part
       character(len=:), allocatable :: piece  !! Short, printable, in quotes
 
       piece = "'"//shown(text)//"'"
@@ -45,7 +45,7 @@ contains
       character(len=*), intent(in) :: file  !! Name of its file, for messages
       integer, intent(in) :: first_row      !! Line of the file where the text begins
       type(word_list_t), intent(out) :: words
-      !> Characters that part words besides blanks, tabs and line ends
+      !> Separators of words besides blanks, tabs and line ends
       character(len=*), intent(in), optional :: also_blank
       character(len=1), parameter :: lf = achar(10)
       integer :: i, row, pass
@@ -78,14 +78,14 @@ contains
       end if
    end subroutine split_words
 
-   !> Number of words that were not taken
+   !> Number of words not yet taken
    pure integer function words_left(words)
       type(word_list_t), intent(in) :: words
 
       words_left = words%n - words%next + 1
    end function words_left
 
-   !> The next word, which stays
+   !> The next word, without taking it
    pure function this_word(words) result(word)
       type(word_list_t), intent(in) :: words
       character(len=:), allocatable :: word  !! The word; empty at the end
@@ -101,12 +101,12 @@ contains
       this_row = words%row(min(words%next, words%n + 1))
    end function this_row
 
-   !> Take a number
+   !> Take a word as a number
    pure subroutine take_number(words, what, value, error)
       type(word_list_t), intent(inout) :: words
-      character(len=*), intent(in) :: what  !! What the number is, for the message
+      character(len=*), intent(in) :: what  !! Meaning of the number, for the message
       real(wp), intent(out) :: value        !! The number
-      !> An earlier one, the end of the text, or no number
+      !> An earlier error; else set at the end of the text or for a word that is no number
       type(error_t), allocatable, intent(inout) :: error
       logical :: ok
 
@@ -122,13 +122,13 @@ contains
       words%next = words%next + 1
    end subroutine take_number
 
-   !> Take numbers that belong together, all within a bound
+   !> Take several numbers, each within a bound
    pure subroutine take_word_numbers(words, what, bound, value, error)
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       real(wp), intent(in) :: bound      !! Largest magnitude
       real(wp), intent(out) :: value(:)  !! The numbers: (n)
-      !> An earlier one, or what is wrong with the first bad one
+      !> An earlier error; else set for the first invalid number
       type(error_t), allocatable, intent(inout) :: error
       integer :: i, row
 
@@ -150,7 +150,8 @@ contains
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       real(wp), intent(out) :: value
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, another number, or none
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set for an
+                                                          !! invalid number
       real(wp), parameter :: most = 1.0e30_wp
       integer :: row
 
@@ -161,14 +162,14 @@ contains
          & words%file, row)
    end subroutine take_property
 
-   !> Take a whole number within bounds; 3.0 is one too
+   !> Take an integer within bounds; 3.0 is accepted
    pure subroutine take_whole(words, what, low, high, value, error)
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       integer, intent(in) :: low     !! Smallest value
       integer, intent(in) :: high    !! Largest value
       integer, intent(out) :: value  !! The number
-      !> An earlier one, the end of the text, or no such number
+      !> An earlier error; else set for an invalid number or the end of the text
       type(error_t), allocatable, intent(inout) :: error
       real(wp) :: number
       integer :: row
@@ -187,9 +188,9 @@ contains
       end if
    end subroutine take_whole
 
-   !> Refuse a number that breaks a rule
+   !> Report a number that violates a rule
    pure subroutine check_number(fits, rule, value, file, row, error)
-      logical, intent(in) :: fits           !! Whether it keeps the rule
+      logical, intent(in) :: fits           !! True if the rule holds
       character(len=*), intent(in) :: rule  !! The rule, such as: the unit mass must be above 0
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: file
@@ -203,7 +204,7 @@ contains
    !> Warn of words that were not taken
    pure subroutine warn_of_rest(words, taken, warnings)
       type(word_list_t), intent(in) :: words
-      character(len=*), intent(in) :: taken  !! What stands before them
+      character(len=*), intent(in) :: taken  !! Description of the words before them
       type(warnings_t), intent(inout) :: warnings
 
       if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
