@@ -13,18 +13,18 @@ submodule (dda_read_limerick) dda_ddaml_analysis
 
 contains
 
-   !> Read the analysis of a tree
+   !> Read the analysis from an element tree
    module procedure read_ddaml_analysis
       integer :: part
 
       analysis%file = tree%file
-      ! what an absent element means to the original
+      ! Shi's values for absent elements
       analysis%auto_time_step = .false.
       analysis%auto_penalty = .false.
       call find_part(tree, "Analysis", part, error)
       if (.not. allocated(error)) call check_elements(tree, part, analysis_form, warnings, error)
       if (allocated(error)) return
-      ! weights that are not given need the gravity
+      ! gravity gives the unit weights that are missing
       call number_attribute(tree, part, "Gravaccel", "value", 0.0_wp, analysis%gravity, error)
       if (.not. allocated(error)) call read_properties(tree, part, analysis, warnings, error)
       if (.not. allocated(error)) call read_loads(tree, part, analysis, error)
@@ -53,7 +53,7 @@ contains
          & analysis%stiffness_ratio, error)
    end subroutine read_constants
 
-   !> Read what bounds a run
+   !> Read the limits of a run
    pure subroutine read_bounds(tree, part, analysis, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: part
@@ -85,7 +85,7 @@ contains
       if (analysis%save_interval == 0) analysis%save_interval = 10
    end subroutine read_bounds
 
-   !> Read the elements that choose
+   !> Read the elements with a choice of words
    pure subroutine read_switches(tree, part, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: part
@@ -115,7 +115,7 @@ contains
       end if
    end subroutine read_switches
 
-   !> Read the phase that turns gravity on
+   !> Read the phase that applies gravity
    pure subroutine read_gravity(tree, at, analysis, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at  !! Place of Gravity
@@ -164,7 +164,7 @@ contains
       end do
    end subroutine read_properties
 
-   !> Read what bolts are like: the first of these elements counts for all, as in the original
+   !> Read bolt properties: the first such element applies to all bolts, as in Shi's program
    pure subroutine read_bolt(tree, at, property, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -182,7 +182,7 @@ contains
       end do
    end subroutine read_bolt
 
-   !> Materials are counted in the order of the file, whatever their type says
+   !> Warn of material types: numbers follow the order of the file, whatever the type is
    pure subroutine check_type(tree, at, number, warnings)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at      !! Place of the material
@@ -224,7 +224,7 @@ contains
       end do
    end subroutine read_loads
 
-   !> Whether all is there that an analysis needs
+   !> Check that an analysis is complete
    pure subroutine check_complete(tree, part, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: part

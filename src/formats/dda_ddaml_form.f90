@@ -1,4 +1,4 @@
-!> Elements of a DDAML file, their places and contents; unknown ones are reported
+!> Elements of DDAML files with their parents and contents; unknown ones are reported
 module dda_ddaml_form
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_word_list, only : quoted, split_words, this_row, this_word, word_list_t
@@ -8,13 +8,13 @@ module dda_ddaml_form
 
    public :: form_t, geometry_form, analysis_form, find_part, check_elements
 
-   !> Elements of one meaning inside another element
+   !> Elements with one meaning inside one parent
    type :: form_t
       character(len=18) :: outer = ""       !! Name of the outer element
-      character(len=34) :: names = ""       !! Their names, a blank before and behind each
-      character(len=36) :: attributes = ""  !! Names of their attributes, likewise
-      logical :: has_numbers = .false.      !! Whether they hold numbers
-      logical :: repeats = .false.          !! Whether there may be more than one
+      character(len=34) :: names = ""       !! Names of the elements, a blank before and after each
+      character(len=36) :: attributes = ""  !! Names of the attributes, likewise
+      logical :: has_numbers = .false.      !! True if the elements contain numbers
+      logical :: repeats = .false.          !! True if the element may occur more than once
    end type form_t
 
    logical, parameter :: yes = .true., no = .false.
@@ -82,12 +82,12 @@ module dda_ddaml_form
 
 contains
 
-   !> Find the part of a file that is wanted: inside the root, or the root itself
+   !> Find a part of a file: inside the root, or the root itself
    pure subroutine find_part(tree, name, part, error)
       type(xml_tree_t), intent(in) :: tree
       character(len=*), intent(in) :: name              !! Name of the part
       integer, intent(out) :: part                      !! Its place
-      type(error_t), allocatable, intent(out) :: error  !! There is none
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the part is missing
 
       part = 1
       if (tree%element(1)%name == name) return
@@ -96,16 +96,17 @@ contains
          & //"got none; add it", tree%file, tree%element(1)%row)
    end subroutine find_part
 
-   !> Check every element of a file and mark those that are not read
+   !> Check all elements of a file and mark those to be skipped
    pure subroutine check_elements(tree, part, form, warnings, error)
       type(xml_tree_t), intent(inout) :: tree
       integer, intent(in) :: part                       !! Place of the part that is read
-      type(form_t), intent(in) :: form(:)               !! What may be in it
+      type(form_t), intent(in) :: form(:)               !! Elements allowed in it
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! What has two meanings
-      !> Entry of each element in the form: 0 for the root and the part, below 0 if it is not read
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if an element is invalid or
+                                                        !! occurs twice
+      !> Entry of each element in the form: 0 for the root and the part, below 0 if it is skipped
       integer, allocatable :: entry(:)
-      !> Where each entry of the form was met last: (size of form)
+      !> Parent in which each entry last occurred: (size of form)
       integer :: met_in(size(form)), i, outer
 
       allocate (entry(tree%n))
@@ -136,7 +137,7 @@ contains
       end do
    end subroutine check_elements
 
-   !> Entry of an element in a form: 0 for the part itself, -1 if it has none
+   !> Entry of an element in a form: 0 for the part itself, -1 if unknown
    pure integer function entry_of(tree, at, part, form)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at  !! Place of the element
@@ -159,12 +160,12 @@ contains
       entry_of = -1
    end function entry_of
 
-   !> Refuse an element among numbers, warn of one elsewhere
+   !> Report an unknown element: an error among numbers, else a warning
    pure subroutine refuse_element(tree, at, outer, form, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       integer, intent(in) :: outer         !! Entry of the outer element in the form
-      type(form_t), intent(in) :: form(:)  !! What may be in the part
+      type(form_t), intent(in) :: form(:)  !! Elements allowed in the part
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
       logical :: among_numbers
@@ -183,7 +184,7 @@ contains
       end associate
    end subroutine refuse_element
 
-   !> Refuse the second of what may be there once
+   !> Report the second of two elements where only one is allowed
    pure subroutine refuse_second(tree, at, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -196,7 +197,7 @@ contains
       end associate
    end subroutine refuse_second
 
-   !> Warn of attributes without a meaning, refuse one that is given twice
+   !> Warn of unknown attributes; report one that occurs twice
    pure subroutine check_attributes(tree, at, form, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -223,7 +224,7 @@ contains
       end associate
    end subroutine check_attributes
 
-   !> Warn of text in an element that holds none
+   !> Warn of text in an element that must be empty
    pure subroutine check_text(tree, at, warnings)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at

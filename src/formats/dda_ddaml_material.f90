@@ -1,5 +1,5 @@
-!> Attributes and words of DDAML elements, and the materials and loads of an analysis file. What
-!> reads them does nothing after an error: the first one stays
+!> Attributes and words of DDAML elements, and the materials and loads of an analysis file.
+!> Procedures that read do nothing after an error, so the first error is kept
 module dda_ddaml_material
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_kinds, only : wp
@@ -15,7 +15,7 @@ module dda_ddaml_material
    public :: attribute_words, choose, element_error, element_words, number_attribute
    public :: read_material, read_joint, read_history, whole_attribute
 
-   !> Largest whole number
+   !> Largest integer
    integer, parameter :: largest_whole = 1000000000
 
    !> Relative difference within which unit weights are equal
@@ -23,13 +23,14 @@ module dda_ddaml_material
 
 contains
 
-   !> The words of an attribute that must be there
+   !> Words of a required attribute
    pure subroutine attribute_words(tree, at, name, words, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at                           !! Place of the element
       character(len=*), intent(in) :: name                !! Name of the attribute
       type(word_list_t), intent(out) :: words
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, or it is not there
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set if the
+                                                          !! attribute is missing
 
       call split_words(attribute_of(tree, at, name), tree%file, tree%element(at)%row, words)
       words%row = tree%element(at)%row
@@ -43,34 +44,35 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       type(word_list_t), intent(out) :: words
-      !> Characters that part words besides blanks
+      !> Separators of words besides blanks
       character(len=*), intent(in), optional :: also_blank
 
       call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
          & also_blank)
    end subroutine element_words
 
-   !> An error that speaks of an element, unless there is one already
+   !> Set an error at an element, unless one is set already
    pure subroutine element_error(tree, at, message, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      character(len=*), intent(in) :: message  !! What was expected, what was found
+      character(len=*), intent(in) :: message  !! Expected and actual value
       type(error_t), allocatable, intent(inout) :: error
 
       if (.not. allocated(error)) &
          & call fatal_error(error, message, tree%file, tree%element(at)%row)
    end subroutine element_error
 
-   !> Read an attribute that chooses between two meanings, of an element that may be there
+   !> Read an attribute with two choices from an optional element
    pure subroutine choose(tree, outer, element, name, words_for_yes, word_for_no, yes, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: outer                        !! Place of the outer element
       character(len=*), intent(in) :: element             !! Name of the element
       character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: words_for_yes       !! Words that mean yes, parted by blanks
-      character(len=*), intent(in) :: word_for_no         !! The word that means no
+      character(len=*), intent(in) :: words_for_yes       !! Words for yes, separated by blanks
+      character(len=*), intent(in) :: word_for_no         !! The word for no
       logical, intent(inout) :: yes                       !! The choice
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier one, another word, or none
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set for another
+                                                          !! word or a missing attribute
       character(len=:), allocatable :: word
       integer :: at
 
@@ -83,7 +85,7 @@ contains
          & //word_for_no//", got "//quoted(word)//"; choose one", error)
    end subroutine choose
 
-   !> Read an attribute that is a number, of an element that may be there
+   !> Read a number from an attribute of an optional element
    pure subroutine number_attribute(tree, outer, element, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: outer
@@ -105,7 +107,7 @@ contains
          & //" or more", value, tree%file, tree%element(at)%row, error)
    end subroutine number_attribute
 
-   !> Read an attribute that is a whole number, of an element that may be there
+   !> Read an integer from an attribute of an optional element
    pure subroutine whole_attribute(tree, outer, element, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: outer
@@ -126,7 +128,7 @@ contains
    pure subroutine read_material(tree, at, gravity, material, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
-      real(wp), intent(in) :: gravity  !! Acceleration of gravity, for a weight that is not given
+      real(wp), intent(in) :: gravity  !! Acceleration of gravity, for a missing weight
       type(analysis_material_t), intent(out) :: material
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -148,13 +150,14 @@ contains
       call check_material(material, tree%file, tree%element(at)%row, error)
    end subroutine read_material
 
-   !> The original weighs a block by unit mass times gravity, whatever the unit weight says
+   !> Warn of a unit weight that differs from unit mass times gravity, which Shi's program uses
    pure subroutine check_weight(tree, at, gravity, material, warnings)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       real(wp), intent(in) :: gravity
       type(analysis_material_t), intent(inout) :: material
-      type(warnings_t), intent(inout) :: warnings  !! Receives a unit weight that is not taken
+      type(warnings_t), intent(inout) :: warnings  !! Receives a warning of a unit weight that is
+                                                   !! not used
       real(wp) :: weight
 
       weight = material%density*gravity
@@ -182,13 +185,13 @@ contains
       call check_joint(joint, tree%file, tree%element(at)%row, error)
    end subroutine read_joint
 
-   !> Read the numbers of an element inside another
+   !> Read the numbers of a child element
    pure subroutine read_child(tree, at, name, needed, value, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at             !! Place of the outer element
-      character(len=*), intent(in) :: name  !! Name of the inner element
-      logical, intent(in) :: needed         !! Whether it must be there
-      real(wp), intent(inout) :: value(:)   !! Its numbers; left as they are if it is not there: (n)
+      integer, intent(in) :: at             !! Place of the parent
+      character(len=*), intent(in) :: name  !! Name of the child
+      logical, intent(in) :: needed         !! True if the child is required
+      real(wp), intent(inout) :: value(:)   !! Numbers of the child; unchanged if it is missing: (n)
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
       type(word_list_t) :: words
@@ -207,7 +210,7 @@ contains
       end if
    end subroutine read_child
 
-   !> Read a Loadpoint: records of time and force, parted by semicolons
+   !> Read a Loadpoint: records of time and force, separated by semicolons
    pure subroutine read_history(tree, at, history, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at

@@ -14,7 +14,7 @@ module dda_plain_files
    public :: read_plain_geometry, read_plain_analysis, check_material, check_joint, check_steps
    public :: largest_value, n_coordinates, plain_order
 
-   !> Roles of what a file has after its lines, in its order
+   !> Roles of the records after the lines, in the order of the file
    integer, parameter :: plain_order(6) = [entity_role%material, entity_role%bolt, &
       & entity_role%fix, entity_role%load, entity_role%measure, entity_role%hole]
    !> Maximum number of entities of a kind
@@ -34,7 +34,8 @@ contains
       character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
+                                                        !! the line
       type(word_list_t) :: words
       integer :: k, n(0:size(plain_order))
 
@@ -63,7 +64,7 @@ contains
    pure subroutine read_records(words, role, n, entities, error)
       type(word_list_t), intent(inout) :: words
       integer, intent(in) :: role  !! One of entity_role
-      integer, intent(in) :: n     !! How many there are
+      integer, intent(in) :: n     !! Number of records
       type(entities_t), intent(out) :: entities
       type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
@@ -92,7 +93,7 @@ contains
       end do
    end subroutine read_records
 
-   !> Coordinates of a record: those of a point or of two ends
+   !> Number of coordinates of a record: those of a point or of two ends
    pure integer function n_coordinates(role)
       integer, intent(in) :: role
 
@@ -100,7 +101,7 @@ contains
          & any(role == [entity_role%load, entity_role%measure, entity_role%hole]))
    end function n_coordinates
 
-   !> Read an analysis file; the constants that it cannot give are the original's own
+   !> Read an analysis file; constants that the format lacks have Shi's values
    pure subroutine read_plain_analysis(text, file, analysis, warnings, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: file
@@ -178,12 +179,12 @@ contains
       end do
    end subroutine read_joints
 
-   !> Whether words are left for all materials, before there is room made for them
+   !> Check that there are enough words for all materials before allocating them
    pure subroutine check_room(words, what, n, n_number, error)
       type(word_list_t), intent(in) :: words
-      character(len=*), intent(in) :: what  !! What the materials are for
+      character(len=*), intent(in) :: what  !! Use of the materials, for the message
       integer, intent(in) :: n
-      integer, intent(in) :: n_number       !! Numbers of each
+      integer, intent(in) :: n_number       !! Numbers per material
       type(error_t), allocatable, intent(inout) :: error
 
       if (allocated(error) .or. words_left(words) >= n_number*n) return
@@ -192,7 +193,7 @@ contains
          & //" more words; add what is missing", words%file, this_row(words))
    end subroutine check_room
 
-   !> Whether a block material can exist
+   !> Check a block material
    pure subroutine check_material(material, file, row, error)
       type(analysis_material_t), intent(in) :: material
       character(len=*), intent(in) :: file
@@ -209,7 +210,7 @@ contains
          & "Poisson's ratio must be between -1 and 0.5", material%poisson, file, row, error)
    end subroutine check_material
 
-   !> Whether a joint material can exist
+   !> Check a joint material
    pure subroutine check_joint(joint, file, row, error)
       type(limerick_joint_t), intent(in) :: joint
       character(len=*), intent(in) :: file
@@ -223,7 +224,7 @@ contains
          & min(joint%cohesion, joint%tension), file, row, error)
    end subroutine check_joint
 
-   !> Whether the bounds of a step make sense
+   !> Check the limits of a step
    pure subroutine check_steps(analysis, file, row, error)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=*), intent(in) :: file

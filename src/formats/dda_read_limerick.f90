@@ -21,18 +21,19 @@ module dda_read_limerick
 
    interface
 
-      !> Read the analysis of a tree
+      !> Read the analysis from an element tree
       pure module subroutine read_ddaml_analysis(tree, analysis, warnings, error)
-         !> The file's elements; those that are not read are marked
+         !> Elements of the file; skipped elements are marked
          type(xml_tree_t), intent(inout) :: tree
          type(limerick_analysis_t), intent(out) :: analysis
          type(warnings_t), intent(inout) :: warnings
-         type(error_t), allocatable, intent(out) :: error  !! What is wrong, with its line
+         type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
+                                                           !! the line
       end subroutine read_ddaml_analysis
 
    end interface
 
-   !> Names of the lists, by the roles of what they hold
+   !> Names of the lists, by the roles of their contents
    character(len=*), parameter :: list_name(*) = [character(len=17) :: "Jointlist", &
       & "Matlinelist", "Fixedpointlist", "Loadpointlist", "Measuredpointlist", "Holepointlist", &
       & "Boltlist", "Seismicpointlist"]
@@ -46,7 +47,8 @@ contains
       character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! What is wrong, with file and line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
+                                                        !! file and line
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
       logical :: is_ddaml
@@ -79,12 +81,12 @@ contains
       end if
    end subroutine read_analysis
 
-   !> Read the text of a file, in DDAML as a tree too
+   !> Read the text of a file, and its element tree if it is in DDAML
    subroutine read_form(file, text, tree, is_ddaml, error)
       character(len=*), intent(in) :: file
       character(len=:), allocatable, intent(out) :: text  !! The file's text
       type(xml_tree_t), intent(out) :: tree
-      logical, intent(out) :: is_ddaml                    !! Whether it is in DDAML
+      logical, intent(out) :: is_ddaml                    !! True if it is in DDAML
       type(error_t), allocatable, intent(out) :: error
       integer :: first
 
@@ -104,12 +106,13 @@ contains
       end if
    end subroutine read_form
 
-   !> Whether an analysis has a material for each block and joint, and a force for each load point
+   !> Check that an analysis has a material for each block and joint, and a force for each load
+   !> point
    pure subroutine check_materials(model, analysis, warnings, error)
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
       type(warnings_t), intent(inout) :: warnings       !! Receives load points without a force
-      type(error_t), allocatable, intent(out) :: error  !! What is missing
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if a material is missing
 
       call check_numbers(model%line, "joint", size(analysis%joint), model%file, analysis%file, &
          & error)
@@ -126,11 +129,11 @@ contains
       end if
    end subroutine check_materials
 
-   !> Whether all materials of a list exist
+   !> Check that all material numbers of a list exist
    pure subroutine check_numbers(entities, what, n, file, analysis_file, error)
       type(entities_t), intent(in) :: entities
-      character(len=*), intent(in) :: what           !! What the materials are for
-      integer, intent(in) :: n                       !! How many materials there are
+      character(len=*), intent(in) :: what           !! Use of the materials, for the message
+      integer, intent(in) :: n                       !! Number of materials
       character(len=*), intent(in) :: file           !! Name of the geometry file
       character(len=*), intent(in) :: analysis_file  !! Name of the analysis file
       type(error_t), allocatable, intent(out) :: error
@@ -145,7 +148,7 @@ contains
       end do
    end subroutine check_numbers
 
-   !> Read the geometry of a tree
+   !> Read the geometry from an element tree
    pure subroutine read_ddaml_geometry(tree, model, warnings, error)
       type(xml_tree_t), intent(inout) :: tree
       type(line_model_t), intent(out) :: model
@@ -164,7 +167,7 @@ contains
          at = next_sibling(tree, at)
       end do
       if (allocated(error)) return
-      ! boundary lines come first
+      ! boundary lines precede joints
       model%n_boundary = boundary%n
       do i = 1, model%line%n
          call add_entity(boundary, model%line%place(:, i), model%line%material(i), &
@@ -220,7 +223,7 @@ contains
    pure subroutine read_entities(tree, list, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: list  !! Place of the list
-      !> Material of those that say none, as above
+      !> Default material, as above
       integer, intent(in) :: usual
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
@@ -234,8 +237,8 @@ contains
       end do
    end subroutine read_entities
 
-   !> Read one element of a list; what a bolt is like may stand in attributes of ours, else the
-   !> analysis file says it
+   !> Read one element of a list. Bolt properties may be attributes (an extension); otherwise they
+   !> are in the analysis file
    pure subroutine read_entity(tree, at, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at, usual

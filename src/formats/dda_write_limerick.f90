@@ -12,17 +12,17 @@ module dda_write_limerick
 
    !> The end of a line
    character(len=1), parameter :: lf = achar(10)
-   !> First lines of a DDAML file; the root is left open
+   !> First lines of a DDAML file, with the root element still open
    character(len=*), parameter :: head = '<?xml version="1.0" standalone="no"?>'//lf &
       & //'<Berkeley:DDA xmlns:Berkeley="http://www.tsoft.com/~bdoolin/dda">'//lf &
       & //'<!-- voussoir -->'
 
 contains
 
-   !> A geometry in the plain form
+   !> Write a geometry in the plain format
    pure function plain_geometry(model) result(text)
       type(line_model_t), intent(in) :: model
-      character(len=:), allocatable :: text  !! The file without its last line end
+      character(len=:), allocatable :: text  !! Text of the file without its last line end
       integer :: k
 
       text = to_text(model%edge_node_ratio)//lf//to_text(model%line%n)//" " &
@@ -36,11 +36,11 @@ contains
       end do
    end function plain_geometry
 
-   !> Records of one role in the plain form
+   !> Write the records of one role in the plain format
    pure function records(entities, role) result(text)
       type(entities_t), intent(in) :: entities
       integer, intent(in) :: role            !! One of entity_role
-      character(len=:), allocatable :: text  !! Lines, each with its line end before it
+      character(len=:), allocatable :: text  !! Lines, each preceded by a line end
       integer :: i
 
       text = ""
@@ -52,17 +52,17 @@ contains
       end do
    end function records
 
-   !> What a bolt is like, in attributes of which the original reads the first
+   !> Attributes with the properties of a bolt; Shi's program reads only the first
    pure function bolt_attributes(property) result(text)
       real(wp), intent(in) :: property(3)    !! Stiffness, strength and prestress: (3)
-      character(len=:), allocatable :: text  !! Attributes, a blank before each
+      character(len=:), allocatable :: text  !! Attributes, each preceded by a blank
 
       text = ' type="1"'
       if (property(1) >= 0.0_wp) text = text//' stiffness="'//to_text(property(1)) &
          & //'" strength="'//to_text(property(2))//'" pretension="'//to_text(property(3))//'"'
    end function bolt_attributes
 
-   !> A geometry in DDAML
+   !> Write a geometry in DDAML
    pure function ddaml_geometry(model) result(text)
       type(line_model_t), intent(in) :: model
       character(len=:), allocatable :: text
@@ -80,14 +80,14 @@ contains
          & //"</Geometry>"//lf//"</Berkeley:DDA>"
    end function ddaml_geometry
 
-   !> A list of DDAML
+   !> Write a list in DDAML
    pure function list(name, item, entities, first, until) result(text)
       character(len=*), intent(in) :: name  !! Name of the list
-      !> Name of its elements; empty where it is Point for points and Line for lines
+      !> Name of its elements; if empty, Point for points and Line for lines
       character(len=*), intent(in) :: item
       type(entities_t), intent(in) :: entities
       integer, intent(in) :: first  !! First of them
-      integer, intent(in), optional :: until  !! Last of them, without which all are meant
+      integer, intent(in), optional :: until  !! Last of them; absent for the whole list
       !> Lines, each with its line end; empty for an empty list
       character(len=:), allocatable :: text
       character(len=:), allocatable :: kind
@@ -116,7 +116,7 @@ contains
       character(len=*), intent(in) :: name
       character(len=*), intent(in) :: attribute  !! Name of its attribute
       character(len=*), intent(in) :: value      !! Value of the attribute
-      !> Further attributes, with a blank before each
+      !> Further attributes, each preceded by a blank
       character(len=*), intent(in), optional :: more
       !> The element with its line end
       character(len=:), allocatable :: text
@@ -129,13 +129,13 @@ contains
    !> An element with text
    pure function filled(name, inside) result(text)
       character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: inside  !! What stands inside
+      character(len=*), intent(in) :: inside  !! Content of the element
       character(len=:), allocatable :: text
 
       text = "<"//name//"> "//inside//" </"//name//">"//lf
    end function filled
 
-   !> An analysis in the plain form, which has no place for constants, flags and loads
+   !> Write an analysis in the plain format, which has no constants, flags and loads
    pure function plain_analysis(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text
@@ -158,7 +158,7 @@ contains
       end do
    end function plain_analysis
 
-   !> An analysis in DDAML, without loads
+   !> Write an analysis in DDAML, without loads
    pure function ddaml_analysis(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text
@@ -179,7 +179,7 @@ contains
       text = text//"</Analysis>"//lf//"</Berkeley:DDA>"
    end function ddaml_analysis
 
-   !> The elements that choose and bound
+   !> Elements with choices and limits
    pure function switches(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text  !! Elements, each with its line end
@@ -200,7 +200,7 @@ contains
          & //empty("ContactDamping", "value", to_text(analysis%contact_damping))
    end function switches
 
-   !> The phase that turns gravity on
+   !> Element of the phase that applies gravity
    pure function gravity_phase(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text
@@ -216,7 +216,7 @@ contains
       end if
    end function gravity_phase
 
-   !> The constants of the scheme
+   !> Elements of the constants of the scheme
    pure function constants(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
       character(len=:), allocatable :: text
@@ -229,7 +229,7 @@ contains
          & //"</AConstants>"//lf
    end function constants
 
-   !> A block material
+   !> Element of a block material
    pure function material_element(material, number) result(text)
       type(analysis_material_t), intent(in) :: material
       integer, intent(in) :: number  !! Its number
@@ -245,7 +245,7 @@ contains
          & //filled("Istrain", fields(material%strain, " "))//"</Blockmaterial>"//lf
    end function material_element
 
-   !> A flag in DDAML
+   !> Word for a flag in DDAML
    pure function yes_no(flag) result(word)
       logical, intent(in) :: flag            !! The flag
       character(len=:), allocatable :: word  !! yes or no

@@ -1,4 +1,4 @@
-!> Lines of XML tags, which libxml2 does not count beyond 65535, and checks before parsing
+!> Lines of XML tags (libxml2 counts at most 65535), and checks before parsing
 module dda_xml_tags
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_error, only : error_t, fatal_error
@@ -14,48 +14,49 @@ module dda_xml_tags
    type :: xml_tags_t
       !> Number of start tags and end tags
       integer :: n = 0
-      !> Line where each begins, line where it ends: (2, n or more)
+      !> First and last line of each tag: (2, n or more)
       integer, allocatable :: row(:, :)
-      !> Whether it is an element's start and end in one: (n or more)
+      !> True if a tag is both start and end of an element: (n or more)
       logical, allocatable :: is_whole(:)
    end type xml_tags_t
 
-   !> Where the scan is
+   !> State of the scan
    type :: scan_t
       !> Name of the file, for messages
       character(len=:), allocatable :: file
       integer :: next = 1      !! Next character of the text
-      integer :: row = 1       !! Its line
-      real :: pairs = 0.0      !! Pairs of attributes of one element, over all elements
-      integer :: n_names = 0   !! Names of elements and attributes at most
-      type(key_set_t) :: seen  !! Tags whose names have been counted
+      integer :: row = 1       !! Line of that character
+      real :: pairs = 0.0      !! Sum over all elements of the squared number of attributes
+      integer :: n_names = 0   !! Upper limit of the number of different names of elements and
+                               !! attributes
+      type(key_set_t) :: seen  !! Keys of tags whose names have been counted
    end type scan_t
 
-   !> What a tag says besides values
+   !> A tag without its values
    type :: tag_t
-      integer :: last = 0        !! Where it ends
-      integer :: n_values = 0    !! Number of its values
-      integer(int64) :: key = 0  !! A number that is the same for tags of the same names
+      integer :: last = 0        !! Last character
+      integer :: n_values = 0    !! Number of values
+      integer(int64) :: key = 0  !! Hash of the names in the tag
    end type tag_t
 
-   !> libxml2 compares each pair of attributes of an element: so many take a second
+   !> Maximum sum; libxml2 compares each pair of attributes of an element, about one second for this
    real, parameter :: most_pairs = 9.0e8
    !> Maximum number of names; libxml2 takes quadratic time for more
    integer, parameter :: most_names = 100000
-   !> Two prime numbers that spread the keys of names; their product is no overflow
+   !> Two primes for the hash of names; their product does not overflow
    integer(int64), parameter :: prime = 2147483647_int64, factor = 1000003_int64
-   !> References that need no DTD, apart from characters by number
+   !> References that need no DTD, besides numeric characters
    character(len=*), parameter :: predefined = " lt gt amp quot apos "
    character(len=1), parameter :: lf = achar(10)
 
 contains
 
-   !> Find the tags of an XML text; what is malformed is left to the parser
+   !> Find the tags of an XML text; syntax errors are left to the parser
    pure subroutine find_tags(text, file, tags, error)
       character(len=*), intent(in) :: text  !! The text; its lines end in line feeds
       character(len=*), intent(in) :: file  !! Name of its file, for messages
       type(xml_tags_t), intent(out) :: tags
-      !> Entities, declarations, too many attributes
+      !> Allocated for entities, declarations or too many attributes
       type(error_t), allocatable, intent(out) :: error
       type(scan_t) :: scan
 
@@ -83,7 +84,7 @@ contains
       end do
    end subroutine find_tags
 
-   !> Go past the declaration of a document's type
+   !> Skip a document type declaration
    pure subroutine skip_doctype(text, scan, error)
       character(len=*), intent(in) :: text
       type(scan_t), intent(inout) :: scan
@@ -99,7 +100,7 @@ contains
       end if
    end subroutine skip_doctype
 
-   !> Go past a tag
+   !> Skip a tag
    pure subroutine skip_tag(text, scan, error)
       character(len=*), intent(in) :: text
       type(scan_t), intent(inout) :: scan
@@ -123,7 +124,7 @@ contains
       end if
    end subroutine skip_tag
 
-   !> Go past text whose references must be of single characters
+   !> Skip text; each reference must stand for a single character
    pure subroutine skip_text(text, last, scan, error)
       character(len=*), intent(in) :: text
       integer, intent(in) :: last  !! Place of its last character
@@ -155,7 +156,7 @@ contains
       if (name_length < 0) name_length = len(text)
    end function name_length
 
-   !> Go past a character, or to the end of the text, and count lines
+   !> Advance to a character, or to the end of the text, and count lines
    pure subroutine skip(text, last, scan)
       character(len=*), intent(in) :: text
       integer, intent(in) :: last
@@ -165,21 +166,21 @@ contains
       scan%next = last + 1
    end subroutine skip
 
-   !> Whether a piece stands at a place of a text
+   !> True if a text has a given string at a place
    pure logical function stands(text, first, piece)
       character(len=*), intent(in) :: text
       integer, intent(in) :: first           !! The place
-      character(len=*), intent(in) :: piece  !! The piece
+      character(len=*), intent(in) :: piece  !! The string
 
       stands = .false.
       if (first >= 1 .and. first + len(piece) - 1 <= len(text)) &
          & stands = text(first:first + len(piece) - 1) == piece
    end function stands
 
-   !> Where the next mark ends; behind the text by one if there is none
+   !> End of the next occurrence of a mark; length of the text plus one if there is none
    pure integer function mark_end(text, first, mark)
       character(len=*), intent(in) :: text
-      integer, intent(in) :: first          !! Where to begin
+      integer, intent(in) :: first          !! Start of the search
       character(len=*), intent(in) :: mark  !! The mark
 
       mark_end = index(text(first:), mark)
@@ -190,12 +191,12 @@ contains
       end if
    end function mark_end
 
-   !> Find one of some characters outside quotes
+   !> Find one of several characters outside quotes
    pure subroutine find_outside_quotes(text, first, wanted, tag)
       character(len=*), intent(in) :: text
       integer, intent(in) :: first
       character(len=*), intent(in) :: wanted  !! The characters
-      !> What was passed; it ends with one of the characters, or with the text
+      !> The text passed, up to one of the characters or the end of the text
       type(tag_t), intent(out) :: tag
       character(len=1) :: quote
       integer :: i
@@ -218,7 +219,7 @@ contains
       end do
    end subroutine find_outside_quotes
 
-   !> How often a character occurs in a text
+   !> Number of occurrences of a character in a text
    pure integer function count_of(letter, text)
       character(len=1), intent(in) :: letter  !! The character
       character(len=*), intent(in) :: text

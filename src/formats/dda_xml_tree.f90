@@ -18,51 +18,51 @@ module dda_xml_tree
    !> An element
    type :: xml_element_t
       character(len=:), allocatable :: name  !! Its name without prefix
-      !> The text inside it; of comments only the line ends, so that lines can be counted. Of an
-      !> element that holds others the first piece that is not blank
+      !> Text inside the element; comments are reduced to their line ends, so that lines can be
+      !> counted. For an element with children, the first piece that is not blank
       character(len=:), allocatable :: text
       integer :: row = 0           !! Line of the file where its start tag begins
       integer :: text_row = 0      !! Line of the file where its text begins
-      integer :: parent = 0        !! Place of the element that holds it; 0 for the root
-      integer :: last = 0          !! Place of the last element inside it, itself if there is none
-      logical :: is_read = .true.  !! Whether it has a meaning where it stands
+      integer :: parent = 0        !! Place of the parent; 0 for the root
+      integer :: last = 0          !! Place of the last descendant, or of the element itself
+      logical :: is_read = .true.  !! True if the element is known at its place
       !> Its attributes: (n)
       type(xml_attribute_t), allocatable :: attribute(:)
    end type xml_element_t
 
-   !> Elements in the order in which they begin; the root is the first
+   !> Elements in the order of their start tags; the root is the first
    type :: xml_tree_t
       character(len=:), allocatable :: file           !! Name of the file
-      integer :: n = 0                                !! How many there are
+      integer :: n = 0                                !! Number of elements
       type(xml_element_t), allocatable :: element(:)  !! The elements: (n or more)
    end type xml_tree_t
 
-   !> A tree, and what is open in it
+   !> A tree under construction
    type :: xml_builder_t
-      type(xml_tree_t) :: tree  !! The elements so far
+      type(xml_tree_t) :: tree  !! The elements read so far
       type(xml_tags_t) :: tags  !! Tags of the file
-      integer :: n_tags = 0     !! How many of them have been read
+      integer :: n_tags = 0     !! Number of tags read
       integer :: open = 0       !! Place of the element that is open; 0 outside the root
       integer :: depth = 0      !! Number of open elements
-      !> Text behind the last tag, and room behind it
+      !> Text after the last tag, and spare room after it
       character(len=:), allocatable :: piece
       integer :: length = 0  !! Length of that text
    end type xml_builder_t
 
-   !> Characters that part words
+   !> Characters that separate words
    character(len=*), parameter :: blanks = " "//achar(9)//achar(10)
 
 contains
 
-   !> The first element inside another that is read; 0 if there is none
+   !> The first child that is read; 0 if there is none
    pure integer function first_child(tree, at)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at  !! Place of the outer element
+      integer, intent(in) :: at  !! Place of the parent
 
       first_child = first_read(tree, at + 1, tree%element(at)%last)
    end function first_child
 
-   !> The element that follows another inside the same one and is read; 0 if there is none
+   !> The next sibling that is read; 0 if there is none
    pure integer function next_sibling(tree, at)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -74,10 +74,10 @@ contains
       end associate
    end function next_sibling
 
-   !> The first of some neighbours that is read; 0 if there is none
+   !> The first of several siblings that is read; 0 if there is none
    pure integer function first_read(tree, first, last)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: first  !! Place of the first neighbour
+      integer, intent(in) :: first  !! Place of the first sibling
       integer, intent(in) :: last   !! Place where the last one ends
 
       first_read = first
@@ -88,7 +88,7 @@ contains
       first_read = 0
    end function first_read
 
-   !> The first element of a name inside another
+   !> The first child of a given name
    pure integer function find_child(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -101,7 +101,7 @@ contains
       end do
    end function find_child
 
-   !> How many elements of a name are inside another
+   !> Number of children of a given name
    pure integer function count_children(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -116,7 +116,7 @@ contains
       end do
    end function count_children
 
-   !> Where an element has an attribute: the first of this name; 0 if there is none
+   !> Index of the first attribute of a given name; 0 if there is none
    pure integer function attribute_place(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
@@ -136,7 +136,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       character(len=*), intent(in) :: name
-      !> Its value without blanks around it; empty if there is none
+      !> Value without blanks at its ends; empty if the attribute is missing
       character(len=:), allocatable :: value
       integer :: i
 
@@ -145,12 +145,13 @@ contains
       if (i > 0) value = trim(adjustl(tree%element(at)%attribute(i)%value))
    end function attribute_of
 
-   !> A tree without elements
+   !> Start a tree without elements
    pure subroutine new_xml_builder(text, file, builder, error)
       character(len=*), intent(in) :: text              !! The file's text
       character(len=*), intent(in) :: file              !! Name of the file
       type(xml_builder_t), intent(out) :: builder
-      type(error_t), allocatable, intent(out) :: error  !! What is refused before it is parsed
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the text is refused before
+                                                        !! parsing
 
       builder%tree%file = file
       allocate (builder%tree%element(16))
@@ -158,7 +159,7 @@ contains
       call find_tags(text, file, builder%tags, error)
    end subroutine new_xml_builder
 
-   !> Add an element inside the one that is open, and open it
+   !> Add a child to the open element, and make it the open one
    pure subroutine open_element(builder, name, attribute)
       type(xml_builder_t), intent(inout) :: builder
       character(len=*), intent(in) :: name  !! Name of the element
@@ -198,7 +199,7 @@ contains
       if (builder%n_tags > 0) tag_row = builder%tags%row(side, min(builder%n_tags, builder%tags%n))
    end function tag_row
 
-   !> Add text behind the last tag
+   !> Append text after the last tag
    pure subroutine add_text(builder, text)
       type(xml_builder_t), intent(inout) :: builder
       character(len=*), intent(in) :: text
@@ -216,8 +217,8 @@ contains
       builder%length = length
    end subroutine add_text
 
-   !> Give the text behind the last tag to the open element, if it is the first that is not blank,
-   !> and go on to the next tag
+   !> Assign the text after the last tag to the open element, if it is its first nonblank text, and
+   !> advance to the next tag
    pure subroutine end_piece(builder)
       type(xml_builder_t), intent(inout) :: builder
 
@@ -250,7 +251,7 @@ contains
 
    !> Move an element without copying its texts
    pure subroutine move_element(from, to)
-      type(xml_element_t), intent(inout) :: from  !! The element; its parts go
+      type(xml_element_t), intent(inout) :: from  !! The element; its parts are moved
       type(xml_element_t), intent(inout) :: to
 
       call move_alloc(from%name, to%name)
