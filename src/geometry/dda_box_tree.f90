@@ -1,4 +1,4 @@
-!> Overlapping boxes by a balanced tree, in n log n for any sizes and positions
+!> Search for overlapping boxes in a balanced tree, cost n log n for any sizes and positions
 module dda_box_tree
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_growth, only : make_room
@@ -17,29 +17,30 @@ module dda_box_tree
    type :: box_tree_t
       integer :: n_leaf = 1               !! Number of leaves, a power of two
       integer, allocatable :: box(:)      !! Box of each leaf, 0 for none: (n_leaf)
-      integer, allocatable :: last(:)     !! Largest number of a box below each node: (2*n_leaf - 1)
+      integer, allocatable :: last(:)     !! Largest box number below each node: (2*n_leaf - 1)
       real(wp), allocatable :: low(:, :)  !! Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
       !> Upper right corners: (2, 2*n_leaf - 1) [m]
       real(wp), allocatable :: high(:, :)
-      !> Unit normal across the segments below each node, where it has slabs: (2, 2*n_leaf - 1)
+      !> Unit normal across the segments below each node, if there are slabs: (2, 2*n_leaf - 1)
       real(wp), allocatable :: normal(:, :)
-      !> Heights along it between which they lie: (2, 2*n_leaf - 1) [m]
+      !> Bounds of these segments along the normal: (2, 2*n_leaf - 1) [m]
       real(wp), allocatable :: slab(:, :)
    end type box_tree_t
 
 contains
 
    !> Pairs of boxes of different groups that overlap or touch, sorted. Group 0 may be large, and
-   !> its boxes may lie upon one another. Boxes of given segments are left out where the segments
-   !> are farther apart than their margins: boxes of long edges that lean overlap in great numbers
+   !> its boxes may overlap one another. With segments, pairs whose segments are farther apart than
+   !> their margins are omitted: long inclined edges have many overlapping boxes
    pure subroutine box_pairs(low, high, group, pair, segment, margin)
       real(wp), intent(in) :: low(:, :)   !! Lower left corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)  !! Upper right corners: (2, n) [m]
-      integer, intent(in) :: group(:)     !! Boxes of one group are not compared: (n)
-      !> The pairs, the first smaller than the second: (2, n_pair)
+      integer, intent(in) :: group(:)     !! Group of each box; boxes of one group are not compared:
+                                          !! (n)
+      !> The pairs, the smaller number first: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       real(wp), intent(in), optional :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]
-      !> By how much each box is wider than its segment: (n) [m]
+      !> Distance from each segment to the sides of its box: (n) [m]
       real(wp), intent(in), optional :: margin(:)
       type(box_tree_t) :: tree
       integer, allocatable :: found(:, :), wider(:, :), near(:), other_last(:), wanted_last(:, :)
@@ -77,21 +78,21 @@ contains
       pair = found(:, :n)
    end subroutine box_pairs
 
-   !> Boxes that overlap or touch another box, or meet a segment
+   !> Find boxes that overlap or touch a given box, or meet a segment
    pure subroutine find_boxes(tree, low, high, found, n, above, last, segment, margin)
       type(box_tree_t), intent(in) :: tree
-      real(wp), intent(in) :: low(2)   !! Lower left corner of the other box: (2) [m]
+      real(wp), intent(in) :: low(2)   !! Lower left corner of the given box: (2) [m]
       real(wp), intent(in) :: high(2)  !! Upper right corner: (2) [m]
-      !> Numbers of the boxes, the first n of them set; its room is used again
+      !> Numbers of the boxes in the first n entries; reused storage
       integer, allocatable, intent(inout) :: found(:)
-      integer, intent(out) :: n               !! How many there are
-      integer, intent(in), optional :: above  !! Only boxes of a larger number than this
-      !> Largest number below each node of those boxes that are wanted; without it all are:
-      !> (2*n_leaf - 1)
+      integer, intent(out) :: n               !! Number of boxes found
+      integer, intent(in), optional :: above  !! Only boxes with a number above this one
+      !> Largest number below each node of the boxes to be searched; all boxes if absent: (2*n_leaf
+      !> - 1)
       integer, intent(in), optional :: last(:)
-      !> Only boxes that this segment inside the other box meets: (4) [m]
+      !> Only boxes that meet this segment inside the given box: (4) [m]
       real(wp), intent(in), optional :: segment(4)
-      real(wp), intent(in), optional :: margin  !! Distance within which it does [m]
+      real(wp), intent(in), optional :: margin  !! Largest distance from the segment [m]
       real(wp) :: wide
       integer :: stack(max_levels), top, node, least
 
@@ -130,12 +131,12 @@ contains
       end do
    end subroutine find_boxes
 
-   !> The least value of the boxes that overlap or touch another one, of which it is the first guess
+   !> Reduce a value to the least one of the boxes that overlap or touch a given box
    pure subroutine least_nearby(tree, least, low, high, value)
       type(box_tree_t), intent(in) :: tree
       real(wp), intent(in) :: least(:)  !! Least value below each node: (2*n_leaf - 1)
       real(wp), intent(in) :: low(2), high(2)
-      real(wp), intent(inout) :: value  !! The guess in, the least of all out
+      real(wp), intent(inout) :: value  !! An upper bound on entry, the least value on return
       integer :: stack(max_levels), top, node
 
       top = 1
@@ -154,7 +155,7 @@ contains
       end do
    end subroutine least_nearby
 
-   !> Least value of the boxes below each node; huge where there is none
+   !> Least value of the boxes below each node; huge if there are none
    pure subroutine least_values(tree, value, least)
       type(box_tree_t), intent(in) :: tree
       real(wp), intent(in) :: value(:)                !! Value of each box: (n)
@@ -170,7 +171,7 @@ contains
       end do
    end subroutine least_values
 
-   !> Boxes that a segment meets, or a point where both its ends are one, in rising order
+   !> Boxes that meet a segment (or a point if both ends coincide), ascending
    pure function boxes_along(tree, segment) result(box)
       type(box_tree_t), intent(in) :: tree
       real(wp), intent(in) :: segment(4)  !! Ends of the segment: (4) [m]
@@ -185,7 +186,7 @@ contains
       call sort_numbers(box)
    end function boxes_along
 
-   !> Distance of a point from the box of a node; huge if it has none [m]
+   !> Distance of a point from the box of a node; huge for an empty node [m]
    pure real(wp) function box_distance(tree, node, point)
       type(box_tree_t), intent(in) :: tree
       integer, intent(in) :: node       !! Number of the node
@@ -196,7 +197,7 @@ contains
          & norm2(max(tree%low(:, node) - point, point - tree%high(:, node), 0.0_wp))
    end function box_distance
 
-   !> Whether the line of a segment meets a box, or passes it by no more than rounding
+   !> True if the line of a segment meets a box within round-off
    pure logical function meets_line(low, high, segment)
       real(wp), intent(in) :: low(2), high(2), segment(4)
       real(wp) :: along(2), arm(2), half(2), room
@@ -209,7 +210,7 @@ contains
       meets_line = abs(along(1)*arm(2) - along(2)*arm(1)) <= room
    end function meets_line
 
-   !> Whether a segment comes as near to the slab of a node as a margin, or rounding, allows
+   !> True if a segment is within a margin, or round-off, of the slab of a node
    pure logical function meets_slab(tree, node, segment, margin)
       type(box_tree_t), intent(in) :: tree
       integer, intent(in) :: node
@@ -223,7 +224,7 @@ contains
       end associate
    end function meets_slab
 
-   !> Slabs around the segments below each node, across their mean direction
+   !> Add slabs around the segments below each node, across their mean direction
    pure subroutine add_slabs(segment, margin, tree)
       real(wp), intent(in) :: segment(:, :), margin(:)
       type(box_tree_t), intent(inout) :: tree
@@ -236,7 +237,7 @@ contains
          along(:, tree%n_leaf - 1 + i) = segment(3:4, tree%box(i)) - segment(1:2, tree%box(i))
       end do
       do node = tree%n_leaf - 1, 1, -1
-         ! segments have no sense of direction
+         ! segments are undirected
          associate (first => along(:, 2*node), second => along(:, 2*node + 1))
             along(:, node) = first + sign(1.0_wp, dot_product(first, second))*second
          end associate
@@ -264,7 +265,7 @@ contains
       end do
    end subroutine add_slabs
 
-   !> A tree of segments, each in the box around it
+   !> Build a tree of segments, each in its bounding box
    pure subroutine segment_tree(segment, tree)
       real(wp), intent(in) :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]
       type(box_tree_t), intent(out) :: tree
@@ -273,7 +274,7 @@ contains
          & max(segment(1:2, :), segment(3:4, :)), tree)
    end subroutine segment_tree
 
-   !> A tree of boxes: each node is cut in two across its longer side, as many boxes on either side
+   !> Build a tree of boxes: each node is divided across its longer side into equal halves
    pure subroutine new_box_tree(low, high, tree)
       real(wp), intent(in) :: low(:, :)  !! Lower left corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)
@@ -306,10 +307,10 @@ contains
       call last_numbers(tree, [(.true., i=1, size(item))], tree%last)
    end subroutine new_box_tree
 
-   !> Largest number of a box below each node, of the boxes that count; 0 if there is none
+   !> Largest number below each node of the selected boxes; 0 if there is none
    pure subroutine last_numbers(tree, counts, last)
       type(box_tree_t), intent(in) :: tree
-      logical, intent(in) :: counts(:)              !! Which boxes count: (n)
+      logical, intent(in) :: counts(:)              !! True for selected boxes: (n)
       integer, allocatable, intent(out) :: last(:)  !! The numbers: (2*n_leaf - 1)
       integer :: i
 
@@ -323,11 +324,11 @@ contains
       end do
    end subroutine last_numbers
 
-   !> Give the leaves below a node their boxes
+   !> Assign boxes to the leaves below a node
    pure recursive subroutine fill_leaves(centre, item, node, tree)
-      !> Centres of the boxes; their order changes: (2, n) [m]
+      !> Centres of the boxes, reordered here: (2, n) [m]
       real(wp), intent(inout) :: centre(:, :)
-      integer, intent(inout) :: item(:)  !! Numbers of the boxes, in the same order: (n)
+      integer, intent(inout) :: item(:)  !! Numbers of the boxes in the same order: (n)
       integer, intent(in) :: node        !! The node; it has at least n leaves
       type(box_tree_t), intent(inout) :: tree
       integer :: axis, half
@@ -345,13 +346,13 @@ contains
       call fill_leaves(centre(:, half + 1:), item(half + 1:), 2*node + 1, tree)
    end subroutine fill_leaves
 
-   !> Bring the boxes with the smaller coordinates to the front (Hoare 1961). Boxes come in all
-   !> kinds of orders: a place drawn by lot is as good in each of them
+   !> Move the n boxes with the smallest coordinates to the front (Hoare 1961). The pivot is chosen
+   !> at random, so that no order of the input is a bad one
    pure subroutine part_at(centre, item, axis, n)
       real(wp), intent(inout) :: centre(:, :)  !! Centres of the boxes: (2, :) [m]
       integer, intent(inout) :: item(:)
-      integer, intent(in) :: axis              !! Which coordinate counts
-      integer, intent(in) :: n                 !! How many come to the front
+      integer, intent(in) :: axis              !! Axis of the coordinate, 1 or 2
+      integer, intent(in) :: n                 !! Number of boxes to move
       real(wp) :: kept(2), middle
       integer(int64) :: lot
       integer :: first, last, i, j

@@ -1,4 +1,4 @@
-!> Overlap of two polygons beyond rounded coordinates
+!> Overlap of two polygons beyond a tolerance for rounded coordinates
 module dda_overlap
    use dda_box_tree, only : box_tree_t, find_boxes
    use dda_kinds, only : wp
@@ -12,21 +12,21 @@ module dda_overlap
 
 contains
 
-   !> Whether two polygons overlap by more than a tolerance
+   !> Test if two polygons overlap by more than a tolerance
    pure subroutine find_overlap(first, second, tolerance, overlaps, inside, point, first_tree, &
       & second_tree, depth)
       real(wp), intent(in) :: first(:, :)   !! Corners of the first, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: second(:, :)  !! Corners of the second, counter-clockwise: (2, m) [m]
       real(wp), intent(in) :: tolerance     !! The tolerance [m]
-      logical, intent(out) :: overlaps      !! Whether they overlap
-      !> Which of them lies wholly inside the other: 1, 2 or 0 for none
+      logical, intent(out) :: overlaps      !! True if they overlap
+      !> The polygon that lies inside the other: 1, 2 or 0 for neither
       integer, intent(out) :: inside
-      real(wp), intent(out) :: point(2)  !! A point that both hold: (2) [m]
-      !> Edges of the first, where they are many
+      real(wp), intent(out) :: point(2)  !! A point inside both: (2) [m]
+      !> Tree of the edges of the first, for many edges
       type(box_tree_t), intent(in), optional :: first_tree
-      !> Edges of the second, where they are many
+      !> Tree of the edges of the second, for many edges
       type(box_tree_t), intent(in), optional :: second_tree
-      !> How deep they overlap where they do: the tolerance that would take them [m]
+      !> Depth of the overlap: the tolerance that would accept it [m]
       real(wp), intent(out), optional :: depth
       real(wp) :: box(2, 2, 2), common(2, 2), deepest(2), place(2, 2)
 
@@ -56,7 +56,7 @@ contains
       if (present(depth)) depth = maxval(deepest)
    end subroutine find_overlap
 
-   !> Box around a polygon
+   !> Bounding box of a polygon
    pure function box_of(vertex, tree) result(box)
       real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
       type(box_tree_t), intent(in), optional :: tree
@@ -71,8 +71,8 @@ contains
       end if
    end function box_of
 
-   !> Whether the line of an edge of one polygon parts it from another: each then lies on its side,
-   !> but for a strip that is no wider than the tolerance
+   !> True if an edge of one polygon separates it from another, except for a strip of at most the
+   !> tolerance
    pure logical function are_apart(one, other, tolerance)
       real(wp), intent(in) :: one(:, :)    !! Corners of the one: (2, n) [m]
       real(wp), intent(in) :: other(:, :)  !! Corners of the other: (2, m) [m]
@@ -97,13 +97,13 @@ contains
       end do
    end function are_apart
 
-   !> Whether a polygon holds all corners of another
+   !> True if a polygon contains all corners of another
    pure logical function holds_all(vertex, other, box, common, tolerance, tree)
       real(wp), intent(in) :: vertex(:, :), other(:, :)
-      real(wp), intent(in) :: box(2, 2)  !! Box around the other: (2, 2) [m]
-      !> What is common to both boxes, and the tolerance around it: (2, 2) [m]
+      real(wp), intent(in) :: box(2, 2)  !! Bounding box of the other: (2, 2) [m]
+      !> Intersection of both boxes, widened by the tolerance: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
-      real(wp), intent(in) :: tolerance  !! How far corners may lie outside [m]
+      real(wp), intent(in) :: tolerance  !! Distance that corners may lie outside [m]
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 
@@ -114,17 +114,17 @@ contains
       end do
    end function holds_all
 
-   !> The point of one polygon's outline that lies deepest in another, of the corners and the
-   !> middles of the pieces into which the lines of near edges cut its edges
+   !> Deepest point of one polygon's outline in another. Candidates are its corners and the middles
+   !> of its edges between the lines of near edges
    pure subroutine deepest_on_outline(outline, other, common, deepest, point, tree, other_tree)
       real(wp), intent(in) :: outline(:, :)  !! Corners of the one: (2, n) [m]
       real(wp), intent(in) :: other(:, :)
-      !> Where both of them can be: lower left and upper right corner: (2, 2) [m]
+      !> Search region: lower left and upper right corner: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
-      real(wp), intent(out) :: deepest  !! How deep it lies, negative outside [m]
+      real(wp), intent(out) :: deepest  !! Depth of the point, negative outside [m]
       real(wp), intent(out) :: point(2)
       type(box_tree_t), intent(in), optional :: tree
-      !> Edges of the other, where they are many
+      !> Tree of the edges of the other, for many edges
       type(box_tree_t), intent(in), optional :: other_tree
       integer, allocatable :: edge(:), near(:)
       real(wp), allocatable :: cut(:)
@@ -156,12 +156,12 @@ contains
       end do
    end subroutine deepest_on_outline
 
-   !> Where the lines of edges cut another edge, as shares of its length, rising; its end is there
-   !> twice
+   !> Intersections of an edge with the lines of other edges, as ascending shares of its length; the
+   !> last share, 1, occurs twice
    pure subroutine cut_edge(vertex, ends, near, cut)
-      real(wp), intent(in) :: vertex(:, :)  !! Corners of the polygon whose edges cut: (2, n) [m]
-      real(wp), intent(in) :: ends(4)       !! Ends of the edge that is cut: (4) [m]
-      integer, intent(in) :: near(:)        !! Numbers of the edges: (n_near)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners of the polygon of the other edges: (2, n) [m]
+      real(wp), intent(in) :: ends(4)       !! Ends of the edge: (4) [m]
+      integer, intent(in) :: near(:)        !! Numbers of the other edges: (n_near)
       !> The shares: (n_cut)
       real(wp), allocatable, intent(out) :: cut(:)
       real(wp) :: share(size(near) + 3), other(4), b(2), c(2), area, way

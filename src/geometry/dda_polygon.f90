@@ -13,12 +13,12 @@ module dda_polygon
    public :: contains_point, polygon_distance, depth_in, find_crossing, parts_inside
    public :: edge_ends, edge_tree, edges_near, has_tree
 
-   !> Tangent of the bend below which a corner is flat
+   !> Tangent of the angle below which a corner counts as straight
    real(wp), parameter :: flat = 1.0e-9_wp
 
 contains
 
-   !> Whether a point lies in a polygon: its boundary winds around the point
+   !> True if a point lies in a polygon, by the winding number
    pure logical function contains_point(vertex, point)
       real(wp), intent(in) :: vertex(:, :)  !! Corners in order: (2, n) [m]
       real(wp), intent(in) :: point(2)      !! The point: (2) [m]
@@ -46,7 +46,7 @@ contains
       call nearest_edge(vertex, point, edge, polygon_distance)
    end function polygon_distance
 
-   !> How deep a point lies inside a polygon, negative outside [m]
+   !> Depth of a point inside a polygon, negative outside [m]
    pure real(wp) function depth_in(vertex, point, tree)
       real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: point(2)
@@ -62,15 +62,15 @@ contains
       depth_in = merge(distance, -distance, is_left_of(vertex, point, edge))
    end function depth_in
 
-   !> Whether a polygon has a tree of its edges
+   !> True if a tree of the edges is present
    pure logical function has_tree(tree)
-      type(box_tree_t), intent(in), optional :: tree  !! The tree, made or not, or none
+      type(box_tree_t), intent(in), optional :: tree  !! The tree; absent or empty if there is none
 
       has_tree = present(tree)
       if (has_tree) has_tree = allocated(tree%box)
    end function has_tree
 
-   !> A tree of the edges of a polygon
+   !> Build a tree of the edges of a polygon
    pure subroutine edge_tree(vertex, tree)
       real(wp), intent(in) :: vertex(:, :)
       type(box_tree_t), intent(out) :: tree
@@ -83,7 +83,7 @@ contains
    !> Ends of an edge
    pure function edge_ends(vertex, edge) result(ends)
       real(wp), intent(in) :: vertex(:, :)
-      integer, intent(in) :: edge  !! Number of the edge, that of the corner where it starts
+      integer, intent(in) :: edge  !! Number of the edge, that of its first corner
       real(wp) :: ends(4)          !! The ends: (4) [m]
       integer :: next
 
@@ -93,11 +93,11 @@ contains
       ends(3:4) = vertex(:, next)
    end function edge_ends
 
-   !> The edge of a polygon that is nearest to a point
+   !> Edge of a polygon nearest to a point
    pure subroutine nearest_edge(vertex, point, edge, distance)
       real(wp), intent(in) :: vertex(:, :), point(2)
       integer, intent(out) :: edge
-      real(wp), intent(out) :: distance  !! Its distance [m]
+      real(wp), intent(out) :: distance  !! Distance of that edge [m]
       real(wp) :: here
       integer :: i
 
@@ -111,11 +111,11 @@ contains
       end do
    end subroutine nearest_edge
 
-   !> The same by a tree of the edges
+   !> Nearest edge by a tree of the edges
    pure subroutine search_nearest(vertex, point, tree, edge, distance)
       real(wp), intent(in) :: vertex(:, :), point(2)
       type(box_tree_t), intent(in) :: tree
-      integer, intent(out) :: edge  !! Number of the nearest
+      integer, intent(out) :: edge  !! Number of the nearest edge
       real(wp), intent(out) :: distance
       integer :: stack(max_levels), top, node
       real(wp) :: here
@@ -130,7 +130,7 @@ contains
          if (tree%last(node) == 0) cycle
          if (box_distance(tree, node, point) >= distance) cycle
          if (node < tree%n_leaf) then
-            ! the nearer half comes first
+            ! the nearer half first
             stack(top + 1:top + 2) = [2*node + 1, 2*node]
             if (box_distance(tree, 2*node, point) > box_distance(tree, 2*node + 1, point)) &
                & stack(top + 1:top + 2) = [2*node, 2*node + 1]
@@ -144,8 +144,8 @@ contains
       end do
    end subroutine search_nearest
 
-   !> Whether a point lies on the inner side of the edge that is nearest to it; at a corner, of both
-   !> its edges: a notch is nearest to points inside, a corner that sticks out to points outside
+   !> True if a point lies on the inner side of its nearest edge. If a corner is nearest, a point at
+   !> a notch is inside and a point at a convex corner outside
    pure logical function is_left_of(vertex, point, edge)
       real(wp), intent(in) :: vertex(:, :), point(2)
       integer, intent(in) :: edge
@@ -171,12 +171,12 @@ contains
       if (.not. straight) is_left_of = turn < 0.0_wp
    end function is_left_of
 
-   !> Ends of the parts of a segment that lie in a polygon or on its outline, in order along it;
-   !> parts that follow one another count as one
+   !> Parts of a segment inside a polygon or on its outline, in order along the segment; adjacent
+   !> parts are merged
    pure function parts_inside(vertex, segment, reach, tree) result(part)
       real(wp), intent(in) :: vertex(:, :)
       real(wp), intent(in) :: segment(4)   !! Ends of the segment: (4) [m]
-      real(wp), intent(in) :: reach        !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach        !! Distance within which points coincide [m]
       type(box_tree_t), intent(in), optional :: tree
       real(wp), allocatable :: part(:, :)  !! Ends of each part: (2, 2*n_part) [m]
       real(wp), allocatable :: place(:)
@@ -218,11 +218,11 @@ contains
       part = part(:, :j)
    end function parts_inside
 
-   !> The first two edges of a polygon that cross, or touch where they do not follow one another
+   !> First two edges of a polygon that cross, or that touch without being neighbours
    pure subroutine find_crossing(vertex, edge, point)
       real(wp), intent(in) :: vertex(:, :)
-      integer, intent(out) :: edge(2)    !! The edges, 0 if none cross: (2)
-      real(wp), intent(out) :: point(2)  !! Where they cross: (2) [m]
+      integer, intent(out) :: edge(2)    !! Numbers of the edges, 0 if none cross: (2)
+      real(wp), intent(out) :: point(2)  !! Intersection: (2) [m]
       integer, allocatable :: pair(:, :)
       real(wp) :: next(2, size(vertex, 2)), a(2), b(2), area
       integer :: i, k, n
@@ -248,7 +248,7 @@ contains
       end do
    end subroutine find_crossing
 
-   !> Whether two segments have a point in common
+   !> True if two segments have a common point
    pure logical function segments_meet(a, b, c, d)
       real(wp), intent(in) :: a(2)  !! Start of the first: (2) [m]
       real(wp), intent(in) :: b(2)  !! Its end: (2) [m]
@@ -262,12 +262,12 @@ contains
       segments_meet = all(max(min(a, b), min(c, d)) <= min(max(a, b), max(c, d)))
    end function segments_meet
 
-   !> Edges of a polygon that may touch a segment; all of them where there is no tree
+   !> Edges of a polygon that may touch a segment; all edges without a tree
    pure subroutine edges_near(vertex, segment, reach, near, n, tree)
       real(wp), intent(in) :: vertex(:, :), segment(4), reach
-      !> Their numbers, the first n of them set; its room is used again
+      !> Numbers of the edges in the first n entries; reused storage
       integer, allocatable, intent(inout) :: near(:)
-      integer, intent(out) :: n  !! How many there are
+      integer, intent(out) :: n  !! Number of edges
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 

@@ -7,7 +7,7 @@ module dda_segment
 
    public :: segment_distance, meeting_points, crossing_parameters, overshoot
 
-   !> Overshoot within which segments still meet, over their length
+   !> Overshoot at which segments still meet, over their length
    real(wp), parameter :: overshoot = 1.0e-7_wp
 
 contains
@@ -32,13 +32,13 @@ contains
       end if
    end function segment_distance
 
-   !> Where the lines of two segments cross, as shares of their lengths
+   !> Intersection of the lines of two segments, as shares of their lengths
    pure subroutine crossing_parameters(first, second, share, crossed)
       real(wp), intent(in) :: first(4)   !! Ends of one segment: (4) [m]
       real(wp), intent(in) :: second(4)  !! Ends of the other: (4) [m]
-      !> Place of the crossing on each, 0 at the start and 1 at the end: (2)
+      !> Position of the intersection on each, 0 at the start and 1 at the end: (2)
       real(wp), intent(out) :: share(2)
-      logical, intent(out) :: crossed  !! Whether the lines cross at all
+      logical, intent(out) :: crossed  !! True if the lines are not parallel
       real(wp) :: a(2), b(2), arm(2), sine
 
       share = 0.0_wp
@@ -50,11 +50,11 @@ contains
       if (crossed) share = [cross(arm, b), cross(arm, a)]/sine
    end subroutine crossing_parameters
 
-   !> The points that two segments have in common: ends that touch the other segment, taken as they
-   !> are; else the crossing. Two points where the segments lie together
+   !> Common points of two segments: ends that touch the other segment, with their coordinates
+   !> unchanged, else the intersection. Collinear segments have two
    pure subroutine meeting_points(first, second, reach, n, point)
       real(wp), intent(in) :: first(4), second(4)
-      real(wp), intent(in) :: reach         !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach         !! Distance within which points coincide [m]
       integer, intent(out) :: n             !! Number of points, 0 to 2
       real(wp), intent(out) :: point(2, 2)  !! The points: (2, 2) [m]
       real(wp) :: share(2)
@@ -74,8 +74,8 @@ contains
       point(:, 1) = crossing_point(first, second, share)
    end subroutine meeting_points
 
-   !> The point where two segments cross, each coordinate from the segment along which it changes
-   !> less: upright and level lines keep their coordinates
+   !> Intersection of two segments. Each coordinate is computed on the segment along which it
+   !> changes less, so that vertical and horizontal lines keep their coordinates
    pure function crossing_point(first, second, share) result(point)
       real(wp), intent(in) :: first(4), second(4), share(2)
       real(wp) :: point(2)  !! The point: (2) [m]
@@ -86,7 +86,7 @@ contains
       point = merge(first(1:2) + share(1)*a, second(1:2) + share(2)*b, abs(a) <= abs(b))
    end function crossing_point
 
-   !> Add the end of a segment to the points in common if it touches the other segment
+   !> Add the end of a segment to the common points if it touches the other segment
    pure subroutine add_touching(end_point, segment, reach, n, point)
       real(wp), intent(in) :: end_point(2)  !! The end: (2) [m]
       real(wp), intent(in) :: segment(4)    !! Ends of the other segment: (4) [m]

@@ -26,13 +26,13 @@ contains
    !> Unit vector from the first point towards the second
    pure function along(start, finish) result(direction)
       real(wp), intent(in) :: start(2)   !! First point: (2) [m]
-      real(wp), intent(in) :: finish(2)  !! Second point, not the same: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! Second point, distinct from the first: (2) [m]
       real(wp) :: direction(2)           !! Unit vector: (2)
 
       direction = (finish - start)/norm2(finish - start)
    end function along
 
-   !> The vector turned by a quarter clockwise: outward for the edge of a counter-clockwise polygon
+   !> Vector rotated clockwise by 90 degrees: outward for the edge of a counter-clockwise polygon
    pure function right_normal(direction) result(normal)
       real(wp), intent(in) :: direction(2)  !! Any vector: (2)
       real(wp) :: normal(2)                 !! Vector of the same length: (2)
@@ -40,8 +40,8 @@ contains
       normal = [direction(2), -direction(1)]
    end function right_normal
 
-   !> Area, centre and central second moments; sums over the triangles seen from the first vertex,
-   !> so that a polygon far from the origin loses no digits
+   !> Area, centre of gravity and central second moments. Triangles start at the first vertex, so
+   !> that a polygon far from the origin loses no digits
    pure type(area_moments_t) function area_moments(vertex) result(moments)
       real(wp), intent(in) :: vertex(:, :)  !! Corners in order: (2, n), n >= 3 [m]
       real(wp) :: a(2), b(2), twice, first(2), second(3)
@@ -62,7 +62,7 @@ contains
       end do
       if (abs(moments%area) > tiny(1.0_wp)) then
          first = first/moments%area
-      else  ! what has no area is where it begins
+      else  ! without area: the first vertex
          first = 0.0_wp
       end if
       moments%centroid = vertex(:, 1) + first
