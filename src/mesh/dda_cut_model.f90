@@ -1,7 +1,7 @@
 !> Blocks cut from lines: polygons, materials, actions, common edges; scales of a cut (Shi: dc02),
 !> and dropped parts
 !>
-!> Edges that lie together in part get corners there, so that they lie together as wholes.
+!> Edges that coincide in part are split, so that they coincide as a whole.
 module dda_cut_model
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
@@ -14,33 +14,33 @@ module dda_cut_model
    public :: cut_remark_t, cut_remarks_t, cut_reason, cut_reason_enum, add_remark
    public :: cut_scale_t, cut_scale
 
-   !> Joint material of bonds between pieces of one block
+   !> Joint material between the pieces of one block
    integer, parameter :: bond_joint = 0
 
    !> Scales of a cut
    type :: cut_scale_t
-      !> What coordinates are counted from, so that none far from zero loses digits: (2) [m]
+      !> Origin of the coordinates, near the model, so that they keep their digits: (2) [m]
       real(wp) :: origin(2) = 0.0_wp
       !> Size w0 of the model: 1.02 times the larger of height/2 and width/2.6 [m]
       real(wp) :: size = 0.0_wp
-      !> Distance within which things touch [m]
+      !> Distance within which points coincide [m]
       real(wp) :: reach = 0.0_wp
-      !> Distance within which a crossing becomes a node that is there already [m]
+      !> Distance within which a crossing is merged with an existing node [m]
       real(wp) :: merge = 0.0_wp
-      !> Distance within which an edge disturbs a node of other lines [m]
+      !> Distance within which an edge is too close to a node of other lines [m]
       real(wp) :: clearance = 0.0_wp
    end type cut_scale_t
 
-   !> Why a part of a line bounds no block
+   !> Reasons to drop a part of a line
    type :: cut_reason_enum
       integer :: point = 1       !! The line has no length
       integer :: loose_line = 2  !! The line meets fewer than two others
-      integer :: loose_edge = 3  !! The part ends in nothing
-      integer :: doubled = 4     !! The part lies on a part of another line
-      !> The part crosses another line although they have no node in common
+      integer :: loose_edge = 3  !! The part has a free end
+      integer :: doubled = 4     !! The part coincides with a part of another line
+      !> The part crosses another line without a common node
       integer :: crossing = 5
-      integer :: too_close = 6  !! The part passes a node of other lines too closely
-      integer :: flat = 7       !! The lines enclose a block without area
+      integer :: too_close = 6  !! The part is too close to a node of other lines
+      integer :: flat = 7       !! The lines enclose a block of zero area
    end type cut_reason_enum
 
    !> Names of the reasons
@@ -50,80 +50,81 @@ module dda_cut_model
    type :: cut_remark_t
       integer :: line = 0            !! Number of the line
       integer :: reason = 0          !! One of cut_reason
-      integer :: other = 0           !! Number of the line that is in the way; 0 if none is
-      real(wp) :: place(4) = 0.0_wp  !! Ends of the part, from the origin of the cut: (4) [m]
+      integer :: other = 0           !! Number of the conflicting line; 0 if there is none
+      real(wp) :: place(4) = 0.0_wp  !! Ends of the part relative to the origin of the cut: (4) [m]
    end type cut_remark_t
 
    !> A list of remarks
    type :: cut_remarks_t
-      integer :: n = 0                            !! How many there are
+      integer :: n = 0                            !! Number of remarks
       type(cut_remark_t), allocatable :: item(:)  !! The remarks: (n or more)
    end type cut_remarks_t
 
    !> A point that belongs to a block
    type :: block_point_t
-      integer :: kind = 0   !! Its role: fix, load or measure
+      integer :: kind = 0   !! Role: fix, load or measure
       integer :: block = 0  !! Number of the block
-      !> Number of the point, or of the fixed line, among those of its kind in the file
+      !> Number of the point, or of the fixed line, among its kind in the file
       integer :: source = 0
-      real(wp) :: place(2) = 0.0_wp  !! Where it is, from the origin of the cut: (2) [m]
+      real(wp) :: place(2) = 0.0_wp  !! Coordinates relative to the origin of the cut: (2) [m]
    end type block_point_t
 
-   !> Two edges of two blocks that lie together, wholly or in part
+   !> Two edges of two blocks that coincide, wholly or in part
    type :: edge_pair_t
-      !> Block and edge on the left of the line as it was drawn, block and edge on its right: (4)
+      !> Block and edge on the left of the line in its drawn direction, block and edge on its right:
+      !> (4)
       integer :: side(4) = 0
       !> Material of the joint
       integer :: joint = 0
-      !> Ends of the part in common, along the first block's edge: (4) [m]
+      !> Ends of the common part, along the first block's edge: (4) [m]
       real(wp) :: place(4) = 0.0_wp
    end type edge_pair_t
 
    !> A bolt between two blocks
    type :: cut_bolt_t
       integer :: block(2) = 0        !! The blocks, 0 for the ground: (2)
-      real(wp) :: place(4) = 0.0_wp  !! Its ends, from the origin of the cut: (4) [m]
-      !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
+      real(wp) :: place(4) = 0.0_wp  !! Ends relative to the origin of the cut: (4) [m]
+      !> Stiffness, strength and prestress, negative if given in the analysis file: (3)
       real(wp) :: property(3) = 0.0_wp
       integer :: row = 0  !! Line of the file
    end type cut_bolt_t
 
    !> The blocks
    type :: cut_model_t
-      !> Scales of the cut; its origin is what all coordinates here are counted from
+      !> Scales of the cut; all coordinates here are relative to their origin
       type(cut_scale_t) :: scale
-      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
       real(wp), allocatable :: vertex(:, :)  !! Corners, anticlockwise: (2, n_vertex) [m]
       !> Joint material of the edge from each vertex to the next: (n_vertex)
       integer, allocatable :: edge_joint(:)
       real(wp), allocatable :: area(:)     !! Area of each block: (n_block) [m2]
       integer, allocatable :: material(:)  !! Material of each block: (n_block)
-      !> Number of the block that stands for all pieces of a block with islands: (n_block)
+      !> Number of the block that represents all pieces of a block with islands: (n_block)
       integer, allocatable :: whole(:)
-      !> Fixed points, then load points, then measured points: (n_point)
+      !> Fixed points, load points, monitoring points, in this order: (n_point)
       type(block_point_t), allocatable :: point(:)
       type(cut_bolt_t), allocatable :: bolt(:)   !! Bolts: (n_bolt)
-      type(edge_pair_t), allocatable :: pair(:)  !! Edges that lie together: (n_pair)
-      type(cut_remarks_t) :: remarks             !! What was dropped
-      !> Crossings that became a node that was there already at another place
+      type(edge_pair_t), allocatable :: pair(:)  !! Coincident edges: (n_pair)
+      type(cut_remarks_t) :: remarks             !! Dropped parts
+      !> Number of crossings merged with an existing node at another place
       integer :: n_merged = 0
-      integer :: n_idle_bolts = 0  !! Bolts left out, as both ends lie in one block
-      integer :: n_removed = 0     !! Blocks taken out because of hole points
+      integer :: n_idle_bolts = 0  !! Bolts omitted because both ends are in one block
+      integer :: n_removed = 0     !! Blocks removed because of hole points
    end type cut_model_t
 
-   !> Corners to be
+   !> Corners of split edges
    type :: corners_t
-      integer :: n = 0                      !! How many there are
-      real(wp), allocatable :: point(:, :)  !! Their places: (2, n or more) [m]
-      !> The vertex that begins the edge on which each lies: (n or more)
+      integer :: n = 0                      !! Number of corners
+      real(wp), allocatable :: point(:, :)  !! Coordinates: (2, n or more) [m]
+      !> First vertex of the edge of each corner: (n or more)
       integer, allocatable :: edge(:)
-      real(wp), allocatable :: along(:)  !! How far along that edge: (n or more) [m]
+      real(wp), allocatable :: along(:)  !! Distance from that vertex: (n or more) [m]
    end type corners_t
 
 contains
 
-   !> The scales of a model with at least one line that has a length
+   !> Scales of a model with at least one line of nonzero length
    pure type(cut_scale_t) function cut_scale(model) result(scale)
       type(line_model_t), intent(in) :: model
       real(wp) :: low(2), high(2), largest
@@ -143,8 +144,8 @@ contains
       scale%clearance = max(model%edge_node_ratio*scale%size, scale%reach)
    end function cut_scale
 
-   !> Origin of a coordinate: 0 near zero; far from it a power of two near the model, from which
-   !> coordinates are subtracted without rounding
+   !> Origin of a coordinate: 0 near zero; far from it a power of two near the model, which is
+   !> subtracted without round-off
    pure real(wp) function far_origin(low, high, size)
       real(wp), intent(in) :: low   !! Smallest coordinate [m]
       real(wp), intent(in) :: high  !! Largest coordinate [m]
@@ -163,11 +164,11 @@ contains
       type(cut_remarks_t), intent(inout) :: remarks
       integer, intent(in) :: line       !! Number of the line
       integer, intent(in) :: reason     !! One of cut_reason
-      integer, intent(in) :: other      !! Number of the line in the way, or 0
+      integer, intent(in) :: other      !! Number of the conflicting line, or 0
       real(wp), intent(in) :: place(4)  !! Ends of the part: (4) [m]
 
       if (.not. allocated(remarks%item)) allocate (remarks%item(16))
-      ! the second half is room
+      ! double the capacity
       if (remarks%n == size(remarks%item)) remarks%item = [remarks%item, remarks%item]
       remarks%n = remarks%n + 1
       remarks%item(remarks%n) = cut_remark_t(line, reason, other, place)
@@ -183,10 +184,10 @@ contains
          & cut%first_vertex(block + 1) - 1))
    end function block_vertices
 
-   !> The same blocks with corners wherever a joint begins or ends
+   !> Split edges at the ends of all joints
    pure subroutine split_edges(cut, split)
       type(cut_model_t), intent(in) :: cut
-      !> The blocks with more corners; edges of a pair have the same ends
+      !> The blocks with more corners; paired edges have the same ends
       type(cut_model_t), intent(out) :: split
       type(corners_t) :: corners
       integer, allocatable :: start(:)
@@ -197,7 +198,7 @@ contains
       call sort_corners(corners, cut%scale%reach)
       split%vertex = corners%point(:, :corners%n)
       split%edge_joint = cut%edge_joint(corners%edge(:corners%n))
-      ! the first of the new edges that each old one has become
+      ! first new edge of each old edge
       allocate (start(size(cut%vertex, 2) + 1))
       start(size(start)) = corners%n + 1
       do k = corners%n, 1, -1
@@ -214,7 +215,7 @@ contains
       end do
    end subroutine split_edges
 
-   !> The corners that are there, and those where joints begin and end
+   !> Collect the present corners and the ends of joints
    pure subroutine collect_corners(cut, corners)
       type(cut_model_t), intent(in) :: cut
       type(corners_t), intent(out) :: corners
@@ -238,7 +239,7 @@ contains
       end do
    end subroutine collect_corners
 
-   !> A corner on an edge, unless it is at one of its ends
+   !> Add a corner on an edge, unless it is at one of its ends
    pure subroutine add_corner(cut, side, point, corners)
       type(cut_model_t), intent(in) :: cut
       integer, intent(in) :: side(2)    !! Block and edge: (2)
@@ -259,10 +260,10 @@ contains
       corners%along(corners%n) = norm2(point - cut%vertex(:, at))
    end subroutine add_corner
 
-   !> Bring the corners into their order around the blocks, each once
+   !> Sort corners along the outlines of the blocks, without duplicates
    pure subroutine sort_corners(corners, reach)
       type(corners_t), intent(inout) :: corners
-      real(wp), intent(in) :: reach  !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach  !! Distance within which points coincide [m]
       integer, allocatable :: order(:)
       integer :: k, n
 
@@ -282,10 +283,10 @@ contains
       corners%n = n
    end subroutine sort_corners
 
-   !> Number, within its block, of the new edge that begins at a place of an old one
+   !> Number within its block of the new edge that starts at a point of an old edge
    pure integer function edge_at(split, start, old, place, block)
       type(cut_model_t), intent(in) :: split
-      !> First new edge of each old one, and one beyond the last: (n_old + 1)
+      !> First new edge of each old one, and one past the last: (n_old + 1)
       integer, intent(in) :: start(:)
       integer, intent(in) :: old        !! The old edge
       real(wp), intent(in) :: place(2)  !! The place: (2) [m]

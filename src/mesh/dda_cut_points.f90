@@ -1,4 +1,4 @@
-!> Blocks of points, fixed lines and material lines (Shi: dc10, dc11, dc13)
+!> Blocks at points, fixed lines and material lines (Shi: dc10, dc11, dc13)
 submodule (dda_cutting) dda_cut_points
    use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t
    use dda_line_model, only : entity_name
@@ -12,7 +12,7 @@ submodule (dda_cutting) dda_cut_points
 
 contains
 
-   !> Boxes around all blocks
+   !> Bounding boxes of all blocks
    module procedure block_boxes
       integer :: b, n
 
@@ -26,7 +26,7 @@ contains
       end do
    end procedure block_boxes
 
-   !> The block that holds a point
+   !> The block at a point
    module procedure block_around
       real(wp) :: nearest, here
       integer :: b, next_best
@@ -39,7 +39,7 @@ contains
          if (any(point > boxes%high(:, b) + cut%scale%merge)) cycle
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
             if (contains_point(vertex, point)) then
-               if (block_around > 0) then  ! a block with a hole point may lie around others
+               if (block_around > 0) then  ! a block with a hole point may surround other blocks
                   if (cut%area(b) > cut%area(block_around)) cycle
                end if
                block_around = b
@@ -54,7 +54,7 @@ contains
       if (block_around == 0) block_around = next_best
    end procedure block_around
 
-   !> Take out the blocks that hold hole points (Shi: dc11)
+   !> Remove the blocks that contain hole points (Shi: dc11)
    module procedure remove_holes
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
@@ -98,7 +98,7 @@ contains
       cut%pair = cut%pair(:n)
    end procedure remove_holes
 
-   !> Points and fixed lines to blocks
+   !> Assign points and fixed lines to blocks
    module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
@@ -114,7 +114,7 @@ contains
       cut%point = point(:n)
    end procedure place_points
 
-   !> Points of one role in their blocks
+   !> Add the points of one role with their blocks
    pure subroutine add_points(model, role, boxes, cut, point, n, error)
       type(line_model_t), intent(in) :: model
       integer, intent(in) :: role                                  !! Fix, load or measure
@@ -139,7 +139,7 @@ contains
       end do
    end subroutine add_points
 
-   !> One fixed point for each edge that a fixed line crosses, a little inside the edge's block
+   !> Add a fixed point for each edge that a fixed line crosses, slightly inside the edge's block
    pure subroutine add_crossed(line, source, boxes, cut, point, n)
       real(wp), intent(in) :: line(4)                              !! The fixed line: (4) [m]
       integer, intent(in) :: source                                !! Its number
@@ -159,7 +159,7 @@ contains
             do k = 1, size(vertex, 2)
                edge = [vertex(:, k), vertex(:, 1 + mod(k, size(vertex, 2)))]
                call crossing_parameters(edge, segment, share, crossed)
-               ! an edge owns its first corner, so that a line through a corner counts once
+               ! an edge includes its first corner only, so that a line through a corner counts once
                if (.not. crossed .or. share(1) < 0.0_wp .or. share(1) >= 1.0_wp) cycle
                if (share(2) < 0.0_wp .or. share(2) > 1.0_wp) cycle
                crossing = edge(1:2) + share(1)*(edge(3:4) - edge(1:2))
@@ -170,12 +170,12 @@ contains
       end do
    end subroutine add_crossed
 
-   !> A point inside a block, off one of its edges; where there is no room, the centre of gravity
+   !> A point inside a block near one of its edges; the centre of gravity if the block is too thin
    pure function inside_point(vertex, crossing, edge, depth) result(point)
       real(wp), intent(in) :: vertex(:, :)  !! Corners of the block: (2, n) [m]
       real(wp), intent(in) :: crossing(2)   !! Place on the edge: (2) [m]
       real(wp), intent(in) :: edge(4)       !! Ends of the edge: (4) [m]
-      real(wp), intent(in) :: depth         !! Wanted distance from the edge [m]
+      real(wp), intent(in) :: depth         !! Required distance from the edge [m]
       real(wp) :: point(2)                  !! The point: (2) [m]
       type(area_moments_t) :: moments
       real(wp) :: inward(2)
@@ -190,7 +190,7 @@ contains
       point = moments%centroid
    end function inside_point
 
-   !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+   !> Find the blocks of the bolts (Shi: dc14); an end outside all blocks is fixed to the ground
    module procedure place_bolts
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%of(entity_role%bolt)%n)
@@ -215,8 +215,8 @@ contains
       cut%bolt = bolt(:n)
    end procedure place_bolts
 
-   !> Blocks get the material of the last material line that crosses one of their edges, or that
-   !> starts in them and crosses none
+   !> Assign materials to blocks: from the last material line that crosses one of their edges, or
+   !> that starts inside and crosses none
    module procedure give_materials
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
@@ -239,7 +239,7 @@ contains
       end associate
    end procedure give_materials
 
-   !> Give a material to blocks and to all pieces of the same blocks
+   !> Assign a material to blocks and to all pieces of these blocks
    pure subroutine give_material(block, material, cut)
       integer, intent(in) :: block(:)  !! Numbers of the blocks
       integer, intent(in) :: material  !! Number of the material
@@ -257,17 +257,17 @@ contains
       integer, intent(inout) :: n
       type(block_point_t), intent(in) :: new
 
-      ! the second half is room
+      ! double the capacity
       if (n == size(point)) point = [point, point]
       n = n + 1
       point(n) = new
    end subroutine append_point
 
-   !> Say that a thing lies in no block
+   !> Set the error for an entity that is in no block
    pure subroutine no_block(error, model, role, i)
       type(error_t), allocatable, intent(out) :: error
       type(line_model_t), intent(in) :: model
-      integer, intent(in) :: role  !! Role of the thing
+      integer, intent(in) :: role  !! Role of the entity
       integer, intent(in) :: i     !! Its number in its list
 
       associate (place => model%of(role)%place(:, i))

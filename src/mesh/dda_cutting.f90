@@ -1,7 +1,6 @@
 !> Lines to blocks (Shi: dc)
 !>
-!> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
-!> dc06).
+!> Edges that bound no block or that conflict are removed from the network first (Shi: dc05, dc06).
 module dda_cutting
    use dda_cut_model, only : bond_joint, cut_model_t, cut_remarks_t, cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
@@ -18,46 +17,48 @@ module dda_cutting
 
    public :: check_areas, cut_blocks, cut_trees, drop_close_edges, drop_crossing_edges, loops_t
 
-   !> Boxes around blocks
+   !> Bounding boxes of blocks
    type :: boxes_t
       real(wp), allocatable :: low(:, :)   !! Lower left corners: (2, n) [m]
       real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, n) [m]
    end type boxes_t
 
    !> Loops of half-edges. Edge e has the half-edges 2e - 1, from its first node to its second, and
-   !> 2e, back; each has its loop on its left
+   !> 2e in the opposite direction; each has its loop on its left
    type :: loops_t
-      !> First item of each loop, and one beyond the last: (n_loop + 1)
+      !> First item of each loop, and one past the last: (n_loop + 1)
       integer, allocatable :: first(:)
       !> Half-edges, loop by loop
       integer, allocatable :: half_edge(:)
-      !> Area of each loop, negative where it runs around the outside: (n_loop) [m2]
+      !> Area of each loop, negative for outer loops: (n_loop) [m2]
       real(wp), allocatable :: area(:)
    end type loops_t
 
    interface
 
-      !> Boxes around all blocks
+      !> Bounding boxes of all blocks
       pure type(boxes_t) module function block_boxes(cut)
          type(cut_model_t), intent(in) :: cut
       end function block_boxes
 
-      !> The block that holds a point; if none does, the nearest one within the distance in which
-      !> nodes may have been moved. 0 if there is none
+      !> The block that contains a point; else the nearest one within the distance that nodes may
+      !> have moved, or 0
       pure integer module function block_around(cut, boxes, point)
          type(cut_model_t), intent(in) :: cut
          type(boxes_t), intent(in) :: boxes
-         real(wp), intent(in) :: point(2)  !! The point, from the origin of the cut: (2) [m]
+         real(wp), intent(in) :: point(2)  !! The point relative to the origin of the cut: (2) [m]
       end function block_around
 
-      !> Take out the blocks that hold hole points (Shi: dc11)
+      !> Remove the blocks that contain hole points (Shi: dc11)
       pure module subroutine remove_holes(model, cut, error)
          type(line_model_t), intent(in) :: model
-         type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point go
-         type(error_t), allocatable, intent(out) :: error  !! A hole point that lies in no block
+         type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point
+                                                           !! are removed
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for a hole point outside all
+                                                           !! blocks
       end subroutine remove_holes
 
-      !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
+      !> Assign points and fixed lines to blocks. A fixed line holds the block at each edge that it
       !> crosses, or else the block of its first end (Shi: dc10, dc11)
       pure module subroutine place_points(model, cut, error)
          type(line_model_t), intent(in) :: model
@@ -65,64 +66,65 @@ module dda_cutting
          type(error_t), allocatable, intent(out) :: error
       end subroutine place_points
 
-      !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+      !> Find the blocks of the bolts (Shi: dc14); an end outside all blocks is fixed to the ground
       pure module subroutine place_bolts(model, cut)
          type(line_model_t), intent(in) :: model
          type(cut_model_t), intent(inout) :: cut
       end subroutine place_bolts
 
-      !> Blocks get the material of the last material line that crosses one of their edges, or that
-      !> starts in them and crosses none; the first material otherwise (Shi: dc13)
+      !> Assign materials to blocks: from the last material line that crosses one of their edges, or
+      !> that starts inside and crosses none; otherwise the first material (Shi: dc13)
       pure module subroutine give_materials(model, cut, error)
          type(line_model_t), intent(in) :: model
          type(cut_model_t), intent(inout) :: cut
-         type(error_t), allocatable, intent(out) :: error  !! A material line that meets no block
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for a material line outside
+                                                           !! all blocks
       end subroutine give_materials
 
-      !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
+      !> Drop edges with a free end until there are none (Shi: dc05)
       pure module subroutine cut_trees(network, remarks)
          type(network_t), intent(inout) :: network
          type(cut_remarks_t), intent(inout) :: remarks
       end subroutine cut_trees
 
-      !> Drop one of two edges that cross between their nodes, as happens when nodes were merged:
-      !> the one that is no boundary, else that of the later line (Shi: dc06)
+      !> Drop one of two edges that cross between their nodes, which happens after nodes are merged.
+      !> Boundaries are kept, else the edge of the earlier line (Shi: dc06)
       pure module subroutine drop_crossing_edges(network, scale, remarks, crossing)
          type(network_t), intent(inout) :: network
          type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
          type(cut_remarks_t), intent(inout) :: remarks
-         !> Two boundary lines that still cross; 0 if none do: (2)
+         !> Two boundary lines that still cross; 0 if there are none: (2)
          integer, intent(out) :: crossing(2)
       end subroutine drop_crossing_edges
 
-      !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
+      !> Drop joints closer than e00 w0 to a node of other lines (Shi: dc06)
       pure module subroutine drop_close_edges(network, scale, remarks)
          type(network_t), intent(inout) :: network
          type(cut_scale_t), intent(in) :: scale
          type(cut_remarks_t), intent(inout) :: remarks
       end subroutine drop_close_edges
 
-      !> Cut blocks around other blocks that lie wholly inside them into pieces without holes: adds
-      !> nodes and edges. The new edges belong to the line after the last
+      !> Cut blocks with islands into pieces without holes: adds nodes and edges. The new edges have
+      !> the line number n_line + 1
       pure module subroutine cut_islands(model, origin, loops, network)
          type(line_model_t), intent(in) :: model
-         real(wp), intent(in) :: origin(2)  !! What nodes are counted from: (2) [m]
+         real(wp), intent(in) :: origin(2)  !! Origin of the nodes: (2) [m]
          type(loops_t), intent(in) :: loops
          type(network_t), intent(inout) :: network
       end subroutine cut_islands
 
-      !> Number the blocks as wholes: pieces that a bond holds together are one
+      !> Number the whole blocks: pieces connected by bonds are one block
       pure module subroutine find_wholes(cut)
          type(cut_model_t), intent(inout) :: cut
       end subroutine find_wholes
 
-      !> Blocks of the loops that run around an area; scales, points and materials are left to
-      !> others
+      !> Make blocks from the loops with positive area; scales, points and materials are set
+      !> elsewhere
       pure module subroutine blocks_of_loops(network, loops, joint, cut)
          type(network_t), intent(in) :: network
          type(loops_t), intent(in) :: loops
          integer, intent(in) :: joint(:)  !! Joint material of each line: (n_line)
-         !> Receives corners, edges and pairs of edges; its scales are set
+         !> Receives corners, edges and pairs of edges; its scales must be set
          type(cut_model_t), intent(inout) :: cut
       end subroutine blocks_of_loops
 
@@ -130,11 +132,12 @@ module dda_cutting
 
 contains
 
-   !> Cut lines into blocks, and give each block its material and its points
+   !> Cut lines into blocks, and assign materials and points
    pure subroutine cut_blocks(model, cut, error)
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(out) :: cut
-      type(error_t), allocatable, intent(out) :: error  !! What keeps the lines from making blocks
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the lines cannot be cut into
+                                                        !! blocks
       type(network_t) :: network
       type(loops_t) :: loops
       integer :: n_edge
@@ -157,10 +160,10 @@ contains
       if (.not. allocated(error)) call place_bolts(model, cut)
    end subroutine cut_blocks
 
-   !> Nodes and edges that bound blocks (Shi: dc04 to dc06)
+   !> Make the nodes and edges that bound blocks (Shi: dc04 to dc06)
    pure subroutine make_network(model, cut, network, error)
       type(line_model_t), intent(in) :: model
-      type(cut_model_t), intent(inout) :: cut  !! Receives the scales and what was dropped
+      type(cut_model_t), intent(inout) :: cut  !! Receives the scales and the dropped parts
       type(network_t), intent(out) :: network
       type(error_t), allocatable, intent(out) :: error
       type(crossings_t) :: crossings
@@ -193,7 +196,7 @@ contains
       call cut_trees(network, cut%remarks)
    end subroutine make_network
 
-   !> Areas of blocks add up to those that the outer loops enclose (Shi: dc16, dc17)
+   !> Check that the areas of the blocks add up to those inside the outer loops (Shi: dc16, dc17)
    pure subroutine check_areas(loops, cut, file, error)
       type(loops_t), intent(in) :: loops    !! All loops
       type(cut_model_t), intent(in) :: cut
@@ -209,7 +212,7 @@ contains
          & //": lines cross without a node; make the edge-node distance smaller", file, 1)
    end subroutine check_areas
 
-   !> Walk along all edges on both sides, at each node turning as far left as possible
+   !> Trace loops along both sides of all edges, with the leftmost turn at each node
    pure subroutine trace_loops(network, loops)
       type(network_t), intent(in) :: network
       type(loops_t), intent(out) :: loops
@@ -241,15 +244,15 @@ contains
       end do
    end subroutine trace_loops
 
-   !> The half-edge on the other side of the same edge
+   !> The other half-edge of the same edge
    elemental integer function opposite(half_edge)
       integer, intent(in) :: half_edge  !! Its number
 
       opposite = half_edge - 1 + 2*mod(half_edge, 2)
    end function opposite
 
-   !> The half-edge that follows each one in its loop: around the node at its end, the first one
-   !> clockwise from the way back (Shi: dc07)
+   !> The next half-edge in each loop: at the end node, the first one clockwise from the reverse
+   !> direction (Shi: dc07)
    pure subroutine link_half_edges(network, next)
       type(network_t), intent(in) :: network
       !> Number of the next half-edge; 0 for dropped ones: (2 n_edge)
@@ -287,7 +290,7 @@ contains
       end do
    end subroutine link_half_edges
 
-   !> Area inside a loop, by triangles seen from its first node
+   !> Area inside a loop, by triangles from its first node
    pure real(wp) function loop_area(network, half_edge)
       type(network_t), intent(in) :: network
       integer, intent(in) :: half_edge(:)  !! The half-edges of the loop: (n)

@@ -1,19 +1,19 @@
-!> Islands: blocks inside another block. That block is cut by vertical lines through its islands
-!> into pieces without holes, which a bond holds together
+!> Islands: blocks inside another block. The outer block is cut along vertical lines through its
+!> islands into pieces without holes, connected by bonds
 submodule (dda_cutting) dda_islands
    use dda_cut_model, only : bond_joint
    implicit none
 
-   !> Where vertical lines through islands cross edges
+   !> Crossings of edges with vertical lines through islands
    type :: crossed_t
-      integer :: n = 0                 !! How many there are
-      integer, allocatable :: edge(:)  !! Edge that is crossed: (n)
+      integer :: n = 0                 !! Number of crossings
+      integer, allocatable :: edge(:)  !! Crossed edge: (n)
       integer, allocatable :: node(:)  !! New node at the crossing: (n)
    end type crossed_t
 
 contains
 
-   !> Cut blocks around their islands
+   !> Cut blocks with islands into pieces
    module procedure cut_islands
       integer, allocatable :: around(:), island(:), number(:)
       integer, allocatable :: bond(:, :)
@@ -39,11 +39,11 @@ contains
       call add_bonds(bond, model%line%n + 1, network)
    end procedure cut_islands
 
-   !> The loop that directly surrounds each loop around an island; 0 for all other loops, and for
-   !> islands of blocks that a hole point takes out
+   !> The loop that directly surrounds each island loop; 0 for all other loops, and for islands of
+   !> blocks that a hole point removes
    pure subroutine find_islands(model, origin, network, loops, around)
       type(line_model_t), intent(in) :: model
-      real(wp), intent(in) :: origin(2)  !! What nodes are counted from: (2) [m]
+      real(wp), intent(in) :: origin(2)  !! Origin of the nodes: (2) [m]
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
       integer, allocatable, intent(out) :: around(:)  !! Number of the outer loop: (n_loop)
@@ -64,7 +64,7 @@ contains
       end do
    end subroutine find_islands
 
-   !> Boxes around loops
+   !> Bounding boxes of loops
    pure subroutine loop_boxes(network, loops, boxes)
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
@@ -80,12 +80,12 @@ contains
       end do
    end subroutine loop_boxes
 
-   !> Nodes of a loop
+   !> Coordinates of the nodes of a loop
    pure function loop_vertices(network, loops, k) result(vertex)
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
       integer, intent(in) :: k               !! Number of the loop
-      real(wp), allocatable :: vertex(:, :)  !! Their places: (2, n) [m]
+      real(wp), allocatable :: vertex(:, :)  !! Coordinates: (2, n) [m]
       integer :: i
 
       allocate (vertex(2, loops%first(k + 1) - loops%first(k)))
@@ -95,11 +95,11 @@ contains
       end do
    end function loop_vertices
 
-   !> The loop of the smallest area that holds a point and does not pass a node; 0 if there is none
+   !> Smallest loop that contains a point and does not pass through a node; 0 if there is none
    pure integer function smallest_around(network, loops, boxes, point, node)
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
-      type(boxes_t), intent(in) :: boxes  !! Boxes around the loops
+      type(boxes_t), intent(in) :: boxes  !! Bounding boxes of the loops
       real(wp), intent(in) :: point(2)    !! The point: (2) [m]
       integer, intent(in) :: node         !! Number of the node, or 0
       integer :: j, i
@@ -117,23 +117,24 @@ contains
       end do
    end function smallest_around
 
-   !> Whether a line that was added after others crosses one of some edges
+   !> True if a line added since then crosses one of the edges
    pure logical function is_crossed(crossed, before, edge)
       type(crossed_t), intent(in) :: crossed
-      integer, intent(in) :: before   !! Number of the earlier crossings
-      integer, intent(in) :: edge(:)  !! The edges
+      integer, intent(in) :: before   !! Number of crossings before that line
+      integer, intent(in) :: edge(:)  !! Numbers of the edges: (n)
       integer :: i
 
       is_crossed = any([(any(edge == crossed%edge(i)), i=before + 1, crossed%n)])
    end function is_crossed
 
-   !> Cut a block by a vertical line through one of its islands, as far from nodes as there is room
+   !> Cut a block along a vertical line through one of its islands, as far from nodes as possible
    pure subroutine cut_through(block, island, network, crossed, bond)
-      integer, intent(in) :: block(:)   !! Edges of the block and of its islands
-      integer, intent(in) :: island(:)  !! Edges of the island
+      integer, intent(in) :: block(:)   !! Edges of the block and of its islands: (n)
+      integer, intent(in) :: island(:)  !! Edges of the island: (n)
       type(network_t), intent(inout) :: network  !! Receives nodes at crossings
       type(crossed_t), intent(inout) :: crossed  !! Receives the crossings
-      integer, allocatable, intent(inout) :: bond(:, :)  !! Receives the nodes of the cuts: (2, n)
+      integer, allocatable, intent(inout) :: bond(:, :)  !! Receives the end nodes of the cuts: (2,
+                                                         !! n)
       integer, allocatable :: edge(:), node(:), order(:)
       real(wp), allocatable :: height(:)
       real(wp) :: x
@@ -151,7 +152,7 @@ contains
       end do
       allocate (order, source=sorted_order(spread(1, 1, size(edge)), height))
       do i = 1, size(order)
-         if (i > 1) then  ! both sides of one edge are in the loops
+         if (i > 1) then  ! both sides of one edge may be in the loops
             if (edge(order(i)) == edge(order(i - 1))) then
                node(i) = node(i - 1)
                cycle
@@ -159,7 +160,7 @@ contains
          end if
          call add_crossing_node([x, height(order(i))], edge(order(i)), network, crossed, node(i))
       end do
-      ! from the outside: in, out, in, out
+      ! crossings alternate from the outside: in, out, in, out
       do i = 1, size(order) - 1, 2
          bond = reshape([bond, node(i), node(i + 1)], [2, size(bond, 2) + 1])
       end do
@@ -182,12 +183,12 @@ contains
       end do
    end function edges_of
 
-   !> Middle of the widest gap between nodes of a block, from left to right, within an island [m]
+   !> Middle of the widest gap in x between nodes of a block, within an island [m]
    pure real(wp) function free_place(network, island, block, crossed)
       type(network_t), intent(in) :: network
-      integer, intent(in) :: island(:)        !! Edges of the island
-      integer, intent(in) :: block(:)         !! Edges of the block and of its islands
-      type(crossed_t), intent(in) :: crossed  !! Crossings so far, which are nodes as well
+      integer, intent(in) :: island(:)        !! Edges of the island: (n)
+      integer, intent(in) :: block(:)         !! Edges of the block and of its islands: (n)
+      type(crossed_t), intent(in) :: crossed  !! The crossings so far; these are nodes too
       real(wp), allocatable :: x(:)
       integer, allocatable :: order(:), at(:)
       integer :: i
@@ -205,8 +206,8 @@ contains
 
    !> Add a node at a crossing
    pure subroutine add_crossing_node(place, edge, network, crossed, node)
-      real(wp), intent(in) :: place(2)  !! The crossing: (2) [m]
-      integer, intent(in) :: edge       !! The edge that is crossed
+      real(wp), intent(in) :: place(2)  !! Coordinates of the crossing: (2) [m]
+      integer, intent(in) :: edge       !! The crossed edge
       type(network_t), intent(inout) :: network
       type(crossed_t), intent(inout) :: crossed
       integer, intent(out) :: node      !! Number of the new node
@@ -218,7 +219,7 @@ contains
       crossed%n = crossed%n + 1
    end subroutine add_crossing_node
 
-   !> Divide edges at the nodes of their crossings
+   !> Split edges at the nodes of their crossings
    pure subroutine insert_nodes(crossed, network)
       type(crossed_t), intent(in) :: crossed
       type(network_t), intent(inout) :: network
@@ -249,10 +250,10 @@ contains
       network%alive = [network%alive, spread(.true., 1, crossed%n)]
    end subroutine insert_nodes
 
-   !> Add edges that are bonds
+   !> Add edges for bonds
    pure subroutine add_bonds(bond, line, network)
-      integer, intent(in) :: bond(:, :)  !! Their nodes: (2, n)
-      integer, intent(in) :: line        !! Number of the line that they belong to
+      integer, intent(in) :: bond(:, :)  !! End nodes: (2, n)
+      integer, intent(in) :: line        !! Line number of the edges
       type(network_t), intent(inout) :: network
       integer :: n
 
@@ -262,7 +263,7 @@ contains
       network%alive = [network%alive, spread(.true., 1, size(bond, 2))]
    end subroutine add_bonds
 
-   !> The block that each piece is a part of, by the smallest number of its pieces
+   !> Whole block of each piece, by the smallest number of its pieces
    module procedure find_wholes
       integer :: k, low, high
 

@@ -7,52 +7,52 @@ module dda_line_model
 
    public :: line_model_t, entities_t, entity_role, role_name, entity_name, add_entity
 
-   !> What a line or a point is for
+   !> Roles of lines and points
    type :: entity_role_enum
       integer :: joint = 1     !! A joint
-      integer :: material = 2  !! It gives the blocks that it crosses their material
-      integer :: fix = 3       !! It holds the blocks that it crosses, or that it lies in
-      integer :: load = 4      !! A force acts there
-      integer :: measure = 5   !! It is followed
-      integer :: hole = 6      !! Its block is taken out
+      integer :: material = 2  !! Assigns its material to the blocks that it crosses
+      integer :: fix = 3       !! Fixes the blocks that it crosses or lies in
+      integer :: load = 4      !! Point of a load
+      integer :: measure = 5   !! Monitoring point
+      integer :: hole = 6      !! Removes its block
       integer :: bolt = 7      !! A bolt
-      integer :: seismic = 8   !! A place of seismic records, which nothing uses yet
+      integer :: seismic = 8   !! Place of seismic records, not used
    end type entity_role_enum
 
    !> The roles by name
    type(entity_role_enum), parameter :: entity_role = entity_role_enum()
 
-   !> Their names in joint maps and tables
+   !> Names of the roles in joint maps and tables
    character(len=*), parameter :: role_name(8) = [character(len=8) :: "joint", "material", "fix", &
       & "load", "measure", "hole", "bolt", "seismic"]
 
-   !> What messages call one of each
+   !> Names of one entity of each role in messages
    character(len=*), parameter :: entity_name(8) = [character(len=16) :: "line", &
       & "material line", "fixed point", "load point", "monitoring point", "hole point", "bolt", &
       & "seismic point"]
 
    !> Segments or points of one role, in the order of the file
    type :: entities_t
-      integer :: n = 0  !! How many there are
-      !> Ends x1, y1, x2, y2; a point has both ends in one place: (4, n or more) [m]
+      integer :: n = 0  !! Number of entities
+      !> Ends x1, y1, x2, y2; equal for a point: (4, n or more) [m]
       real(wp), allocatable :: place(:, :)
-      !> Material of the joint or of the blocks, where the role has one: (n or more)
+      !> Material of the joint or of the blocks, if the role has one: (n or more)
       integer, allocatable :: material(:)
       integer, allocatable :: row(:)  !! Line of the file: (n or more)
-      !> Stiffness, strength and prestress of bolts: (3, n or more); below 0 where the analysis
-      !> file says them
+      !> Stiffness, strength and prestress of bolts, negative if given in the analysis file: (3, n
+      !> or more)
       real(wp), allocatable :: property(:, :)
    end type entities_t
 
-   !> Everything that a geometry file says
+   !> Contents of a geometry file
    type :: line_model_t
       character(len=:), allocatable :: file  !! Name of the file, for messages
-      !> Shi's e00: nodes closer than this, times the size of the model, become one
+      !> Shi's e00: nodes closer than this are merged, over the size of the model
       real(wp) :: edge_node_ratio = 0.0_wp
-      !> So many of the first lines are boundary lines, which are never deleted
+      !> Number of boundary lines, the first ones, which are never deleted
       integer :: n_boundary = 0
-      type(entities_t) :: line  !! Boundary lines, then joints, with the material of the joint
-      type(entities_t) :: of(entity_role%material:entity_role%seismic)  !! All others by their roles
+      type(entities_t) :: line  !! Boundary lines, then joints, each with its joint material
+      type(entities_t) :: of(entity_role%material:entity_role%seismic)  !! Other entities by role
    end type line_model_t
 
 contains
@@ -60,10 +60,10 @@ contains
    !> Add a segment or a point
    pure subroutine add_entity(entities, place, material, row, property)
       type(entities_t), intent(inout) :: entities
-      real(wp), intent(in) :: place(4)  !! Its ends: (4) [m]
-      integer, intent(in) :: material   !! Its material; 0 if the role has none
+      real(wp), intent(in) :: place(4)  !! Ends: (4) [m]
+      integer, intent(in) :: material   !! Material; 0 if the role has none
       integer, intent(in) :: row        !! Line of the file
-      !> Stiffness, strength and prestress of a bolt: (3); an array that is not allocated is none
+      !> Stiffness, strength and prestress of a bolt; absent or unallocated for other entities: (3)
       real(wp), intent(in), optional :: property(3)
 
       if (.not. allocated(entities%place)) allocate (entities%place(4, 8))

@@ -18,9 +18,9 @@ module dda_line_network
    !> Maximum number of crossings
    integer, parameter :: max_crossings = 30000000
 
-   !> Points that two lines have in common, by the numbers of the lines
+   !> Common points of two lines, with the line numbers
    type :: crossings_t
-      integer :: n = 0                    !! How many there are
+      integer :: n = 0                    !! Number of crossings
       integer, allocatable :: line(:, :)  !! The two lines, the smaller number first: (2, n or more)
       !> The points: (2, n or more) [m]
       real(wp), allocatable :: point(:, :)
@@ -33,26 +33,26 @@ module dda_line_network
       integer, allocatable :: edge(:, :)
       integer, allocatable :: line(:)   !! Line of each edge: (n_edge)
       logical, allocatable :: alive(:)  !! Edges that were not dropped: (n_edge)
-      integer :: n_boundary = 0         !! The first lines, so many, are boundaries
-      !> Crossings that became a node that was there already at another place
+      integer :: n_boundary = 0         !! Number of boundary lines, the first ones
+      !> Number of crossings merged with an existing node at another place
       integer :: n_merged = 0
    end type network_t
 
-   !> Nodes, and for each square a chain of those that lie in it
+   !> Nodes, and for each square a linked list of the nodes in it
    type :: node_table_t
-      integer :: n = 0                      !! How many nodes there are
-      real(wp), allocatable :: point(:, :)  !! Their places: (2, n or more) [m]
+      integer :: n = 0                      !! Number of nodes
+      real(wp), allocatable :: point(:, :)  !! Coordinates: (2, n or more) [m]
       real(wp) :: side = 1.0_wp             !! Side of a square [m]
-      integer, allocatable :: first(:)      !! First node of each chain, 0 if it is empty
-      integer, allocatable :: next(:)       !! Next node of the chain, 0 at its end: (n or more)
+      integer, allocatable :: first(:)      !! First node of each list, 0 if it is empty
+      integer, allocatable :: next(:)       !! Next node of the list, 0 at its end: (n or more)
    end type node_table_t
 
 contains
 
-   !> All crossings, ordered by the first line, then by the second
+   !> Find all crossings, ordered by the first line, then by the second
    pure subroutine find_crossings(line, reach, crossings, error)
       real(wp), intent(in) :: line(:, :)                !! Ends of the lines: (4, n) [m]
-      real(wp), intent(in) :: reach                     !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach                     !! Distance within which points coincide [m]
       type(crossings_t), intent(out) :: crossings
       type(error_t), allocatable, intent(out) :: error  !! Allocated if there are too many
       type(box_tree_t) :: tree
@@ -84,11 +84,11 @@ contains
    !> Add a crossing
    pure subroutine add_crossing(crossings, i, j, point)
       type(crossings_t), intent(inout) :: crossings
-      integer, intent(in) :: i          !! One line
-      integer, intent(in) :: j          !! The other, with a larger number
+      integer, intent(in) :: i          !! Number of one line
+      integer, intent(in) :: j          !! Number of the other line, larger than i
       real(wp), intent(in) :: point(2)  !! The point: (2) [m]
 
-      ! the second half is room
+      ! double the capacity
       if (crossings%n == size(crossings%line, 2)) crossings%line = reshape([crossings%line, &
          & crossings%line], [2, 2*crossings%n])
       call make_room(crossings%point, crossings%n + 1)
@@ -97,14 +97,14 @@ contains
       crossings%point(:, crossings%n) = point
    end subroutine add_crossing
 
-   !> Crossings to nodes, lines to edges
+   !> Make nodes from crossings and edges from lines
    pure subroutine join_crossings(line, n_boundary, scale, crossings, network, remarks)
       real(wp), intent(in) :: line(:, :)      !! Ends of the lines: (4, n_line) [m]
       integer, intent(in) :: n_boundary       !! Number of boundary lines, the first ones
       type(cut_scale_t), intent(in) :: scale  !! Scales of the cut
       type(crossings_t), intent(in) :: crossings
       type(network_t), intent(out) :: network
-      !> Receives the lines that make no edge, and edges that are there twice
+      !> Receives lines without edges and duplicate edges
       type(cut_remarks_t), intent(inout) :: remarks
       integer, allocatable :: node_of(:)
 
@@ -118,26 +118,26 @@ contains
    pure function edge_place(network, edge) result(place)
       type(network_t), intent(in) :: network
       integer, intent(in) :: edge  !! Number of the edge
-      real(wp) :: place(4)         !! Its ends: (4) [m]
+      real(wp) :: place(4)         !! Ends: (4) [m]
 
       place(1:2) = network%node(:, network%edge(1, edge))
       place(3:4) = network%node(:, network%edge(2, edge))
    end function edge_place
 
-   !> Drop an edge and say why
+   !> Drop an edge and record the reason
    pure subroutine drop_edge(network, edge, reason, other, remarks)
       type(network_t), intent(inout) :: network
       integer, intent(in) :: edge
       integer, intent(in) :: reason  !! One of cut_reason
-      integer, intent(in) :: other   !! Number of the line in the way, or 0
+      integer, intent(in) :: other   !! Number of the conflicting line, or 0
       type(cut_remarks_t), intent(inout) :: remarks
 
       network%alive(edge) = .false.
       call add_remark(remarks, network%line(edge), reason, other, edge_place(network, edge))
    end subroutine drop_edge
 
-   !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a
-   !> new one; two boundary lines share a node only with crossings at the very same place
+   !> Node of each crossing: the nearest existing one within 1.25 e00 w0, else a new one. A node of
+   !> two boundary lines is shared only by crossings at exactly the same place
    pure subroutine merge_nodes(scale, crossings, network, node_of)
       type(cut_scale_t), intent(in) :: scale
       type(crossings_t), intent(in) :: crossings
@@ -163,7 +163,7 @@ contains
       allocate (network%node, source=table%point(:, :table%n))
    end subroutine merge_nodes
 
-   !> Edges between neighbouring nodes of each line
+   !> Make edges between neighbouring nodes of each line
    pure subroutine chain_lines(line, crossings, node_of, network, remarks)
       real(wp), intent(in) :: line(:, :)
       type(crossings_t), intent(in) :: crossings
@@ -205,11 +205,11 @@ contains
       network%edge = network%edge(:, :n_edge)
       network%line = network%line(:n_edge)
       allocate (network%alive(n_edge), source=.true.)
-      call tell_loose_lines(line, network, remarks)
+      call record_loose_lines(line, network, remarks)
    end subroutine chain_lines
 
-   !> Lines with fewer than two nodes have no edge
-   pure subroutine tell_loose_lines(line, network, remarks)
+   !> Record the lines with fewer than two nodes, which have no edges
+   pure subroutine record_loose_lines(line, network, remarks)
       real(wp), intent(in) :: line(:, :)
       type(network_t), intent(in) :: network
       type(cut_remarks_t), intent(inout) :: remarks
@@ -223,9 +223,9 @@ contains
          call add_remark(remarks, i, merge(cut_reason%point, cut_reason%loose_line, &
             & all(abs(line(3:4, i) - line(1:2, i)) <= 0.0_wp)), 0, line(:, i))
       end do
-   end subroutine tell_loose_lines
+   end subroutine record_loose_lines
 
-   !> Of edges between the same two nodes the one of the first line stays: lines that lie together
+   !> Drop duplicate edges between the same two nodes; that of the first line is kept
    pure subroutine drop_doubled(network, remarks)
       type(network_t), intent(inout) :: network
       type(cut_remarks_t), intent(inout) :: remarks
@@ -248,10 +248,10 @@ contains
       end do
    end subroutine drop_doubled
 
-   !> An empty table of small squares
+   !> Make an empty table of small squares
    pure subroutine new_node_table(room, side, table)
-      integer, intent(in) :: room   !! Most nodes
-      real(wp), intent(in) :: side  !! Largest distance at which a node will be looked for [m]
+      integer, intent(in) :: room   !! Maximum number of nodes
+      real(wp), intent(in) :: side  !! Largest search distance [m]
       type(node_table_t), intent(out) :: table
 
       allocate (table%point(2, room), table%next(room))
@@ -262,7 +262,7 @@ contains
    !> Add a node; the table must have room
    pure subroutine add_node(table, point)
       type(node_table_t), intent(inout) :: table
-      real(wp), intent(in) :: point(2)  !! Its place: (2) [m]
+      real(wp), intent(in) :: point(2)  !! Coordinates: (2) [m]
       integer :: chain
 
       chain = chain_of(table, square_of(table, point))
@@ -272,11 +272,11 @@ contains
       table%first(chain) = table%n
    end subroutine add_node
 
-   !> The node nearest to a point within a distance; the older of two
+   !> The node nearest to a point within a distance; the older of two equally near ones
    pure integer function nearest_node(table, point, distance)
       type(node_table_t), intent(in) :: table
       real(wp), intent(in) :: point(2)
-      real(wp), intent(in) :: distance  !! How far a node may be, at most the side of the table [m]
+      real(wp), intent(in) :: distance  !! Search distance, at most the side of the table [m]
       real(wp) :: nearest, here
       integer(int64) :: square(2)
       integer :: i, j, node
@@ -300,7 +300,7 @@ contains
       end do
    end function nearest_node
 
-   !> The square that holds a point
+   !> The square that contains a point
    pure function square_of(table, point) result(square)
       type(node_table_t), intent(in) :: table
       real(wp), intent(in) :: point(2)
@@ -309,7 +309,7 @@ contains
       square = floor(point/table%side, int64)
    end function square_of
 
-   !> The chain that a square belongs to; several squares share one
+   !> List of a square; several squares share one list
    pure integer function chain_of(table, square)
       type(node_table_t), intent(in) :: table
       integer(int64), intent(in) :: square(2)  !! Column and row: (2)

@@ -1,5 +1,5 @@
-!> Removal of edges that bound nothing or disturb a network (Shi: dc05, dc06). From loops to
-!> blocks: corners on a straight edge go, coincident edges are found (Shi: dc08, dc09)
+!> Removal of edges that bound no block or that conflict (Shi: dc05, dc06). Blocks from loops: nodes
+!> on straight edges are no corners, coincident edges are paired (Shi: dc08, dc09)
 submodule (dda_cutting) dda_network_trim
    use dda_box_tree, only : box_tree_t, find_boxes, segment_tree
    use dda_cut_model, only : add_remark, cut_reason, edge_pair_t
@@ -10,7 +10,7 @@ submodule (dda_cutting) dda_network_trim
 
 contains
 
-   !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
+   !> Drop edges with a free end until there are none (Shi: dc05)
    module procedure cut_trees
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
@@ -29,7 +29,7 @@ contains
             if (.not. network%alive(e)) cycle
             call drop_edge(network, e, cut_reason%loose_edge, 0, remarks)
             degree(network%edge(:, e)) = degree(network%edge(:, e)) - 1
-            ! one loose node gives way to one other at most, so the list never grows
+            ! each loose node adds at most one other, so the list never grows
             node = sum(network%edge(:, e)) - node
             if (degree(node) == 1) then
                n = n + 1
@@ -40,7 +40,7 @@ contains
       end do
    end procedure cut_trees
 
-   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged
+   !> Drop one of two edges that cross between their nodes, which happens after nodes are merged
    module procedure drop_crossing_edges
       type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
@@ -68,10 +68,10 @@ contains
       end do
    end procedure drop_crossing_edges
 
-   !> Whether two edges cross between their nodes
+   !> True if two edges cross between their nodes
    pure logical function edges_cross(network, reach, edge, first, second)
       type(network_t), intent(in) :: network
-      real(wp), intent(in) :: reach      !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach      !! Distance within which points coincide [m]
       integer, intent(in) :: edge(2)     !! Numbers of the edges: (2)
       real(wp), intent(in) :: first(4)   !! Ends of the first: (4) [m]
       real(wp), intent(in) :: second(4)  !! Ends of the second: (4) [m]
@@ -85,7 +85,7 @@ contains
       edges_cross = edges_cross .and. all(share > rim .and. share < 1.0_wp - rim)
    end function edges_cross
 
-   !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
+   !> Drop joints closer than e00 w0 to a node of other lines (Shi: dc06)
    module procedure drop_close_edges
       type(box_tree_t) :: tree
       real(wp), allocatable :: place(:, :)
@@ -116,7 +116,7 @@ contains
       end do
    end procedure drop_close_edges
 
-   !> Edges that were not dropped
+   !> List the edges that were not dropped
    pure subroutine living_edges(network, number, place)
       type(network_t), intent(in) :: network
       integer, allocatable, intent(out) :: number(:)     !! Their numbers: (n)
@@ -130,9 +130,9 @@ contains
       end do
    end subroutine living_edges
 
-   !> Blocks of the loops that run around an area
+   !> Make blocks from the loops with positive area
    module procedure blocks_of_loops
-      ! block and edge that each half-edge is a part of
+      ! block and edge of each half-edge
       integer, allocatable :: owner(:, :), corner(:)
       real(wp) :: place(4)
       integer :: k, n_block, n_vertex, from, to, line
@@ -166,12 +166,12 @@ contains
       call find_pairs(network, owner, joint, cut)
    end procedure blocks_of_loops
 
-   !> Places in a loop where it turns: a node is no corner if it lies on the straight way from the
-   !> corner before it to the next node (Shi: dc09)
+   !> Corners of a loop. A node is no corner if it lies on the straight line from the previous
+   !> corner to the next node (Shi: dc09)
    pure subroutine corners_of_loop(network, half_edge, reach, corner)
       type(network_t), intent(in) :: network
       integer, intent(in) :: half_edge(:)  !! The half-edges of the loop: (n)
-      real(wp), intent(in) :: reach        !! Distance within which things touch [m]
+      real(wp), intent(in) :: reach        !! Distance within which points coincide [m]
       !> Half-edges of the loop that start at a corner: (n_corner)
       integer, allocatable, intent(out) :: corner(:)
       real(wp), allocatable :: node(:, :)
@@ -190,7 +190,7 @@ contains
          turns(k) = .not. is_between(node(:, k), node(:, last), node(:, 1 + mod(k, n)), reach)
          if (turns(k)) last = k
       end do
-      ! the first corners were judged against a node that may be none itself
+      ! the first corners were tested against a node that may be no corner itself
       do k = 1, n
          if (last == 0) exit
          if (turns(k)) then
@@ -202,10 +202,10 @@ contains
       corner = pack([(k, k=1, n)], turns)
    end subroutine corners_of_loop
 
-   !> The corner that follows a place of a loop
+   !> The next corner after a position in a loop
    pure integer function next_turn(turns, k)
-      logical, intent(in) :: turns(:)  !! Which places are corners: (n)
-      integer, intent(in) :: k         !! The place
+      logical, intent(in) :: turns(:)  !! True at corners: (n)
+      integer, intent(in) :: k         !! The position
       integer :: i
 
       next_turn = k
@@ -215,11 +215,11 @@ contains
       end do
    end function next_turn
 
-   !> Whether a point lies on the straight way between two others
+   !> True if a point lies on the segment between two others
    pure logical function is_between(point, start, finish, reach)
       real(wp), intent(in) :: point(2)   !! The point: (2) [m]
-      real(wp), intent(in) :: start(2)   !! Where the way starts: (2) [m]
-      real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]
+      real(wp), intent(in) :: start(2)   !! Start of the segment: (2) [m]
+      real(wp), intent(in) :: finish(2)  !! End of the segment: (2) [m]
       real(wp), intent(in) :: reach
       real(wp) :: way(2), arm(2)
 
@@ -229,7 +229,7 @@ contains
          & .and. dot_product(way, finish - point) >= 0.0_wp
    end function is_between
 
-   !> Store the corners of a block and tell its half-edges which edge they belong to
+   !> Store the corners of a block, and block and edge for each of its half-edges
    pure subroutine add_corners(network, half_edge, corner, joint, block, n_vertex, cut, owner)
       type(network_t), intent(in) :: network
       integer, intent(in) :: half_edge(:), corner(:), joint(:)
@@ -255,7 +255,7 @@ contains
       end do
    end subroutine add_corners
 
-   !> Pairs of edges that the same edges of the network are parts of
+   !> Find pairs of block edges with common network edges
    pure subroutine find_pairs(network, owner, joint, cut)
       type(network_t), intent(in) :: network
       !> Block and edge of each half-edge, 0 for none: (2, n_half_edge)
@@ -278,7 +278,7 @@ contains
          part(n)%side = [owner(:, 2*e - 1), owner(:, 2*e)]
       end do
       part = part(:n)
-      ! vertices number the edges of all blocks
+      ! vertex numbers identify the edges of all blocks
       allocate (order, source=sorted_order(cut%first_vertex(part%side(1)) + part%side(2), &
          & real(cut%first_vertex(part%side(3)) + part%side(4), wp)))
       n_pair = 0
@@ -299,7 +299,7 @@ contains
       cut%pair = cut%pair(:n_pair)
    end subroutine find_pairs
 
-   !> Let a pair of edges reach over one more part
+   !> Extend a pair of edges by one part
    pure subroutine join_parts(pair, place)
       type(edge_pair_t), intent(inout) :: pair
       real(wp), intent(in) :: place(4)  !! Ends of the part, in the same direction: (4) [m]
