@@ -13,10 +13,10 @@ module dda_block_system
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
 
-   !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1. What
-   !> begins with the corners where the blocks are now is there only where blocks may have moved
+   !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1. The
+   !> arrays from `moved` on are allocated only if blocks may have moved
    type :: block_system_t
-      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
       !> Corners in the reference shape, counter-clockwise: (2, n_vertex) [m]
       real(wp), allocatable :: vertex(:, :)
@@ -36,34 +36,33 @@ module dda_block_system
       type(material_t), allocatable :: materials(:)
       !> Number of the block in the equations; 0 for a block that cannot move: (n_block)
       integer, allocatable :: equation(:)
-      !> Blocks that cannot move wherever they are: (n_block)
+      !> Blocks that are always fixed: (n_block)
       logical, allocatable :: fixed(:)
-      !> Blocks that are not there: not built yet or taken away; unallocated where all are:
-      !> (n_block)
+      !> Blocks that are not yet built or have been removed; unallocated if there are
+      !> none: (n_block)
       logical, allocatable :: absent(:)
-      !> Corners where the blocks are now: (2, n_vertex) [m]
+      !> Present corners: (2, n_vertex) [m]
       real(wp), allocatable :: moved(:, :)
-      !> Sum of all motions; strains in the frame that turns with the block where blocks move:
-      !> (n_unknown, n_block) [m, m, rad, -, -, -]
+      !> Total motion; in current geometry, strains refer to the frame that rotates with the
+      !> block: (n_unknown, n_block) [m, m, rad, -, -, -]
       real(wp), allocatable :: motion(:, :)
       !> Rates of the unknowns: (n_unknown, n_block) [1/s of the above]
       real(wp), allocatable :: velocity(:, :)
-      !> Mean strain rate over the last step in time: (3, n_block) [1/s]
+      !> Mean strain rate over the last dynamic step: (3, n_block) [1/s]
       real(wp), allocatable :: strain_rate(:, :)
       !> Stress sx, sy, txy: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
-      !> Stress that the blocks have without strain, in the frame that turns with the block:
-      !> (3, n_block) [Pa]
+      !> Stress at zero strain, in the frame that rotates with the block: (3, n_block) [Pa]
       real(wp), allocatable :: initial_stress(:, :)
-      !> What the bars carry from step to step; not allocated without them: (n_bar)
+      !> States of the bars; unallocated without bars: (n_bar)
       type(bar_state_t), allocatable :: bar(:)
    end type block_system_t
 
 contains
 
-   !> Blocks at rest and free of stress
+   !> Make blocks at rest and free of stress
    pure function new_block_system(first_vertex, vertex, fixed, material) result(system)
-      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      !> First vertex of each block, and one past the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
       real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n_vertex) [m]
       logical, intent(in) :: fixed(:)       !! Blocks that cannot move: (n_block)
@@ -95,7 +94,7 @@ contains
       call begin_motion(system)
    end function new_block_system
 
-   !> Give blocks that have never moved what motion changes
+   !> Allocate the arrays of the moving state, if missing
    pure subroutine begin_motion(system)
       type(block_system_t), intent(inout) :: system
       integer :: n
@@ -108,7 +107,7 @@ contains
          & source=0.0_wp)
    end subroutine begin_motion
 
-   !> Take from blocks that begin at rest and free of stress what motion changes
+   !> Deallocate the arrays of the moving state of blocks at rest and free of stress
    pure subroutine forget_rest(system)
       type(block_system_t), intent(inout) :: system
 
@@ -117,9 +116,9 @@ contains
          & system%initial_stress, system%strain_rate)
    end subroutine forget_rest
 
-   !> Hand blocks over without a copy of what is large
+   !> Move blocks without copying large arrays
    pure subroutine move_system(from, to)
-      type(block_system_t), intent(inout) :: from  !! The blocks; what is large is gone
+      type(block_system_t), intent(inout) :: from  !! The blocks; large arrays are deallocated
       type(block_system_t), intent(inout) :: to
       type(block_system_t) :: large
 
@@ -128,7 +127,7 @@ contains
       call move_large(large, to)
    end subroutine move_system
 
-   !> Move what is large
+   !> Move the large arrays
    pure subroutine move_large(from, to)
       type(block_system_t), intent(inout) :: from, to
 

@@ -10,85 +10,85 @@ module dda_boundary
    public :: constant_history, held_at_start, led_displacement, mean_over, rate_at
    public :: records_before, value_at
 
-   !> A vector given at some times, linear between them, constant before the first and after the
-   !> last of them; zero if nothing is given
+   !> A vector as a function of time: linear between the given times, constant before the first and
+   !> after the last; zero if unallocated
    type :: history_t
       real(wp), allocatable :: time(:)      !! The times, increasing: (n) [s]
       real(wp), allocatable :: value(:, :)  !! Components along x and y at these times: (2, n)
    end type history_t
 
-   !> A point of a block that is held, or led along a path
+   !> A restrained point of a block, with or without a prescribed displacement
    type :: held_point_t
       integer :: block = 0           !! Number of the block
-      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
-      logical :: along(2) = .true.   !! Whether it is held along x and along y: (2)
-      type(history_t) :: path        !! Its displacement [m]
-      integer :: line = 0            !! Line of the file that holds it, 0 if there is none
+      real(wp) :: point(2) = 0.0_wp  !! Coordinates in the reference shape: (2) [m]
+      logical :: along(2) = .true.   !! True if restrained along x and along y: (2)
+      type(history_t) :: path        !! Prescribed displacement [m]
+      integer :: line = 0            !! Line of the file, 0 if there is none
    end type held_point_t
 
-   !> A force on a point of a block; it goes with the point and keeps its direction
+   !> A force on a point of a block; it follows the point and keeps its direction
    type :: loaded_point_t
       integer :: block = 0           !! Number of the block
-      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
-      !> The force; of a live load, at a load factor of one [N per metre depth]
+      real(wp) :: point(2) = 0.0_wp  !! Coordinates in the reference shape: (2) [m]
+      !> The force; for a live load, at a load factor of one [N per metre depth]
       type(history_t) :: force
-      logical :: live = .false.  !! Whether the load factor multiplies it
+      logical :: live = .false.  !! True if it is multiplied by the load factor
    end type loaded_point_t
 
-   !> A point of a block whose motion is told
+   !> A monitoring point
    type :: measured_point_t
       integer :: block = 0           !! Number of the block
-      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp  !! Coordinates in the reference shape: (2) [m]
    end type measured_point_t
 
-   !> A force on a point of a block that may have any value from nothing to a bound, as the pressure
-   !> of fill that an arch leans against
+   !> A force on a point of a block with any value between zero and a bound, for example passive
+   !> pressure of fill on an arch
    type :: bounded_force_t
       integer :: block = 0               !! Number of the block
-      real(wp) :: point(2) = 0.0_wp      !! Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp      !! Coordinates in the reference shape: (2) [m]
       real(wp) :: direction(2) = 0.0_wp  !! Unit vector along the force: (2)
-      real(wp) :: most = huge(1.0_wp)    !! Its bound; huge without [N per metre depth]
+      real(wp) :: most = huge(1.0_wp)    !! Upper bound; huge if there is none [N per metre depth]
    end type bounded_force_t
 
-   !> A point of a face that lets waves out: a dashpot across the face and one along it
+   !> A point of an absorbing boundary: dashpots normal and tangential to the face
    type :: absorbing_point_t
       integer :: block = 0             !! Number of the block
-      real(wp) :: point(2) = 0.0_wp    !! Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp    !! Coordinates in the reference shape: (2) [m]
       real(wp) :: tangent(2) = 0.0_wp  !! Unit vector along the face: (2)
-      real(wp) :: length = 0.0_wp      !! Length of the face that it stands for [m]
-      !> Speed of waves across the face and along it; 0 for those of the block's material:
-      !> (2) [m/s]
+      real(wp) :: length = 0.0_wp      !! Tributary length of the face [m]
+      !> Wave speeds normal and tangential to the face; 0 for those of the block's
+      !> material: (2) [m/s]
       real(wp) :: speed(2) = 0.0_wp
-      logical :: along(2) = .true.  !! Whether it absorbs along x and along y: (2)
+      logical :: along(2) = .true.  !! True if it absorbs along x and along y: (2)
       integer :: line = 0           !! Line of the file
    end type absorbing_point_t
 
-   !> A block that is built or taken away
+   !> A block that is built or removed during the run
    type :: stage_change_t
-      real(wp) :: time = 0.0_wp  !! When [s]
+      real(wp) :: time = 0.0_wp  !! Time of the change [s]
       integer :: block = 0       !! Number of the block
-      logical :: adds = .false.  !! Whether it is built; otherwise it is taken away
-      integer :: line = 0        !! Line of the file that says so
+      logical :: adds = .false.  !! True if it is built, otherwise it is removed
+      integer :: line = 0        !! Line of the file
    end type stage_change_t
 
-   !> All of a scene; an array that is not allocated has no points
+   !> All actions of a scene; unallocated arrays are empty
    type :: boundary_t
-      type(held_point_t), allocatable :: held(:)            !! Held points
+      type(held_point_t), allocatable :: held(:)            !! Restrained points
       type(loaded_point_t), allocatable :: loaded(:)        !! Loaded points
-      type(measured_point_t), allocatable :: measured(:)    !! Measured points
-      type(bounded_force_t), allocatable :: bounded(:)      !! Bounded forces
+      type(measured_point_t), allocatable :: measured(:)    !! Monitoring points
+      type(bounded_force_t), allocatable :: bounded(:)      !! Forces between zero and a bound
       type(bar_t), allocatable :: bar(:)                    !! Bars between points
-      type(absorbing_point_t), allocatable :: absorbing(:)  !! Points of faces that let waves out
-      !> Blocks that are built or taken away, in the order of their times
+      type(absorbing_point_t), allocatable :: absorbing(:)  !! Points of absorbing boundaries
+      !> Blocks that are built or removed, in order of time
       type(stage_change_t), allocatable :: change(:)
-      !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks
-      !> feel its inertia
+      !> Ground acceleration [m/s2]; motions are relative to the ground, so that inertia forces act
+      !> on all blocks
       type(history_t) :: base_acceleration
    end type boundary_t
 
 contains
 
-   !> A history that is the same at all times
+   !> Make a constant history
    pure type(history_t) function constant_history(value)
       real(wp), intent(in) :: value(2)  !! Components along x and y: (2)
 
@@ -97,7 +97,7 @@ contains
       constant_history%value(:, 1) = value
    end function constant_history
 
-   !> What acts and leads at time 0, for good, on a ground at rest
+   !> The actions at time 0 as constants, without ground motion
    pure type(boundary_t) function held_at_start(boundary) result(held)
       type(boundary_t), intent(in) :: boundary
       integer :: i
@@ -116,7 +116,7 @@ contains
       end do
    end function held_at_start
 
-   !> Times at which blocks are built or taken away
+   !> Times at which blocks are built or removed
    pure function stage_times(boundary) result(time)
       type(boundary_t), intent(in) :: boundary
       real(wp), allocatable :: time(:)  !! The times, ascending, each once: (n) [s]
@@ -129,18 +129,18 @@ contains
          & > boundary%change(max(1, i - 1))%time, i=1, n)])
    end function stage_times
 
-   !> Which blocks are there after the changes of a time
+   !> Blocks present after the changes up to a given time
    pure function present_at(boundary, n_block, time) result(present)
       type(boundary_t), intent(in) :: boundary
       integer, intent(in) :: n_block  !! Number of blocks
       real(wp), intent(in) :: time    !! The time [s]
-      logical :: present(n_block)     !! Whether each is there: (n_block)
+      logical :: present(n_block)     !! True for present blocks: (n_block)
       integer :: i
 
       present = .true.
       if (.not. allocated(boundary%change)) return
       do i = size(boundary%change), 1, -1
-         ! before its first change a block is what that changes
+         ! the first change implies the state before it
          present(boundary%change(i)%block) = .not. boundary%change(i)%adds
       end do
       do i = 1, size(boundary%change)
@@ -170,20 +170,21 @@ contains
       end if
    end function value_at
 
-   !> Displacement of a led point: where its path begins is reached in the second before time zero
+   !> Prescribed displacement of a point. Its initial value is applied during the second before time
+   !> zero
    pure function led_displacement(path, time) result(displacement)
       type(history_t), intent(in) :: path
-      real(wp), intent(in) :: time  !! The time, not before that second [s]
+      real(wp), intent(in) :: time  !! The time, at least -1 [s]
       real(wp) :: displacement(2)   !! Components along x and y: (2) [m]
 
       displacement = min(1.0_wp, 1.0_wp + time)*value_at(path, max(0.0_wp, time))
    end function led_displacement
 
-   !> Mean of a history over a time, so that short pulses bring in their whole impulse
+   !> Mean of a history over an interval, so that short pulses contribute their full impulse
    pure function mean_over(history, start, finish) result(mean)
       type(history_t), intent(in) :: history
-      real(wp), intent(in) :: start   !! Beginning of the time [s]
-      real(wp), intent(in) :: finish  !! End of the time, after its beginning [s]
+      real(wp), intent(in) :: start   !! Start of the interval [s]
+      real(wp), intent(in) :: finish  !! End of the interval, after its start [s]
       real(wp) :: mean(2)             !! Components along x and y: (2)
       real(wp) :: before(2), after(2), left, right
       integer :: i
@@ -223,7 +224,7 @@ contains
          & /(history%time(i + 1) - history%time(i))
    end function rate_at
 
-   !> How many of some increasing times lie before a time
+   !> Number of increasing times before a given time
    pure integer function records_before(times, time)
       real(wp), intent(in) :: times(:)  !! The times: (n) [s]
       real(wp), intent(in) :: time

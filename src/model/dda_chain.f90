@@ -17,45 +17,44 @@ module dda_chain
    !> A joint of a chain; its force is N1 at its first corner, N2 at its second, and T along it
    type :: chain_joint_t
       real(wp) :: middle(2) = 0.0_wp   !! Its middle: (2) [m]
-      real(wp) :: tangent(2) = 0.0_wp  !! Unit vector from its first corner to its second one: (2)
+      real(wp) :: tangent(2) = 0.0_wp  !! Unit vector from its first corner to its second: (2)
       real(wp) :: half = 0.0_wp        !! Half its length [m]
       !> Stiffness of each of its three springs [N/m per metre depth]
       real(wp) :: stiffness = 0.0_wp
-      !> Compliance l/(E t) of the halves of the blocks on either side of it, l across it and t
-      !> along it, or of one half on a plane of symmetry [m2/N]
+      !> Compliance l/(E t) of the half blocks on either side, l across the joint and t along it; of
+      !> one half block on a plane of symmetry [m2/N]
       real(wp) :: compliance = 0.0_wp
       real(wp) :: friction = 0.0_wp  !! Coefficient of friction
-      logical :: no_slip = .false.   !! Whether it cannot slide
-      !> Moments of unit forces along normal and tangent at its middle about the centre of the block
-      !> before it and of the block behind it: (2, 2) [m]
+      logical :: no_slip = .false.   !! True if it cannot slide
+      !> Moments about the centres of the blocks before and after the joint, of unit forces along
+      !> its normal and tangent at its middle: (2, 2) [m]
       real(wp) :: arm(2, 2) = 0.0_wp
    end type chain_joint_t
 
-   !> Blocks from left to right; joint j is the one before block j, the last joint is behind the
-   !> last block
+   !> Blocks from left to right; joint j precedes block j, the last joint follows the last block
    type :: chain_t
-      !> Whether these are the left blocks of a row that is its own mirror image. The last joint is
-      !> then the plane of symmetry: smooth, and twice as stiff, as it opens half as wide
+      !> True for the left half of a symmetric row. The last joint is then the plane of symmetry:
+      !> frictionless, and twice as stiff, because it opens half as wide
       logical :: halved = .false.
-      !> Whether this plane runs through a block, whose left half is the last one and does not
-      !> leave it
+      !> True if this plane divides a block. Its left half is then the last block and cannot
+      !> separate from the plane
       logical :: keystone = .false.
       !> Its blocks: (n)
       type(chain_block_t), allocatable :: block(:)
       !> Its joints: (n + 1)
       type(chain_joint_t), allocatable :: joint(:)
-      !> Sum of the sizes of the loads' components [N/m]
+      !> Sum of the absolute components of the loads [N/m]
       real(wp) :: whole_load = 0.0_wp
-      !> Farthest that the middle of a joint is from the origin, along one axis [m]
+      !> Largest coordinate of the middle of a joint [m]
       real(wp) :: reach = 0.0_wp
    end type chain_t
 
 contains
 
-   !> A chain of n blocks without numbers
+   !> Prepare a chain of n blocks without values
    pure subroutine new_chain(n, chain)
       integer, intent(in) :: n  !! Number of blocks
-      !> Any chain in; where it has as many blocks its arrays stay
+      !> Arrays of the same size are reused
       type(chain_t), intent(inout) :: chain
 
       chain%halved = .false.

@@ -8,9 +8,9 @@ module dda_deformation
 
 contains
 
-   !> Matrix T that carries the six block unknowns to the displacement of a point
+   !> Matrix T that maps the six block unknowns to the displacement of a point
    pure function displacement_matrix(point, centroid) result(t)
-      real(wp), intent(in) :: point(2)     !! Where the displacement is wanted: (2) [m]
+      real(wp), intent(in) :: point(2)     !! Coordinates of the point: (2) [m]
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
       real(wp) :: t(2, 6)                  !! Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
       real(wp) :: x, y
@@ -21,13 +21,12 @@ contains
       t(2, :) = [0.0_wp, 1.0_wp, x, 0.0_wp, y, x/2.0_wp]
    end function displacement_matrix
 
-   !> Matrix T of a block that has moved and strained: the exact derivative of `moved_point`, its
-   !> strain in the directions of now. The strain acts on the arm that the point has in the block
-   !> without strain, so that the work of dead loads is linear in it and Hooke's law is that of
-   !> small strains
+   !> Matrix T of a block that has moved and strained: the exact derivative of `moved_point`, with
+   !> strains in present directions. Strains act on the arm of the point in the unstrained block, so
+   !> that the work of dead loads is linear in the strains and Hooke's law is that of small strains
    pure function tangent_matrix(place, centre, motion) result(t)
-      real(wp), intent(in) :: place(2)   !! Where the point is now: (2) [m]
-      real(wp), intent(in) :: centre(2)  !! Where the centre of gravity is now: (2) [m]
+      real(wp), intent(in) :: place(2)   !! Present coordinates of the point: (2) [m]
+      real(wp), intent(in) :: centre(2)  !! Present centre of gravity: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy in the block's own frame: (6)
       real(wp), intent(in) :: motion(6)
       !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
@@ -46,14 +45,15 @@ contains
       t(:, 4:6) = unstrained(:, 4:6)
    end function tangent_matrix
 
-   !> Where a point of a block is after a finite motion: strain in the block's own frame, then exact
-   !> rotation, then translation; built from the reference shape, so that no error adds up
+   !> Position of a point of a block after a finite motion: strain in the block's own frame, then
+   !> exact rotation, then translation. It starts from the reference shape, so that errors do not
+   !> accumulate
    pure function moved_point(point, centroid, motion) result(now)
       real(wp), intent(in) :: point(2)     !! The point in the reference shape: (2) [m]
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity in the reference shape: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy: (6) [m, m, rad, -, -, -]
       real(wp), intent(in) :: motion(6)
-      !> The point now: (2) [m]
+      !> Present coordinates of the point: (2) [m]
       real(wp) :: now(2)
       real(wp) :: arm(2), c, s
 
@@ -65,11 +65,11 @@ contains
       now = centroid + motion(1:2) + [c*arm(1) - s*arm(2), s*arm(1) + c*arm(2)]
    end function moved_point
 
-   !> Components of a symmetric tensor in a frame turned by an angle
+   !> Components of a symmetric tensor in a rotated frame
    pure function turned_tensor(tensor, angle, shear_factor) result(turned)
       real(wp), intent(in) :: tensor(3)  !! Components xx, yy, xy: (3)
       real(wp), intent(in) :: angle      !! Angle of the new frame, anticlockwise [rad]
-      !> What the third component is of the tensor's: 1 for stress, 2 for strain with gxy
+      !> Ratio of the third component to that of the tensor: 1 for stress, 2 for strain with gxy
       real(wp), intent(in) :: shear_factor
       !> Components in the new frame: (3)
       real(wp) :: turned(3)

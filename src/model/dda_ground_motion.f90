@@ -1,8 +1,8 @@
 !> Ground acceleration from velocity or displacement
 !>
-!> Accelerations are histories, linear between their times. A velocity that is linear between its
-!> times has an acceleration that jumps there; a displacement is smoothed by a cubic spline, whose
-!> second derivative is just such a history.
+!> Accelerations are histories, linear between their times. A piecewise linear velocity has an
+!> acceleration with jumps. A displacement is interpolated by a cubic spline, whose second
+!> derivative is piecewise linear.
 module dda_ground_motion
    use dda_boundary, only : history_t
    use dda_kinds, only : wp
@@ -11,14 +11,14 @@ module dda_ground_motion
 
    public :: acceleration_of_record, acceleration_of_velocity, acceleration_of_displacement
 
-   !> Length of a jump over the adjacent interval
+   !> Duration of a jump over the adjacent interval
    real(wp), parameter :: share = 1.0e-9_wp
 
 contains
 
-   !> Acceleration of a record that holds it; none before and after
+   !> Acceleration of an acceleration record; zero before and after
    pure function acceleration_of_record(record) result(acceleration)
-      type(history_t), intent(in) :: record  !! The record: two times or more [m/s2]
+      type(history_t), intent(in) :: record  !! The record, with at least two times [m/s2]
       type(history_t) :: acceleration        !! The acceleration [m/s2]
       integer :: n
 
@@ -31,9 +31,9 @@ contains
       acceleration%value(:, 2:n + 1) = record%value
    end function acceleration_of_record
 
-   !> Acceleration of a velocity that is linear between its times; none before and after
+   !> Acceleration of a velocity that is linear between its times; zero before and after
    pure function acceleration_of_velocity(velocity) result(acceleration)
-      type(history_t), intent(in) :: velocity  !! The velocity: two times or more [m/s]
+      type(history_t), intent(in) :: velocity  !! The velocity, with at least two times [m/s]
       type(history_t) :: acceleration          !! Its rate [m/s2]
       real(wp) :: length
       integer :: i, n
@@ -52,29 +52,28 @@ contains
       acceleration%time(2*n) = velocity%time(n)
    end function acceleration_of_velocity
 
-   !> Second derivative of the cubic spline through displacements, whose third derivative does not
-   !> jump at the second time and the last but one (a parabola through three points, a straight line
-   !> through two); none before the first time and after the last, where the ground goes on as fast
-   !> as it was
+   !> Second derivative of the cubic spline through displacements, with the not-a-knot condition (a
+   !> parabola for three points, a straight line for two). It is zero outside the record, where the
+   !> velocity is constant
    pure function acceleration_of_displacement(displacement) result(acceleration)
-      type(history_t), intent(in) :: displacement  !! The displacement: two times or more [m]
+      type(history_t), intent(in) :: displacement  !! The displacement, with at least two times [m]
       type(history_t) :: acceleration              !! Its second derivative [m/s2]
 
       acceleration = acceleration_of_record(history_t(displacement%time, &
          & second_derivatives(displacement%time, displacement%value)))
    end function acceleration_of_displacement
 
-   !> Length of a jump at an end of an interval: no time, but more than rounding
+   !> Duration of a jump at an end of an interval: negligible, but above round-off [s]
    pure real(wp) function jump_beside(interval)
       real(wp), intent(in) :: interval(2)  !! Beginning and end: (2) [s]
 
       jump_beside = max(share*(interval(2) - interval(1)), 4.0_wp*spacing(maxval(abs(interval))))
    end function jump_beside
 
-   !> Second derivatives of the spline at its points: a tridiagonal system for the inner ones
+   !> Second derivatives of the spline at its points, from a tridiagonal system
    pure function second_derivatives(time, value) result(second)
-      real(wp), intent(in) :: time(:)      !! Where the points are, increasing: (n)
-      real(wp), intent(in) :: value(:, :)  !! The points: (2, n)
+      real(wp), intent(in) :: time(:)      !! Times of the points, increasing: (n)
+      real(wp), intent(in) :: value(:, :)  !! Values at the points: (2, n)
       real(wp) :: second(2, size(time))    !! Second derivatives: (2, n)
       real(wp) :: length(size(time) - 1), slope(2, size(time) - 1)
       real(wp) :: diagonal(size(time)), above(size(time)), below(size(time)), ratio
@@ -96,7 +95,7 @@ contains
          second(:, [1, 3]) = spread(second(:, 2), 2, 2)
          return
       end if
-      ! the ends, as straight continuations of their neighbours, are put into the rows beside them
+      ! eliminate the ends, which continue their neighbours linearly
       ratio = length(1)/length(2)
       diagonal(2) = diagonal(2) + length(1)*(1.0_wp + ratio)
       above(2) = above(2) - length(1)*ratio

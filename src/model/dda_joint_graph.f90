@@ -1,13 +1,14 @@
 !> Joints between blocks as flat arrays on a graph: blocks are nodes, joints are edges
 !>
-!> A joint carries two normal forces N1, N2 at its corners and one shear force T; forces that push
-!> the blocks apart are positive. Its three rows are at once how it opens and slips when the blocks
-!> move, and how its forces act on them:
+!> A joint carries two normal forces N1, N2 at its corners and one shear force T; forces that
+!> separate the blocks are positive. Its three rows give both its opening and slip by block motion,
+!> and the action of its forces on the blocks:
 !>
 !>    (opening 1, opening 2, slip) = sum over both blocks of row' * motion
 !>    force on block s             = sum over k of row(:, k, s) * force(k)
 !>
-!> Nothing here knows polygons, materials or time: arches, walls, rings and slopes are one thing.
+!> The graph has no polygons, materials or time, so it is the same for arches, walls, rings and
+!> slopes.
 module dda_joint_graph
    use dda_kinds, only : wp
    implicit none
@@ -17,13 +18,13 @@ module dda_joint_graph
    public :: add_joint_forces, breaks, crushes, joint_motion, keep_joints, open_joints
    public :: push_blocks, rubs, take_over, unit_of_length
 
-   !> What a joint can carry
+   !> Kinds of joints by their admissible forces
    type :: joint_kind_enum
       integer :: contact = 1         !! Two corners: N1 >= 0, N2 >= 0, |T| <= friction*(N1 + N2)
       integer :: no_slip = 2         !! Two corners that cannot slide: N1 >= 0, N2 >= 0, any T
       integer :: corner = 3          !! One corner: N1 >= 0, |T| <= friction*N1, N2 = 0
       integer :: corner_no_slip = 4  !! One corner that cannot slide: N1 >= 0, any T, N2 = 0
-      integer :: pin = 5             !! A held point: any N1 and any T, N2 = 0
+      integer :: pin = 5             !! A restrained point: any N1 and any T, N2 = 0
       integer :: mirror = 6          !! A plane of symmetry: any N1 and N2, T = 0
    end type joint_kind_enum
 
@@ -32,36 +33,35 @@ module dda_joint_graph
 
    !> Joints of an assembly
    type :: joint_graph_t
-      !> Number of blocks that can move
+      !> Number of movable blocks
       integer :: n_block = 0
-      !> The two blocks of each joint, 0 for one that cannot move: (2, n_joint)
+      !> The two blocks of each joint, 0 for a fixed one: (2, n_joint)
       integer, allocatable :: block(:, :)
       !> Opening at corner 1, at corner 2, and slip by unit motion of each block:
       !> (3, 3, 2, n_joint) [1, 1, m]
       real(wp), allocatable :: row(:, :, :, :)
-      !> What each joint can carry, one of joint_kind: (n_joint)
+      !> Kind of each joint, one of joint_kind: (n_joint)
       integer, allocatable :: kind(:)
-      !> Coefficient of friction; 0 without: (n_joint)
+      !> Coefficient of friction; 0 if none: (n_joint)
       real(wp), allocatable :: friction(:)
       !> Length of the joint: (n_joint) [m]
       real(wp), allocatable :: length(:)
-      !> Compressive strength times length; huge where the joint does not crush; unallocated where
-      !> none does: (n_joint) [N/m]
+      !> Compressive strength times length; huge for a joint that cannot crush; unallocated if there
+      !> are no others: (n_joint) [N/m]
       real(wp), allocatable :: crush(:)
-      !> Tensile force that each corner of a whole joint carries, unallocated where none carries
-      !> any nor has cohesion: (2, n_joint) [N/m]
+      !> Tensile strength of each corner of an intact joint; unallocated if no joint has tensile
+      !> strength or cohesion: (2, n_joint) [N/m]
       real(wp), allocatable :: pull(:, :)
-      !> Cohesion times length that each corner has while it is whole; likewise: (2, n_joint) [N/m]
+      !> Cohesion times length at each corner of an intact joint; likewise: (2, n_joint) [N/m]
       real(wp), allocatable :: cohesion(:, :)
-      !> Displacement by unit force at either corner and along the joint: (n_joint) [m2/N]
+      !> Displacement per unit force at either corner and along the joint: (n_joint) [m2/N]
       real(wp), allocatable :: compliance(:)
-      !> Opening of the corners where nothing has moved, unallocated where there is none:
-      !> (2, n_joint) [m]
+      !> Initial opening of the corners, unallocated if zero: (2, n_joint) [m]
       real(wp), allocatable :: gap(:, :)
-      !> Mass and moment of inertia of each block, for motion damped by mass: (3, n_block)
+      !> Mass and moment of inertia of each block, for mass-proportional damping: (3, n_block)
       real(wp), allocatable :: mass(:, :)
-      !> Strength of bars that yield: each has a node of its own behind the blocks, on which it
-      !> pulls against that load: (n_node) [N]
+      !> Strength of yielding bars. Each has its own node after the blocks, with this
+      !> load: (n_node) [N]
       real(wp), allocatable :: bound(:)
    end type joint_graph_t
 
@@ -70,17 +70,17 @@ module dda_joint_graph
 
 contains
 
-   !> Whether a joint may slide against friction: under Coulomb friction that is another thing than
-   !> under the associated rule
+   !> True if friction can limit the shear force of a joint: only then do Coulomb friction and the
+   !> associated rule differ
    elemental logical function rubs(kind, friction)
-      integer, intent(in) :: kind       !! What the joint can carry, one of joint_kind
+      integer, intent(in) :: kind       !! Kind of the joint, one of joint_kind
       real(wp), intent(in) :: friction  !! Its coefficient of friction
 
       rubs = (kind == joint_kind%contact .or. kind == joint_kind%corner) &
          & .and. friction > 0.0_wp .and. friction < rough
    end function rubs
 
-   !> Half the mean length of the joints; one without joints
+   !> Half the mean length of the joints; 1 without joints
    pure real(wp) function unit_of_length(graph) result(unit)
       type(joint_graph_t), intent(in) :: graph
 
@@ -89,14 +89,14 @@ contains
          & /real(count(graph%length > 0.0_wp), wp)
    end function unit_of_length
 
-   !> Whether a joint has strength that it loses where it slides or opens
+   !> True if sliding or opening reduces the strength of a joint
    pure logical function breaks(graph)
       type(joint_graph_t), intent(in) :: graph
 
       breaks = allocated(graph%cohesion)
    end function breaks
 
-   !> Whether a joint may be crushed
+   !> True if a joint may be crushed
    pure logical function crushes(graph)
       type(joint_graph_t), intent(in) :: graph
 
@@ -104,9 +104,9 @@ contains
       if (crushes) crushes = any(graph%crush < huge(1.0_wp))
    end function crushes
 
-   !> Keep some of the joints
+   !> Keep selected joints
    pure subroutine keep_joints(kept, graph)
-      logical, intent(in) :: kept(:)  !! Which: (n_joint)
+      logical, intent(in) :: kept(:)  !! True for joints to keep: (n_joint)
       type(joint_graph_t), intent(inout) :: graph
       integer :: k(count(kept)), j
 
@@ -124,7 +124,7 @@ contains
       graph%cohesion = graph%cohesion(:, k)
    end subroutine keep_joints
 
-   !> Take the joints of a graph over: what is left of it tells of kinds and of blocks alone
+   !> Move the joints of a graph; the source keeps only kinds, bounds and the number of blocks
    pure subroutine take_over(from, to)
       type(joint_graph_t), intent(inout) :: from
       type(joint_graph_t), intent(out) :: to
@@ -154,15 +154,15 @@ contains
       call open_joints(size(graph%block, 2), graph%block, graph%row, motion, opening)
    end subroutine joint_motion
 
-   !> The same of some joints. Arrays are explicit here and below, for loops that the compiler
-   !> unrolls
+   !> The same for arrays of explicit shape, here and below, which lets the compiler unroll the
+   !> loops
    pure subroutine open_joints(n_joint, block, row, motion, opening)
       integer, intent(in) :: n_joint            !! Number of joints
-      integer, intent(in) :: block(2, n_joint)  !! Their blocks
-      !> Opening and slip by unit motion of each block
+      integer, intent(in) :: block(2, n_joint)  !! Blocks of each joint: (2, n_joint)
+      !> Opening and slip by unit motion of each block: (3, 3, 2, n_joint)
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
       real(wp), intent(in), contiguous :: motion(:, :)  !! Motion of the blocks: (3, n_block)
-      real(wp), intent(out) :: opening(3, n_joint)      !! Opening 1, opening 2, slip
+      real(wp), intent(out) :: opening(3, n_joint)      !! Opening 1, opening 2, slip: (3, n_joint)
       real(wp) :: x(3), y(3)
       integer :: b, j, k, side
 
@@ -182,18 +182,18 @@ contains
       end do
    end subroutine open_joints
 
-   !> Add what joint forces do to the blocks
+   !> Add the action of joint forces on the blocks
    pure subroutine add_joint_forces(graph, force, load)
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in), contiguous :: force(:, :)
-      !> Forces on the blocks, to which theirs are added: (3, n_block) [N/m, N/m, N]
+      !> Forces on the blocks, incremented here: (3, n_block) [N/m, N/m, N]
       real(wp), intent(inout), contiguous :: load(:, :)
 
       call push_blocks(size(graph%block, 2), graph%block, graph%row, force, load)
    end subroutine add_joint_forces
 
-   !> The same of some joints
+   !> The same for arrays of explicit shape
    pure subroutine push_blocks(n_joint, block, row, force, load)
       integer, intent(in) :: n_joint, block(2, n_joint)
       real(wp), intent(in) :: row(3, 3, 2, n_joint)

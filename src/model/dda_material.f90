@@ -7,28 +7,28 @@ module dda_material
    public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
    public :: breaks_at_once, friction_left, loses_strength, weakens
 
-   !> What a block is made of
+   !> Material properties of a block
    type :: material_t
       real(wp) :: density = 2240.0_wp  !! Mass per volume [kg/m3]
       real(wp) :: young = 5.0e9_wp     !! Young's modulus [Pa]
       real(wp) :: poisson = 0.2_wp     !! Poisson's ratio
-      !> Compressive strength; huge where it is never crushed [Pa]
+      !> Compressive strength; huge if unlimited [Pa]
       real(wp) :: strength = huge(1.0_wp)
-      logical :: plane_strain = .false.  !! Plane strain instead of plane stress
+      logical :: plane_strain = .false.  !! True for plane strain, otherwise plane stress
    end type material_t
 
    !> Mohr-Coulomb law of a joint: -N <= tension*length, |T| <= cohesion*length + friction*N
    type :: joint_law_t
       real(wp) :: friction = 0.0_wp  !! Coefficient of friction tan(phi)
-      logical :: no_slip = .false.   !! The joint cannot slide
+      logical :: no_slip = .false.   !! True if the joint cannot slide
       real(wp) :: cohesion = 0.0_wp  !! Cohesion [Pa]
       real(wp) :: tension = 0.0_wp   !! Tensile strength [Pa]
-      !> Coefficient of friction of a joint that has slid or parted; huge where it stays as it was
+      !> Coefficient of friction after sliding or opening; huge if unchanged
       real(wp) :: residual = huge(1.0_wp)
-      !> Slip over which cohesion, tensile strength and friction go to what remains of them; 0 where
-      !> the first slip takes all [m]
+      !> Slip over which cohesion, tensile strength and friction drop to their residual values; 0
+      !> for a sudden drop [m]
       real(wp) :: slip_length = 0.0_wp
-      !> Compressive strength of the weaker of the two blocks; huge where none is crushed [Pa]
+      !> Compressive strength of the weaker of the two blocks; huge if unlimited [Pa]
       real(wp) :: strength = huge(1.0_wp)
    end type joint_law_t
 
@@ -54,21 +54,21 @@ contains
       d(3, 3) = young/(2.0_wp*(1.0_wp + poisson))
    end function elasticity_matrix
 
-   !> Whether a joint that slides or parts is weaker afterwards
+   !> True if sliding or opening weakens a joint
    elemental logical function loses_strength(law)
       type(joint_law_t), intent(in) :: law
 
       loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp .or. weakens(law)
    end function loses_strength
 
-   !> Whether a joint that has slid has less friction
+   !> True if sliding reduces the friction of a joint
    elemental logical function weakens(law)
       type(joint_law_t), intent(in) :: law
 
       weakens = law%residual < law%friction
    end function weakens
 
-   !> Whether the first slip takes all strength that a joint can lose, but for its friction
+   !> True if all strength other than friction is lost at the first slip
    elemental logical function breaks_at_once(law)
       type(joint_law_t), intent(in) :: law
 
@@ -76,15 +76,15 @@ contains
          & .or. law%strength < huge(1.0_wp))
    end function breaks_at_once
 
-   !> Coefficient of friction of a joint that has lost some of its strength
+   !> Coefficient of friction of a joint with partly lost strength
    elemental real(wp) function friction_left(law, intact)
       type(joint_law_t), intent(in) :: law
-      real(wp), intent(in) :: intact  !! Share of the strength that is left
+      real(wp), intent(in) :: intact  !! Remaining share of the strength
 
       friction_left = law%friction - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
    end function friction_left
 
-   !> Coefficient of friction of a friction angle
+   !> Coefficient of friction from the friction angle
    elemental function friction_coefficient(friction_deg) result(coefficient)
       real(wp), intent(in) :: friction_deg  !! Angle of friction, 0 <= angle < 90 [deg]
       real(wp) :: coefficient               !! tan(phi)

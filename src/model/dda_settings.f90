@@ -1,4 +1,4 @@
-!> Settings of a run, and its possible ends
+!> Settings and verdicts of a run
 module dda_settings
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_kinds, only : wp
@@ -8,10 +8,10 @@ module dda_settings
    public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
    public :: contact_tolerance, factor_of, full_push, verdict
 
-   !> How a sliding joint moves
+   !> Flow rules of sliding joints
    type :: flow_rule_enum
-      !> Along the normal of its friction cone: sliding opens the joint. Convex; no structure that
-      !> falls under this rule can stand under any other
+      !> Along the normal of the friction cone: sliding opens the joint. Convex; a structure that
+      !> collapses under this rule collapses under any other
       integer :: associated = 1
       integer :: coulomb = 2  !! Along the joint: Coulomb friction without dilatancy
    end type flow_rule_enum
@@ -19,13 +19,13 @@ module dda_settings
    !> Names of the flow rules
    type(flow_rule_enum), parameter :: flow_rule = flow_rule_enum()
 
-   !> Answers of an analysis
+   !> Verdicts of an analysis
    type :: verdict_enum
       integer :: undecided = 0  !! Not known
       integer :: stable = 1     !! At rest under the full load
-      integer :: collapsed = 2  !! A mechanism that gains speed without end
+      integer :: collapsed = 2  !! A mechanism that accelerates without end
       integer :: completed = 3  !! A dynamic run that reached its end
-      integer :: found = 4      !! A search that closed its bracket
+      integer :: found = 4      !! A search with a closed bracket
    end type verdict_enum
 
    !> Names of the verdicts
@@ -34,66 +34,66 @@ module dda_settings
    !> Gap within which blocks touch, over the size of the smaller one
    real(wp), parameter :: contact_tolerance = 1.0e-4_wp
 
-   !> Settings of an analysis; never changed while it runs
+   !> Settings of an analysis; constant during a run
    type :: settings_t
-      !> Velocities are kept from step to step; otherwise every step starts at rest
+      !> True to keep velocities from step to step; otherwise each step starts at rest
       logical :: dynamic = .false.
-      !> Blocks move and contacts follow them; otherwise all is taken from the undeformed shape
+      !> True for current geometry: contacts follow the blocks; otherwise reference geometry
       logical :: current = .false.
       !> Unknowns of a block: 6, or 3 for rigid blocks
       integer :: n_dof = 6
-      !> Sliding of the joints in a run, one of flow_rule
+      !> Flow rule of the run, one of flow_rule
       integer :: flow = 1
-      !> Sliding of the joints that a verdict is of, one of flow_rule
+      !> Flow rule of the verdict, one of flow_rule
       integer :: verdict_flow = 2
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp) :: penalty_ratio = 100.0_wp
-      !> Most steps of a run
+      !> Maximum number of steps
       integer :: max_steps = 400
-      !> Most changes of state in one step before Newton's method takes over
+      !> Maximum number of state changes in one step before Newton's method is used
       integer :: max_changes = 400
-      !> Length of the first static step or of every dynamic one; 0 to choose it [s]
+      !> Length of the first static step or of every dynamic step; 0 for automatic [s]
       real(wp) :: time_step = 0.0_wp
-      !> Speed after an impact over that before it, where blocks move in time
+      !> Speed after an impact over speed before it, in dynamic runs
       real(wp) :: restitution = 0.0_wp
-      !> Rate at which velocities decay by damping in proportion to mass [1/s]
+      !> Decay rate of velocities by mass-proportional damping [1/s]
       real(wp) :: damping = 0.0_wp
-      !> Whether a dynamic run begins with the forces of a static one
+      !> True if a dynamic run starts from the forces of a static one
       logical :: settles = .false.
-      !> Time at which a dynamic run ends; 0 to end with its last step [s]
+      !> Time at the end of a dynamic run; 0 to end after max_steps [s]
       real(wp) :: duration = 0.0_wp
-      !> Time of the histories at which this stage of a run begins [s]
+      !> Time of the histories at the start of this stage [s]
       real(wp) :: from = 0.0_wp
-      !> Time at which it ends [s]
+      !> Time at the end of this stage [s]
       real(wp) :: until = huge(1.0_wp)
       !> Largest motion of a corner in a step over the size of the smallest block
       real(wp) :: max_displacement_ratio = 0.05_wp
-      !> Motion of a corner that means collapse; 0 for a test without a length [m]
+      !> Displacement of a corner that means collapse; 0 for a test without a length [m]
       real(wp) :: collapse_displacement = 0.0_wp
-      !> Rotation of a block that means collapse in a dynamic run; 0 for none [rad]
+      !> Rotation of a block that means collapse in a dynamic run; 0 for no such test [rad]
       real(wp) :: collapse_rotation = 0.0_wp
-      !> Measured point whose displacement means collapse then; 0 for any corner
+      !> Monitoring point of the collapse displacement in a dynamic run; 0 for any corner
       integer :: collapse_point = 0
-      !> Angle of gravity from upright, to the right [rad]
+      !> Angle of gravity from the vertical, to the right [rad]
       real(wp) :: tilt = 0.0_wp
-      !> Horizontal force over the weight, to the right; where it is live, at a load factor of one
+      !> Horizontal force over the weight, to the right; if live, at a load factor of one
       real(wp) :: push = 0.0_wp
-      !> Whether the load factor multiplies it
+      !> True if it is multiplied by the load factor
       logical :: live_push = .false.
-      !> What live loads are multiplied by
+      !> Factor of live loads
       real(wp) :: load_factor = 1.0_wp
-      !> Held, loaded and measured points, and the motion of the ground
+      !> Actions on points and ground motion
       type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
       real(wp) :: rest_tolerance = 1.0e-11_wp
-      !> Whether the condition number of the last equations is wanted
+      !> True to compute the condition number of the last equations
       logical :: tells_condition = .false.
    end type settings_t
 
 contains
 
-   !> Body force per unit of weight. The four main directions of gravity are free of rounding, so
-   !> that what is symmetric stays so
+   !> Body force per unit weight. Vertical and horizontal gravity have no round-off, which preserves
+   !> symmetry
    pure function load_direction(settings) result(direction)
       type(settings_t), intent(in) :: settings
       real(wp) :: direction(2)  !! Components to the right and up: (2)
@@ -102,7 +102,7 @@ contains
       direction(1) = direction(1) + full_push(settings)
    end function load_direction
 
-   !> Horizontal force over the weight, the load factor in it where it is live
+   !> Horizontal force over the weight, including the load factor if live
    pure real(wp) function full_push(settings)
       type(settings_t), intent(in) :: settings
 
@@ -110,7 +110,7 @@ contains
       if (settings%live_push) full_push = settings%load_factor*settings%push
    end function full_push
 
-   !> What the force on a point is multiplied by
+   !> Factor of the force on a point
    pure real(wp) function factor_of(settings, loaded)
       type(settings_t), intent(in) :: settings
       type(loaded_point_t), intent(in) :: loaded
@@ -118,7 +118,7 @@ contains
       factor_of = merge(settings%load_factor, 1.0_wp, loaded%live)
    end function factor_of
 
-   !> Direction of gravity that is turned from upright
+   !> Direction of gravity at a tilt
    pure function gravity_direction(tilt) result(direction)
       real(wp), intent(in) :: tilt  !! Angle to the right [rad]
       real(wp) :: direction(2)      !! Unit vector: (2)

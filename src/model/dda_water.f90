@@ -1,7 +1,7 @@
 !> Water below a piezometric line: its pressure on the edges of blocks
 !>
-!> The pressure at a point is the weight of the water up to the line above it; no seepage is
-!> computed. Forces at both ends of an edge stand for it, as they do the same work on any motion
+!> The pressure at a point is the weight of the water between it and the line above; seepage is not
+!> computed. It is applied as forces at both ends of an edge, which do the same work for any motion
 !> with constant strain.
 module dda_water
    use dda_kinds, only : wp
@@ -10,30 +10,29 @@ module dda_water
 
    public :: edge_forces, water_t
 
-   !> A line of heads
+   !> A piezometric line
    type :: water_t
-      real(wp), allocatable :: x(:)        !! Places along x, ascending: (n) [m]
-      real(wp), allocatable :: head(:)     !! Height of the heads there: (n) [m]
+      real(wp), allocatable :: x(:)        !! Abscissae, ascending: (n) [m]
+      real(wp), allocatable :: head(:)     !! Height of the line there: (n) [m]
       real(wp) :: unit_weight = 9810.0_wp  !! Weight per volume [N/m3]
-      real(wp) :: factor = 1.0_wp          !! What the pressure in joints is multiplied by
-      !> Times at which the line has risen, ascending; always as it is where there are none:
-      !> (n_time) [s]
+      real(wp) :: factor = 1.0_wp          !! Factor of the pressure in joints
+      !> Times of the rises, ascending; unallocated or empty for a constant line: (n_time) [s]
       real(wp), allocatable :: time(:)
-      real(wp), allocatable :: rise(:)  !! By how much it has risen then: (n_time) [m]
+      real(wp), allocatable :: rise(:)  !! Rise of the line at these times: (n_time) [m]
       integer :: line = 0               !! Line of the file
    end type water_t
 
-   !> Distance below which positions coincide, over the piezometric line
+   !> Distance below which positions coincide, over the length of the piezometric line
    real(wp), parameter :: touching = 1.0e-12_wp
 
 contains
 
-   !> Forces at both ends of a part of an edge whose block lies on its left
+   !> Pressure forces at both ends of a part of an edge, with the block on its left
    pure function edge_forces(water, rise, part) result(force)
       type(water_t), intent(in) :: water
-      real(wp), intent(in) :: rise     !! By how much the line of heads has risen [m]
-      real(wp), intent(in) :: part(4)  !! Its ends: (4) [m]
-      real(wp) :: force(2, 2)          !! At its start and at its end: (2, 2) [N/m]
+      real(wp), intent(in) :: rise     !! Rise of the piezometric line [m]
+      real(wp), intent(in) :: part(4)  !! Ends of the part: (4) [m]
+      real(wp) :: force(2, 2)          !! Forces at its start and at its end: (2, 2) [N/m]
       real(wp) :: low, high, share(2), way, reach
       integer :: k
 
@@ -51,7 +50,7 @@ contains
             share = ([high, low] - part(1))/way
          else if (part(1) <= low - merge(reach, 0.0_wp, k == 2) &
             & .or. part(1) > high + merge(reach, 0.0_wp, k == size(water%x))) then
-            ! an upright edge at a corner of the line belongs to the leg before it
+            ! a vertical edge at a point of the line belongs to the segment before it
             cycle
          end if
          share = [max(0.0_wp, share(1)), min(1.0_wp, share(2))]
@@ -59,13 +58,14 @@ contains
       end do
    end function edge_forces
 
-   !> Add the pressure below one leg of the line of heads
+   !> Add the pressure below one segment of the piezometric line
    pure subroutine add_leg(water, rise, part, leg, share, force)
       type(water_t), intent(in) :: water
       real(wp), intent(in) :: rise
       real(wp), intent(in) :: part(4)         !! Ends of the part of the edge: (4) [m]
-      integer, intent(in) :: leg              !! Number of the place at which the leg ends
-      real(wp), intent(in) :: share(2)        !! Where it begins and ends along the part: (2)
+      integer, intent(in) :: leg              !! Number of the point at the end of the segment
+      real(wp), intent(in) :: share(2)        !! Start and end of the segment along the part, as
+                                              !! shares: (2)
       real(wp), intent(inout) :: force(2, 2)  !! Receives the forces at both ends: (2, 2) [N/m]
       real(wp) :: depth(2), s(2), place(2), inward(2), at, pressure, weight
       integer :: i
@@ -80,7 +80,7 @@ contains
       if (depth(1) < 0.0_wp) s(1) = share(1) + (share(2) - share(1))*depth(1)/(depth(1) - depth(2))
       if (depth(2) < 0.0_wp) s(2) = share(1) + (share(2) - share(1))*depth(1)/(depth(1) - depth(2))
       inward = [part(2) - part(4), part(3) - part(1)]
-      ! Simpson's rule is exact: pressure times share is a parabola
+      ! Simpson's rule is exact: pressure times share is quadratic
       do i = 0, 2
          at = s(1) + 0.5_wp*real(i, wp)*(s(2) - s(1))
          pressure = max(0.0_wp, depth(1) + (depth(2) - depth(1))*(at - share(1)) &
