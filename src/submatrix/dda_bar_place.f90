@@ -12,12 +12,12 @@ module dda_bar_place
 
 contains
 
-   !> Elongation of a bar, or of a bolt, by the unknowns of the blocks at its ends where they are
+   !> Elongation of a bar or bolt by the unknowns of the blocks at its ends
    pure function bar_rows(point, block, centroid) result(row)
-      real(wp), intent(in) :: point(2, 2)     !! Its ends: (2, 2) [m]
+      real(wp), intent(in) :: point(2, 2)     !! Ends: (2, 2) [m]
       integer, intent(in) :: block(2)         !! The blocks, 0 for the ground: (2)
       real(wp), intent(in) :: centroid(:, :)  !! Centres of all blocks: (2, n_block) [m]
-      real(wp) :: row(6, 2)                   !! For both ends: (6, 2)
+      real(wp) :: row(6, 2)                   !! Rows for both ends: (6, 2)
       integer :: side
 
       row = 0.0_wp
@@ -31,12 +31,12 @@ contains
    !> Rows and elongation of one bar
    pure subroutine place_bar(system, current, bar, row, elongation, inverse_length)
       type(block_system_t), intent(in) :: system
-      logical, intent(in) :: current  !! Whether the bar goes with the blocks
+      logical, intent(in) :: current  !! True in current geometry
       type(bar_t), intent(in) :: bar
       !> Rows along and across, for both blocks: (n_dof, 2, 2)
       real(wp), intent(out) :: row(:, :, :)
-      real(wp), intent(out) :: elongation  !! How much longer it is than at the beginning [m]
-      !> One over its length where it turns with the blocks, else 0 [1/m]
+      real(wp), intent(out) :: elongation  !! Elongation since the start of the run [m]
+      !> One over its length in current geometry, else 0 [1/m]
       real(wp), intent(out) :: inverse_length
       real(wp) :: t(2, 6, 2), place(2, 2), axis(2), before(2), moved(2)
       integer :: side
@@ -64,7 +64,7 @@ contains
       elongation = dot_product(axis, moved)
       inverse_length = 0.0_wp
       if (current) then
-         ! the difference of the squares of two lengths keeps its digits where they are near
+         ! the difference of squared lengths avoids cancellation for nearly equal lengths
          moved = place(:, 1) - place(:, 2) - before
          elongation = dot_product(moved, place(:, 1) - place(:, 2) + before) &
             & /(norm2(place(:, 1) - place(:, 2)) + norm2(before))

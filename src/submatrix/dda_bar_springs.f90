@@ -1,8 +1,8 @@
 !> Bars as springs between two points: stiffness s E E', coupling -s E G', tension on both ends
 !>
-!> E and G are the unit vector of the bar as the unknowns of its two blocks see it. A bar whose
-!> force is bounded by nothing and by its strength is elastic, slack or yielding; in time its mean
-!> force over a step acts, so that an elastic one keeps its energy.
+!> E and G are the rows of the bar's elongation for the unknowns of its two blocks. A bar with a
+!> force between zero and its strength is elastic, slack or yielding. In dynamic runs its mean force
+!> over a step acts, which conserves the energy of an elastic bar.
 module dda_bar_springs
    use dda_bar, only : bar_condition
    use dda_bar_place, only : place_bar
@@ -18,29 +18,29 @@ module dda_bar_springs
 
    !> Springs of all bars in a step; the first of two rows is along a bar, the second across it
    type :: bar_springs_t
-      !> Equations of the blocks at both ends, 0 for what cannot move: (2, n)
+      !> Equations of the blocks at both ends, 0 for fixed ones: (2, n)
       integer, allocatable :: equation(:, :)
-      !> Entry of the matrix that couples them, 0 if one cannot move: (n)
+      !> Entry of the matrix that couples them, 0 if one is fixed: (n)
       integer, allocatable :: entry(:)
-      !> Elongation and turn by the unknowns of both blocks: (n_dof, 2, 2, n)
+      !> Elongation and rotation by the unknowns of both blocks: (n_dof, 2, 2, n)
       real(wp), allocatable :: row(:, :, :, :)
       !> Stiffness along and across: (2, n) [N/m]
       real(wp), allocatable :: stiffness(:, :)
-      !> Force that the bar would have at the beginning of the step without bounds: (n) [N]
+      !> Force at the beginning of the step without bounds: (n) [N]
       real(wp), allocatable :: trial(:)
       !> Force at the beginning: (n) [N]
       real(wp), allocatable :: force(:)
-      !> Least and largest force: (2, n) [N]
+      !> Smallest and largest force: (2, n) [N]
       real(wp), allocatable :: bound(:, :)
       !> One of bar_condition: (n)
       integer, allocatable :: condition(:)
-      !> Share of the force at the end in that which acts: 1/2 in time, else 1
+      !> Weight of the force at the end of the step: 1/2 in dynamic runs, else 1
       real(wp) :: share = 1.0_wp
    end type bar_springs_t
 
 contains
 
-   !> Springs of all bars, not yet placed
+   !> Springs of all bars, without positions
    pure type(bar_springs_t) function new_bar_springs(boundary, equation, n_dof) result(bars)
       type(boundary_t), intent(in) :: boundary
       integer, intent(in) :: equation(:)  !! Equation of each block, 0 for a fixed one: (n_block)
@@ -62,7 +62,7 @@ contains
       end do
    end function new_bar_springs
 
-   !> Place the bars where the blocks are
+   !> Place the bars between the present blocks
    pure subroutine follow_bars(system, settings, bars)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
@@ -87,10 +87,10 @@ contains
       end do
    end subroutine follow_bars
 
-   !> What a bar does at a trial force
+   !> Condition of a bar at a trial force
    pure integer function condition_of(trial, bound)
       real(wp), intent(in) :: trial     !! Force without bounds [N]
-      real(wp), intent(in) :: bound(2)  !! Least and largest force: (2) [N]
+      real(wp), intent(in) :: bound(2)  !! Smallest and largest force: (2) [N]
 
       condition_of = bar_condition%elastic
       if (trial < bound(1)) condition_of = bar_condition%slack
@@ -98,17 +98,17 @@ contains
       if (.not. bound(2) > bound(1)) condition_of = bar_condition%slack
    end function condition_of
 
-   !> Stiffness of a bar that acts in this step, along and across
+   !> Stiffness of a bar in this step, along and across
    pure function acting(bars, i) result(stiffness)
       type(bar_springs_t), intent(in) :: bars
       integer, intent(in) :: i  !! Number of the bar
-      real(wp) :: stiffness(2)  !! (2) [N/m]
+      real(wp) :: stiffness(2)  !! Stiffness along and across: (2) [N/m]
 
       stiffness = bars%share*bars%stiffness(:, i)
       if (bars%condition(i) /= bar_condition%elastic) stiffness(1) = 0.0_wp
    end function acting
 
-   !> Force of a bar that acts in this step before anything moves
+   !> Force of a bar in this step without motion
    pure real(wp) function acting_force(bars, i) result(force)
       type(bar_springs_t), intent(in) :: bars
       integer, intent(in) :: i
@@ -124,10 +124,10 @@ contains
       force = bars%share*force + (1.0_wp - bars%share)*bars%force(i)
    end function acting_force
 
-   !> Add the bars to matrix and load of the blocks, or take them away
+   !> Add the bars to the matrix and load of the blocks, or subtract them
    pure subroutine add_bars(bars, sign, matrix, load)
       type(bar_springs_t), intent(in) :: bars
-      real(wp), intent(in) :: sign  !! 1 to add, -1 to take away
+      real(wp), intent(in) :: sign  !! 1 to add, -1 to subtract
       !> Stiffness of the blocks: (n_dof, n_dof, n_equation)
       real(wp), intent(inout) :: matrix(:, :, :)
       real(wp), intent(inout) :: load(:, :)  !! Loads: (n_dof, n_equation)
@@ -150,12 +150,12 @@ contains
       end do
    end subroutine add_bars
 
-   !> Stiffness between the blocks of the bars
+   !> Coupling stiffness between the blocks of the bars
    pure subroutine couple_bars(bars, pair, are_stiff, coupling)
       type(bar_springs_t), intent(in) :: bars
       !> Blocks of each entry of the matrix, in the order of its rows and columns: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      !> Whether they are; otherwise they are taken away
+      !> False to set the couplings to zero
       logical, intent(in) :: are_stiff
       !> Couplings: (n_dof, n_dof, n_entry)
       real(wp), intent(inout) :: coupling(:, :, :)
@@ -178,10 +178,10 @@ contains
       end do
    end subroutine couple_bars
 
-   !> What the couplings of the bars make of a motion
+   !> Product of the couplings of the bars and a motion
    pure function bar_motion(bars, motion) result(force)
       type(bar_springs_t), intent(in) :: bars
-      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (n_dof, n_equation)
       !> Coupling times motion: (n_dof, n_equation)
       real(wp) :: force(size(motion, 1), size(motion, 2))
       real(wp) :: stiffness(2)
@@ -216,12 +216,12 @@ contains
       end do
    end function elongation_by
 
-   !> Change the conditions of bars that a motion does not agree with
+   !> Update the conditions of bars that contradict a motion
    pure subroutine judge_bars(bars, motion, one_by_one, agreed)
       type(bar_springs_t), intent(inout) :: bars
       real(wp), intent(in) :: motion(:, :)
-      logical, intent(in) :: one_by_one  !! Whether only the bar that is farthest off changes
-      logical, intent(out) :: agreed     !! Whether all agreed
+      logical, intent(in) :: one_by_one  !! True to change only the bar with the largest difference
+      logical, intent(out) :: agreed     !! True if no condition contradicts the motion
       real(wp) :: off(size(bars%trial)), trial
       integer :: i, wanted(size(bars%trial))
 
@@ -232,7 +232,7 @@ contains
          if (wanted(i) /= bars%condition(i)) &
             & off(i) = max(tiny(trial), min(abs(trial - bars%bound(1, i)), &
             & abs(trial - bars%bound(2, i))))
-         ! what is off by rounding stays as it is
+         ! ignore differences by round-off
          if (off(i) <= 1.0e-13_wp*(abs(bars%trial(i)) + abs(trial))) off(i) = 0.0_wp
       end do
       agreed = .not. any(off > 0.0_wp)
@@ -240,7 +240,7 @@ contains
       where (off > 0.0_wp .and. (.not. one_by_one .or. off >= maxval(off))) bars%condition = wanted
    end subroutine judge_bars
 
-   !> What an accepted step leaves of the bars
+   !> Update the states of the bars after an accepted step
    pure subroutine keep_bars(bars, settings, motion, system)
       type(bar_springs_t), intent(in) :: bars
       type(settings_t), intent(in) :: settings
@@ -264,7 +264,7 @@ contains
       end do
    end subroutine keep_bars
 
-   !> How much the softest bar gives to a force
+   !> Largest elongation of any bar under a force
    pure real(wp) function longest_give(bars, force)
       type(bar_springs_t), intent(in) :: bars
       real(wp), intent(in) :: force  !! The force [N]
@@ -277,11 +277,11 @@ contains
       end do
    end function longest_give
 
-   !> Energy that elastic bars take in during a step, and work that the forces of others do
+   !> Energy stored in elastic bars during a step, and work of the other bars
    pure function bar_energies(bars, motion) result(energy)
       type(bar_springs_t), intent(in) :: bars
       real(wp), intent(in) :: motion(:, :)
-      real(wp) :: energy(2)  !! Stored, spent: (2) [J/m]
+      real(wp) :: energy(2)  !! Stored energy, work: (2) [J/m]
       real(wp) :: longer, stiffness(2)
       integer :: i
 

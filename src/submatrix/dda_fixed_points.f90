@@ -1,7 +1,8 @@
 !> Fixed points and prescribed displacements: stiff springs (Shi: df12)
 !>
-!> A spring pulls its point to where it ought to be at the end of the step, with the force that it
-!> had before; what it lacks is added until nothing changes, so that its stiffness leaves no trace.
+!> The springs pull the points to their target positions at the end of the step, with the force of
+!> the previous step as initial value. Force corrections are repeated until convergence, so that the
+!> result does not depend on the stiffness.
 module dda_fixed_points
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t, led_displacement, rate_at
@@ -15,7 +16,7 @@ module dda_fixed_points
    public :: fixed_points_t, new_fixed_points, follow_fixed_points, add_fixed_springs
    public :: correct_fixed_forces, turn_fixed_row, hold_rigidly
 
-   !> Least stiffness of a restraint over the inertia 2m/dt**2 of its block
+   !> Smallest stiffness of a restraint over the inertia 2m/dt**2 of its block
    real(wp), parameter :: over_inertia = 1.0e3_wp
 
    !> Remainder below which a column is dependent, over the largest
@@ -24,26 +25,26 @@ module dda_fixed_points
    !> Relative round-off of the sums of a motion
    real(wp), parameter :: rounded = 16.0_wp*epsilon(1.0_wp)
 
-   !> One spring for each direction in which a point of a movable block is held
+   !> One spring per restrained direction of a point of a movable block
    type :: fixed_points_t
-      integer, allocatable :: point(:)     !! Number of the held point: (n)
+      integer, allocatable :: point(:)     !! Number of the restrained point: (n)
       integer, allocatable :: axis(:)      !! Direction, 1 or 2 for x or y: (n)
       integer, allocatable :: equation(:)  !! Equation of its block: (n)
-      !> What the spring sees of the block's unknowns: (n_dof, n)
+      !> Displacement of the point along the axis by the block's unknowns: (n_dof, n)
       real(wp), allocatable :: row(:, :)
       !> Stiffness: (n) [N/m per metre depth]
       real(wp), allocatable :: stiffness(:)
-      real(wp), allocatable :: target(:)  !! How far the point must go in the step: (n) [m]
-      real(wp), allocatable :: rate(:)    !! How fast it must be at the end of the step: (n) [m/s]
+      real(wp), allocatable :: target(:)  !! Target displacement in the step: (n) [m]
+      real(wp), allocatable :: rate(:)    !! Target velocity at the end of the step: (n) [m/s]
       real(wp), allocatable :: force(:)   !! Force of the spring: (n) [N/m]
    end type fixed_points_t
 
 contains
 
-   !> Springs of all held points, free of force
+   !> Springs of all restrained points, free of force
    pure type(fixed_points_t) function new_fixed_points(system, held, n_dof) result(fixed)
       type(block_system_t), intent(in) :: system
-      type(held_point_t), intent(in) :: held(:)  !! The held points
+      type(held_point_t), intent(in) :: held(:)  !! The restrained points
       integer, intent(in) :: n_dof               !! Unknowns of a block
       integer :: axis, h, n, number(2*size(held)), direction(2*size(held))
 
@@ -65,11 +66,12 @@ contains
       fixed%equation = [(system%equation(held(number(h))%block), h=1, n)]
    end function new_fixed_points
 
-   !> Rows and targets for one step from where the blocks are
+   !> Rows and targets of a step from the present position of the blocks
    pure subroutine follow_fixed_points(system, settings, time, dt, fixed)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: time                  !! Time of the paths at the end of the step [s]
+      real(wp), intent(in) :: time                  !! Time of the prescribed displacements at the
+                                                    !! end of the step [s]
       real(wp), intent(in) :: dt                    !! Length of the step [s]
       type(fixed_points_t), intent(inout) :: fixed  !! The springs; forces are kept
       real(wp) :: t(2, 6), place(2), centre(2), path(2), rate(2)
@@ -100,7 +102,7 @@ contains
    !> Add the springs to matrix and load of the blocks
    pure subroutine add_fixed_springs(fixed, target, matrix, load)
       type(fixed_points_t), intent(in) :: fixed
-      real(wp), intent(in) :: target(:)  !! How far the points must go: (n) [m]
+      real(wp), intent(in) :: target(:)  !! Target displacements: (n) [m]
       !> Receives the stiffness: (n_dof, n_dof, n_equation)
       real(wp), intent(inout) :: matrix(:, :, :)
       real(wp), intent(inout) :: load(:, :)  !! Receives the forces: (n_dof, n_equation)
@@ -116,9 +118,9 @@ contains
       end do
    end subroutine add_fixed_springs
 
-   !> Take back the last half of the force that held a point in the motion: it acts where the point
-   !> is at the end. With all of it along the old row a pendulum would gain energy (Andersen 1983,
-   !> J. Comput. Phys. 52:24)
+   !> Remove the second half of the restraint force from the load of a step: it acts at the end
+   !> position of the point. With the whole force along the initial row a pendulum would gain energy
+   !> (Andersen 1983, J. Comput. Phys. 52:24)
    pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
       type(block_system_t), intent(in) :: system  !! The blocks before the step
       type(settings_t), intent(in) :: settings
@@ -141,11 +143,11 @@ contains
       fixed%row(:3, i) = t(fixed%axis(i), :3)
    end subroutine turn_fixed_row
 
-   !> Let the points of a block without strain rate ask for no more than it can do: of the rates of
-   !> a rigid block those nearest to what was asked for
+   !> Reduce the target rates of the points of a block without strain rate to those of a rigid
+   !> block, by least squares
    pure subroutine hold_rigidly(equation, fixed)
       integer, intent(in) :: equation  !! Equation of the block
-      !> The springs; rows and rates of the block's are changed
+      !> The springs; rows and rates of this block are changed
       type(fixed_points_t), intent(inout) :: fixed
       integer :: mine(count(fixed%equation == equation)), i
       real(wp) :: velocity(3)
@@ -157,13 +159,13 @@ contains
       fixed%rate(mine) = matmul(velocity, fixed%row(:3, mine))
    end subroutine hold_rigidly
 
-   !> Add to the forces, and to the load, what the springs carry after a motion
+   !> Correct the forces of the springs, and the load, after a motion
    pure subroutine correct_fixed_forces(target, motion, fixed, load, change)
       real(wp), intent(in) :: target(:)
       real(wp), intent(in) :: motion(:, :)          !! Motion of the blocks: (n_dof, n_equation)
       type(fixed_points_t), intent(inout) :: fixed  !! The springs; their forces are corrected
       real(wp), intent(inout) :: load(:, :)         !! The load of the blocks: (n_dof, n_equation)
-      !> Largest correction, beyond what the rounding of a motion makes of a stiff spring [N/m]
+      !> Largest correction in excess of round-off of the motion times the stiffness [N/m]
       real(wp), intent(out) :: change
       real(wp) :: more, rounding
       integer :: i

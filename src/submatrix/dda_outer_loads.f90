@@ -14,23 +14,23 @@ module dda_outer_loads
 
 contains
 
-   !> Loads that change with time added to those that do not: their mean over a dynamic step, what
-   !> they are at the time of a static one
-   pure subroutine outer_loads(system, settings, time, dt, weight, load, felt)
+   !> Sum of constant and time-dependent loads: mean values over a dynamic step, values at the given
+   !> time of a static step
+   pure subroutine outer_loads(system, settings, time, dt, weight, load, magnitude)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> Time at the beginning of a dynamic step, or of the loads in a static one [s]
+      !> Time at the beginning of a dynamic step; time of the loads in a static step [s]
       real(wp), intent(in) :: time
-      real(wp), intent(in) :: dt            !! Length of the step [s]
-      real(wp), intent(in) :: weight(:, :)  !! Weight of the blocks: (n_dof, n_equation)
-      real(wp), intent(out) :: load(:, :)   !! Sum of all loads: (n_dof, n_equation)
-      real(wp), intent(out) :: felt(:, :)   !! Sum of their sizes: (n_dof, n_equation)
+      real(wp), intent(in) :: dt                !! Length of the step [s]
+      real(wp), intent(in) :: weight(:, :)      !! Weight of the blocks: (n_dof, n_equation)
+      real(wp), intent(out) :: load(:, :)       !! Sum of all loads: (n_dof, n_equation)
+      real(wp), intent(out) :: magnitude(:, :)  !! Sum of their absolute values: (n_dof, n_equation)
       real(wp) :: force(2), of_block(6), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
       load = weight
-      felt = abs(weight)
+      magnitude = abs(weight)
       shaking = -now(settings%boundary%base_acceleration)
       if (any(abs(shaking) > 0.0_wp)) then
          do b = 1, size(system%equation)
@@ -38,7 +38,7 @@ contains
             if (e == 0) cycle
             of_block = body_load(system%density(b)*shaking, system%area(b))
             load(:, e) = load(:, e) + of_block(:nd)
-            felt(:, e) = felt(:, e) + abs(of_block(:nd))
+            magnitude(:, e) = magnitude(:, e) + abs(of_block(:nd))
          end do
       end if
       if (.not. allocated(settings%boundary%loaded)) return
@@ -57,13 +57,13 @@ contains
                of_block = point_load(force, loaded%point, centre)
             end if
             load(:, e) = load(:, e) + of_block(:nd)
-            felt(:, e) = felt(:, e) + abs(of_block(:nd))
+            magnitude(:, e) = magnitude(:, e) + abs(of_block(:nd))
          end associate
       end do
 
    contains
 
-      !> What a history is in the step
+      !> Value of a history in this step
       pure function now(history) result(value)
          type(history_t), intent(in) :: history
          real(wp) :: value(2)  !! Components along x and y: (2)

@@ -1,8 +1,8 @@
 !> Submatrices and loads of one block: mass (Shi: df11), stiffness and stress (df13, df14), forces
 !> (df15, df16), absorbing boundaries
 !>
-!> A plane wave of speed c brings the stress density*c*v at a velocity v. A dashpot of that constant
-!> per length takes it up whole, if it comes straight (Lysmer and Kuhlemeyer 1969).
+!> A plane wave of speed c causes the stress density*c*v at a velocity v. A dashpot of that constant
+!> per area absorbs it completely at normal incidence (Lysmer and Kuhlemeyer 1969).
 module dda_submatrices
    use dda_block_system, only : block_system_t
    use dda_boundary, only : absorbing_point_t, boundary_t
@@ -16,7 +16,8 @@ module dda_submatrices
 
 contains
 
-   !> density * integral of T'T over the block, in closed form from its central second moments
+   !> Mass matrix: density * integral of T'T over the block, in closed form from its central second
+   !> moments
    pure function mass_matrix(density, area, second) result(mass)
       real(wp), intent(in) :: density    !! Mass per volume [kg/m3]
       real(wp), intent(in) :: area       !! Area of the block [m2]
@@ -47,7 +48,7 @@ contains
       stiffness(4:6, 4:6) = area*elasticity_matrix(material)
    end function elastic_matrix
 
-   !> Load on the strain unknowns by the stress that the block already has
+   !> Load on the strain unknowns by the present stress of the block
    pure function stress_load(stress, area) result(load)
       real(wp), intent(in) :: stress(3)  !! Stress sx, sy, txy: (3) [Pa]
       real(wp), intent(in) :: area
@@ -57,7 +58,7 @@ contains
       load(4:6) = -area*stress
    end function stress_load
 
-   !> Body force; it acts at the centre of gravity, so only u0 and v0 see it
+   !> Body force; it acts at the centre of gravity, on u0 and v0 only
    pure function body_load(force_per_volume, area) result(load)
       real(wp), intent(in) :: force_per_volume(2)  !! Force per volume: (2) [N/m3]
       real(wp), intent(in) :: area
@@ -70,9 +71,9 @@ contains
    !> Force at a point of the block
    pure function point_load(force, point, centroid, motion) result(load)
       real(wp), intent(in) :: force(2)     !! Force: (2) [N/m]
-      real(wp), intent(in) :: point(2)     !! Where it acts: (2) [m]
+      real(wp), intent(in) :: point(2)     !! Point of application: (2) [m]
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
-      !> How the block has moved to where point and centre are; not at all if it is left out: (6)
+      !> Motion of the block to this point and centre; absent for none: (6)
       real(wp), intent(in), optional :: motion(6)
       !> Generalised load: (6)
       real(wp) :: load(6)
@@ -86,9 +87,9 @@ contains
    !> Forces of the dashpots on the blocks per unit rate of the unknowns
    pure function dashpot_matrices(system, boundary, n_dof) result(matrix)
       type(block_system_t), intent(in) :: system
-      type(boundary_t), intent(in) :: boundary  !! Where their faces let waves out
+      type(boundary_t), intent(in) :: boundary  !! Absorbing boundaries
       integer, intent(in) :: n_dof              !! Unknowns of a block
-      !> The matrices, without entries where no face does: (n_dof, n_dof, n_equation or 0)
+      !> The matrices, without entries if nothing absorbs: (n_dof, n_dof, n_equation or 0)
       real(wp), allocatable :: matrix(:, :, :)
       real(wp) :: t(2, 6)
       integer :: e, i
