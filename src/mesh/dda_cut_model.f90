@@ -71,8 +71,7 @@ module dda_cut_model
 
    !> Two edges of two blocks that coincide, wholly or in part
    type :: edge_pair_t
-      !> Block and edge on the left of the line in its drawn direction, block and edge on its right:
-      !> (4)
+      !> Block and edge on the left of the line as drawn, block and edge on its right: (4)
       integer :: side(4) = 0
       !> Material of the joint
       integer :: joint = 0
