@@ -1,10 +1,10 @@
 !> Near edges of different blocks by a tree of boxes with margins (Verlet 1967; Box2D)
 !>
-!> What is remembered is only where to look: whoever asks gets the pairs whose boxes overlap now, in
-!> the same order, whether or not they were remembered.
+!> The stored pairs only speed up the search: a query returns the pairs whose present boxes overlap,
+!> in an order that does not depend on the stored pairs.
 !>
-!> What touches, or may touch in the coming step (Shi: df04): edges whose boxes come near one
-!> another are looked at pair of blocks by pair of blocks
+!>
+!> Edges that touch or may touch in the next step (Shi: df04) are examined per pair of blocks
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
@@ -23,29 +23,29 @@ module dda_contact_search
    public :: find_edge_pairs, new_joint_search, look_around, law_between, touching_joints
    public :: near_joints, remember_drawn
 
-   !> Least and largest margin over the block size
+   !> Smallest and largest margin over the block size
    real(wp), parameter :: least = 0.05_wp, most = 0.5_wp
-   !> Margin over the reach, so that steady motion rarely rebuilds the tree
+   !> Margin over the reach; steady motion then rarely rebuilds the tree
    real(wp), parameter :: ahead = 4.0_wp
    !> Relative round-off of displacements
    real(wp), parameter :: rounding = 1.0e-12_wp
 
 contains
 
-   !> Edges of different blocks whose boxes overlap, in the order of their blocks
+   !> Edges of different blocks with overlapping boxes, in the order of their blocks
    pure subroutine find_edge_pairs(search, equation, vertex, reach, pair, near_alone)
-      !> How the corners follow one another, and what is remembered
+      !> Outline of the blocks, and stored pairs
       type(joint_search_t), intent(in) :: search
-      !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
+      !> Number of each block in the equations; 0 for a fixed block: (n_block)
       integer, intent(in) :: equation(:)
-      !> Where the corners are: (2, n_vertex) [m]
+      !> Corners of the blocks: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> How far each block can reach: (n_block) [m]
+      !> Reach of each block: (n_block) [m]
       real(wp), intent(in) :: reach(:)
-      !> The pairs, of two fixed blocks none: (2, n_pair)
+      !> The pairs, without those of two fixed blocks: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
-      !> Whether edges are left out that are themselves beyond reach: those of thin blocks that lean
-      !> have boxes that overlap by the hundred
+      !> True to exclude edges whose distance is beyond reach: inclined edges of thin blocks have
+      !> many overlapping boxes
       logical, intent(in), optional :: near_alone
       real(wp) :: low(2, size(vertex, 2)), high(2, size(vertex, 2))
       integer, allocatable :: near(:, :)
@@ -75,12 +75,12 @@ contains
       pair = near(:, :n)
    end subroutine find_edge_pairs
 
-   !> Look around for edges that may come near one another in this step and those that follow, and
-   !> remember them, unless what is remembered will do
+   !> Store pairs of edges that may come near in this step and the following ones, unless the stored
+   !> pairs suffice
    pure subroutine look_around(search, system, reach)
       type(joint_search_t), intent(inout) :: search
       type(block_system_t), intent(in) :: system
-      !> Most that the corners of each block may move in this step: (n_block) [m]
+      !> Largest motion of the corners of each block in this step: (n_block) [m]
       real(wp), intent(in) :: reach(:)
       real(wp) :: low(2, size(system%moved, 2)), high(2, size(system%moved, 2))
 
@@ -94,7 +94,7 @@ contains
       end associate
    end subroutine look_around
 
-   !> Whether all pairs that are near are among those that are remembered
+   !> True if the stored pairs include all near pairs
    pure logical function covers(search, vertex, reach)
       type(joint_search_t), intent(in) :: search
       real(wp), intent(in) :: vertex(:, :), reach(:)
@@ -113,7 +113,7 @@ contains
       end do
    end function covers
 
-   !> Boxes that edges can get to
+   !> Boxes of edges, widened by the reach of their blocks
    pure subroutine edge_boxes(outline, vertex, reach, low, high)
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :), reach(:)
@@ -129,14 +129,14 @@ contains
       end do
    end subroutine edge_boxes
 
-   !> Edges of different blocks whose boxes overlap, by a tree of all boxes
+   !> Edges of different blocks with overlapping boxes, by a tree of all boxes
    pure subroutine search_pairs(outline, equation, low, high, pair, vertex, reach)
       type(outline_t), intent(in) :: outline
       integer, intent(in) :: equation(:)
       real(wp), intent(in) :: low(:, :), high(:, :)
       !> The pairs in the order of their blocks: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
-      !> Where the corners are, and how far each block can reach, to leave out edges beyond it
+      !> Corners of the blocks and reach of each block, to exclude edges beyond it
       real(wp), intent(in), optional :: vertex(:, :), reach(:)
       integer :: group(size(outline%block))
       real(wp), allocatable :: segment(:, :)
@@ -163,7 +163,7 @@ contains
       end associate
    end subroutine search_pairs
 
-   !> Search for the joints of a system
+   !> Make the joint search of a system
    pure type(joint_search_t) function new_joint_search(system, law, tolerance)
       type(block_system_t), intent(in) :: system
       !> Law of the joints between two materials: (n_material, n_material)
@@ -175,7 +175,7 @@ contains
       if (present(tolerance)) new_joint_search%tolerance = tolerance
    end function new_joint_search
 
-   !> Number of the law between two materials among the laws of the contacts
+   !> Number of the law between two materials in the laws of the contacts
    pure integer function law_between(search, material)
       type(joint_search_t), intent(in) :: search
       integer, intent(in) :: material(2)  !! Numbers of the materials: (2)
@@ -183,12 +183,12 @@ contains
       law_between = material(1) + size(search%law, 1)*(material(2) - 1)
    end function law_between
 
-   !> Joints of blocks that touch in the reference shape: gaps below a share of the smallest block's
-   !> size, of the two and of those that lie between them, count as closed at the beginning
+   !> Joints of blocks that touch in the reference shape: the gap is at most a share of the size of
+   !> the smallest of the two blocks and those between them
    pure subroutine touching_joints(search, system, share, joint, size_of)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: share  !! The share, of the contact tolerance or wider
+      real(wp), intent(in) :: share  !! The share, at least the contact tolerance
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
       !> Size of the smallest block at each joint: (n_joint) [m]
@@ -209,8 +209,8 @@ contains
          & j=1, size(joint))]
    end subroutine touching_joints
 
-   !> Remember the edges that are near one another in the reference shape, for searches by this
-   !> share and smaller ones
+   !> Store the edges that are near one another in the reference shape, for searches with at most
+   !> this share
    pure subroutine remember_drawn(search, system, share)
       type(joint_search_t), intent(inout) :: search
       type(block_system_t), intent(in) :: system
@@ -225,12 +225,12 @@ contains
       call move_alloc(pair, search%near%pair)
    end subroutine remember_drawn
 
-   !> A share of the size of each block, at most half its thickness: blocks on both sides of a sheet
-   !> do not touch
+   !> Share of the size of each block, at most half its thickness, so that blocks on both sides of a
+   !> thin plate do not touch
    pure function drawn_reach(system, share) result(reach)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: share
-      real(wp) :: reach(size(system%area))  !! The reach: (n_block) [m]
+      real(wp) :: reach(size(system%area))  !! Reach of each block: (n_block) [m]
       integer :: b
 
       do b = 1, size(reach)
@@ -242,21 +242,21 @@ contains
       end do
    end function drawn_reach
 
-   !> The least reach of two blocks and of those that lie between them [m]
+   !> Smallest reach of two blocks and of those between them [m]
    pure real(wp) function least_reach(reach, beside, block)
-      real(wp), intent(in) :: reach(:)   !! How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: beside(:)  !! Least reach beside each block: (n_block) [m]
-      integer, intent(in) :: block(2)    !! The two blocks
+      real(wp), intent(in) :: reach(:)   !! Reach of each block: (n_block) [m]
+      real(wp), intent(in) :: beside(:)  !! Smallest reach next to each block: (n_block) [m]
+      integer, intent(in) :: block(2)    !! Numbers of the two blocks: (2)
 
       least_reach = min(minval(reach(block)), maxval(beside(block)))
    end function least_reach
 
-   !> The least reach of all blocks that a block meets, its own among them: a sheet between two
-   !> blocks is thicker than its own reach, not than theirs
+   !> Smallest reach of each block and its neighbours. A thin plate between two blocks can be
+   !> thinner than their reach, but not thinner than its own
    pure function least_beside(system, reach) result(least)
       type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: reach(:)  !! How far each block can reach: (n_block) [m]
-      real(wp) :: least(size(reach))    !! The least reach: (n_block) [m]
+      real(wp), intent(in) :: reach(:)  !! Reach of each block: (n_block) [m]
+      real(wp) :: least(size(reach))    !! Smallest reach: (n_block) [m]
       real(wp) :: high(2, size(reach)), low(2, size(reach))
       real(wp), allocatable :: least_below(:)
       type(box_tree_t) :: tree
@@ -277,16 +277,16 @@ contains
       end do
    end function least_beside
 
-   !> Joints of blocks that touch where they are now, or come as near as they may in a step
+   !> Joints of blocks that touch at present or may touch in a step
    pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
-      !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
+      !> Expected motion of the corners, for directions and ratios only: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
-      !> Keys of the contacts that were closed, rising: (n_closed)
+      !> Keys of the contacts that were closed, ascending: (n_closed)
       integer(int64), intent(in) :: closed(:)
       real(wp), intent(in) :: reach(:)
-      !> Whether blocks move in time: then a line parts convex blocks
+      !> True in dynamic runs, where convex blocks use separating axes
       logical, intent(in) :: in_time
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(neighbourhood_t) :: near
@@ -298,18 +298,17 @@ contains
       call find_joints(search, system, reach, near, joint)
    end subroutine near_joints
 
-   !> Joints of all pairs of blocks whose edges come near one another
+   !> Joints of all pairs of blocks with near edges
    pure subroutine find_joints(search, system, reach, near, joint, beside)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
-      !> How far each block can reach; of two the smaller counts at the beginning, later the sum:
-      !> (n_block) [m]
+      !> Reach of each block; of two blocks the smaller one in the reference shape, later the
+      !> sum: (n_block) [m]
       real(wp), intent(in) :: reach(:)
-      !> Where the corners are; completed here
+      !> Corners of the blocks; completed here
       type(neighbourhood_t), intent(inout) :: near
       type(joint_t), allocatable, intent(out) :: joint(:)
-      !> Least reach beside each block; one that lies beside both counts at the beginning, too:
-      !> (n_block) [m]
+      !> Smallest reach next to each block, for the reference shape: (n_block) [m]
       real(wp), intent(in), optional :: beside(:)
       type(joint_list_t) :: list
       integer, allocatable :: pair(:, :)

@@ -15,18 +15,18 @@ module dda_contact_transfer
 
    public :: search_contacts, renew_contacts, past_contact_t, match_contacts
 
-   !> One contact of the step before
+   !> A contact of the previous step
    type :: past_contact_t
       type(contact_t) :: contact  !! The contact
-      integer :: joint = 0        !! The joint that it belonged to
-      integer :: block(2) = 0     !! The two blocks of the joint
-      integer :: place = 0        !! Which of the joint's contacts it was
-      !> Normal force, and its part of the joint's shear force: (2) [N/m]
+      integer :: joint = 0        !! Joint of the contact
+      integer :: block(2) = 0     !! The two blocks of the joint: (2)
+      integer :: place = 0        !! Number of the contact within the joint
+      !> Normal force, and share of the joint's shear force: (2) [N/m]
       real(wp) :: force(2) = 0.0_wp
-      real(wp) :: slip = 0.0_wp       !! Slip that the springs still feel [m]
+      real(wp) :: slip = 0.0_wp       !! Slip that the springs still carry [m]
       real(wp) :: stiffness = 0.0_wp  !! Stiffness of the springs [N/m per metre depth]
-      real(wp) :: tension = 0.0_wp    !! Tension that it carries [N/m]
-      logical :: passed_on = .false.  !! Whether a contact of the next step has taken it over
+      real(wp) :: tension = 0.0_wp    !! Tensile strength [N/m]
+      logical :: passed_on = .false.  !! True if a contact of the next step continues it
    end type past_contact_t
 
    !> Share of the joint length within which an open end counts for slip
@@ -34,11 +34,11 @@ module dda_contact_transfer
 
 contains
 
-   !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
+   !> Contacts of blocks that touch in the reference shape: closed, intact and free of force
    pure subroutine search_contacts(system, contacts, closes_gaps)
       type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is set
-      !> Whether blocks that almost touch are joined, too
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; their search must be set
+      !> True to join blocks that almost touch
       logical, intent(in), optional :: closes_gaps
       type(joint_t), allocatable :: joint(:)
       type(joint_place_t) :: place
@@ -58,18 +58,18 @@ contains
       call set_joints(joint, contacts)
    end subroutine search_contacts
 
-   !> Contacts where the blocks are now; their springs carry what openings and slip make of them
+   !> Contacts of the present blocks; their springs carry forces from openings and slip
    pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts)
       type(block_system_t), intent(in) :: system
-      !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
+      !> Expected motion of the corners, for directions and ratios only: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
-      !> Most that the corners of each block may move in the step: (n_block) [m]
+      !> Largest motion of the corners of each block in the step: (n_block) [m]
       real(wp), intent(in) :: reach(:)
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The contacts of the step before in, those of the next out
+      !> Contacts of the previous step on entry, of the next on return
       type(contacts_t), intent(inout) :: contacts
       type(past_contact_t), allocatable :: past(:)
       type(contacts_t) :: before
@@ -110,13 +110,13 @@ contains
       call set_strength(contacts)
    end subroutine renew_contacts
 
-   !> The contacts of the step before in the order of their keys, and the keys of the closed ones
+   !> List the contacts of the previous step in order of their keys, and the keys of closed ones
    pure subroutine list_past(system, contacts, past, closed)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> The contacts one by one: (n_contact)
+      !> The contacts: (n_contact)
       type(past_contact_t), allocatable, intent(out) :: past(:)
-      !> Keys of the closed ones, rising: (n_closed)
+      !> Keys of the closed contacts, ascending: (n_closed)
       integer(int64), allocatable, intent(out) :: closed(:)
       type(past_contact_t), allocatable :: list(:)
       integer(int64), allocatable :: key(:)
@@ -153,12 +153,13 @@ contains
          & [(.not. contacts%face(past(j)%joint)%open(past(j)%place), j=1, n)]))
    end subroutine list_past
 
-   !> Let a joint start with the slip that its contacts had, and measure it where it is closed
+   !> Continue the slip of previous contacts in a joint, and place the joint
    pure subroutine take_over_slip(system, past, source, in_time, joint, place)
       type(block_system_t), intent(in) :: system
-      type(past_contact_t), intent(in) :: past(:)  !! The contacts of the step before
-      integer, intent(in) :: source(2)             !! Which of them go on, 0 for none: (2)
-      !> Whether blocks move in time: then each step allows anew for what lies inside
+      type(past_contact_t), intent(in) :: past(:)  !! The contacts of the previous step
+      integer, intent(in) :: source(2)             !! Contacts that the joint continues, 0 for
+                                                   !! none: (2)
+      !> True in dynamic runs, where each step accepts the present penetration
       logical, intent(in) :: in_time
       type(joint_t), intent(inout) :: joint
       type(joint_place_t), intent(out) :: place
@@ -169,7 +170,7 @@ contains
       call place_joint(system%moved, joint, place, gap)
       do k = 1, joint%n_contact
          if (source(k) == 0) then
-            ! what begins inside, as a corner that meets a corner does, is not pushed out
+            ! initial penetration, for example of two corners that meet, is not corrected
             if (.not. in_time) joint%contact(k)%closed_at = min(0.0_wp, gap(k))
             cycle
          end if
@@ -187,12 +188,12 @@ contains
       call place_joint(system%moved, joint, place, gap)
    end subroutine take_over_slip
 
-   !> Let the shear force stay the same where the stiffness does not
+   !> Keep the shear force if the stiffness changes
    pure subroutine keep_shear(system, past, source, stiffness, joint)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
       integer, intent(in) :: source(2)
-      real(wp), intent(in) :: stiffness  !! Stiffness now [N/m per metre depth]
+      real(wp), intent(in) :: stiffness  !! New stiffness [N/m per metre depth]
       type(joint_t), intent(inout) :: joint
       integer :: k
 
@@ -205,8 +206,8 @@ contains
       end do
    end subroutine keep_shear
 
-   !> Let a corner that is inside its neighbour go no deeper: pushing it out, however slowly, would
-   !> bring in energy, for in the shortest steps the least way is a speed
+   !> Accept the present penetration of a corner. Its removal would add energy: in the shortest
+   !> steps the smallest displacement is a speed
    pure subroutine stay_inside(joint, gap)
       type(joint_t), intent(inout) :: joint
       real(wp), intent(inout) :: gap(3)  !! Opening at the two contacts, and slip: (3) [m]
@@ -219,7 +220,7 @@ contains
       end do
    end subroutine stay_inside
 
-   !> Let a joint have no slip where it is
+   !> Set the slip of a joint to zero at the present position
    pure subroutine lock_joint(vertex, joint)
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(joint_t), intent(inout) :: joint
@@ -241,17 +242,17 @@ contains
       edge_size = norm2(vertex(:, contact%edge_end) - vertex(:, contact%edge))
    end function edge_size
 
-   !> Forces, strength and direction of sliding of the contacts that go on
+   !> Continue forces, strength and direction of sliding of previous contacts
    pure subroutine take_over_state(before, past, source, j, contacts)
       type(contacts_t), intent(in) :: before  !! The contacts of the step before
-      !> The same one by one
+      !> The contacts of the previous step as a list
       type(past_contact_t), intent(in) :: past(:)
-      integer, intent(in) :: source(2)  !! Which of them go on in the joint, 0 for none: (2)
+      integer, intent(in) :: source(2)  !! Contacts that the joint continues, 0 for none: (2)
       integer, intent(in) :: j          !! Number of the joint
       type(contacts_t), intent(inout) :: contacts
       integer :: k
 
-      ! what meets anew has nothing to lose
+      ! new contacts have no strength
       contacts%intact(:, j) = 0.0_wp
       do k = 1, contacts%joint(j)%n_contact
          if (source(k) == 0) cycle
@@ -265,9 +266,9 @@ contains
       end do
    end subroutine take_over_state
 
-   !> The face that a joint is likely to have: contacts that go on closed, new ones as they are
+   !> Initial face of a joint: continued contacts by their trial force, new ones by their gap
    pure subroutine guess_face(source, j, contacts)
-      !> Contacts of the step before that go on in the joint, 0 for none: (2)
+      !> Contacts of the previous step that the joint continues, 0 for none: (2)
       integer, intent(in) :: source(2)
       integer, intent(in) :: j
       type(contacts_t), intent(inout) :: contacts
@@ -280,17 +281,16 @@ contains
       end associate
    end subroutine guess_face
 
-   !> Find for each contact the one of the step before that it goes on: the same corner and edge,
-   !> or else the nearest of the same two blocks
+   !> Find the previous contact that each contact continues: the same corner and edge, else the
+   !> nearest contact of the same two blocks
    pure subroutine match_contacts(system, joint, reach, past, source)
       type(block_system_t), intent(in) :: system
       type(joint_t), intent(in) :: joint(:)  !! The joints
-      !> Contacts farther from one another than their blocks reach are different ones: (n_block)
-      !> [m]
+      !> Reach of the blocks; contacts farther apart are different: (n_block) [m]
       real(wp), intent(in) :: reach(:)
-      !> The contacts of the step before in the order of their keys; those taken over are marked
+      !> The contacts of the previous step in order of their keys; continued ones are marked
       type(past_contact_t), intent(inout) :: past(:)
-      integer, intent(out) :: source(:, :)  !! Places in past, 0 for none: (2, n_joint)
+      integer, intent(out) :: source(:, :)  !! Indices in past, 0 for none: (2, n_joint)
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k
 
@@ -318,11 +318,11 @@ contains
       end do
    end subroutine match_contacts
 
-   !> The contact of the step before of the same corner and edge that none has taken over, or 0
+   !> The previous contact of the same corner and edge that is not yet continued, or 0
    pure integer function same_contact(past, past_key, key)
       type(past_contact_t), intent(in) :: past(:)
-      integer(int64), intent(in) :: past_key(:)  !! Their keys, rising
-      integer(int64), intent(in) :: key          !! Key of the contact that looks for one
+      integer(int64), intent(in) :: past_key(:)  !! Keys of the previous contacts, ascending
+      integer(int64), intent(in) :: key          !! Key of the new contact
       integer :: i
 
       same_contact = 0
@@ -334,16 +334,16 @@ contains
       end do
    end function same_contact
 
-   !> The nearest contact of the same blocks that none has taken over and that carried a force, or
-   !> holds them together, or 0
+   !> The nearest previous contact of the same blocks that is not yet continued and has a force or
+   !> tensile strength, or 0
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
-      integer, intent(in) :: order(:)             !! Their order by blocks
-      integer(int64), intent(in) :: past_pair(:)  !! Keys of their blocks in that order, rising
+      integer, intent(in) :: order(:)             !! Order of the previous contacts by blocks
+      integer(int64), intent(in) :: past_pair(:)  !! Keys of their blocks in that order, ascending
       type(contact_t), intent(in) :: contact
-      integer(int64), intent(in) :: pair          !! Key of its blocks
-      real(wp), intent(in) :: reach               !! How far away it may lie [m]
+      integer(int64), intent(in) :: pair          !! Key of the blocks of the new contact
+      real(wp), intent(in) :: reach               !! Largest distance [m]
       real(wp) :: least, distance
       integer :: m
 
@@ -362,7 +362,7 @@ contains
       end do
    end function next_contact
 
-   !> Number that tells pairs of blocks apart
+   !> Key of a pair of blocks
    pure integer(int64) function pair_key(block, n_block)
       integer, intent(in) :: block(2)  !! The pair, in either order
       integer, intent(in) :: n_block   !! Number of all blocks

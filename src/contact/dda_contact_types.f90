@@ -1,10 +1,10 @@
-!> Contacts of a corner against an edge; two contacts of common edges form a joint with one shear
+!> Contacts of a corner and an edge; two contacts of coinciding edges form a joint with one shear
 !> spring
 !>
 !> The springs of the joints as rows of a matrix (Shi: df18, df22)
 !>
-!> A row carries the unknowns of the two blocks to a relative displacement of the joint: the
-!> openings at its two contacts and its slip. One row for each, one stiffness for all three.
+!> A row maps the unknowns of the two blocks to a relative displacement of the joint: the openings
+!> at its two contacts and its slip. The three displacements have one stiffness.
 module dda_contact_types
    use dda_block_system, only : block_system_t
    use dda_deformation, only : tangent_matrix
@@ -19,42 +19,43 @@ module dda_contact_types
    public :: joint_springs_t, rows_of_joint, new_joint_springs, place_rows
    public :: mohr_coulomb, unbounded
 
-   !> A vertex of one block against an edge of another
+   !> A vertex of one block and an edge of another
    type :: contact_t
-      integer :: vertex = 0        !! Number of the vertex among all vertices
-      integer :: edge = 0          !! Number of the edge, that of the vertex it begins at
-      integer :: edge_end = 0      !! Vertex that it ends at
-      integer :: edge_side = 1     !! Which of the joint's two blocks owns the edge
-      real(wp) :: length = 0.0_wp  !! Part of the joint's length that the contact stands for [m]
-      !> Part of the joint's shear force that is felt here; the parts of a joint make one
+      integer :: vertex = 0        !! Number of the vertex, among all vertices
+      integer :: edge = 0          !! Number of the edge, that of its first vertex
+      integer :: edge_end = 0      !! Second vertex of the edge
+      integer :: edge_side = 1     !! Owner of the edge: 1 or 2 for the first or second block of the
+                                   !! joint
+      real(wp) :: length = 0.0_wp  !! Tributary length of the contact [m]
+      !> Share of the joint's shear force at this contact; the shares of a joint add up to one
       real(wp) :: share = 0.5_wp
-      !> Where on the edge the vertex has no slip, as a share of the edge from its start
+      !> Position of the vertex at zero slip, as a share of the edge from its start
       real(wp) :: lock = 0.0_wp
-      !> Height of the vertex above the edge at which the contact is closed: what lies together at
-      !> the beginning but for rounded coordinates is closed there [m]
+      !> Height of the vertex above the edge in the closed state: initial gaps of rounded
+      !> coordinates count as closed [m]
       real(wp) :: closed_at = 0.0_wp
    end type contact_t
 
    !> One or two contacts with one shear spring
    type :: joint_t
-      !> The two blocks; of a joint of given edges the first owns the edge, the second the vertices:
-      !> (2)
+      !> The two blocks; in a joint of given edges the first owns the edge, the second the
+      !> vertices: (2)
       integer :: block(2) = 0
-      type(contact_t) :: contact(2)  !! Contacts; the second is unused where n_contact is 1: (2)
+      type(contact_t) :: contact(2)  !! Contacts; the second is unused if n_contact is 1: (2)
       integer :: n_contact = 0       !! Number of contacts, 1 or 2
       real(wp) :: length = 0.0_wp    !! Length over which the blocks touch [m]
-      !> Whether a search has found it; otherwise it was given and is kept
+      !> True if it was found by a search; otherwise it was given and is kept
       logical :: found = .false.
-      integer :: law = 1  !! Number of the law of the joint force among those of the contacts
+      integer :: law = 1  !! Number of the joint law, among those of the contacts
    end type joint_t
 
-   !> Where a joint is
+   !> Position of a joint
    type :: joint_place_t
-      !> Where the vertex of each contact is: (2, 2) [m]
+      !> Vertex of each contact: (2, 2) [m]
       real(wp) :: point(2, 2) = 0.0_wp
       !> Foot of its perpendicular on the edge: (2, 2) [m]
       real(wp) :: foot(2, 2) = 0.0_wp
-      !> Unit normal of the edge, turned to point from the joint's first block to its second: (2, 2)
+      !> Unit normal of the edge, oriented from the joint's first block to its second: (2, 2)
       real(wp) :: across(2, 2) = 0.0_wp
       !> Points of the two blocks where the shear force acts: (2, 2) [m]
       real(wp) :: middle(2, 2) = 0.0_wp
@@ -64,7 +65,7 @@ module dda_contact_types
       real(wp) :: tangent(2) = 0.0_wp
    end type joint_place_t
 
-   !> Springs of all joints, as the solver wants them
+   !> Springs of all joints
    type :: joint_springs_t
       !> Equations of the two blocks, 0 for a fixed one: (2, n_joint)
       integer, allocatable :: equation(:, :)
@@ -75,28 +76,29 @@ module dda_contact_types
       real(wp), allocatable :: stiffness(:)
       !> Bounds of the joint force: (n_joint)
       type(cone_t), allocatable :: cone(:)
-      !> Tension that the contacts carry, by which the cone is moved, and a zero: (3, n_joint) [N/m]
+      !> Tensile strength of the contacts, an offset of the cone, and a zero: (3, n_joint) [N/m]
       real(wp), allocatable :: shift(:, :)
-      !> How much openings and slip follow their forces, where they do: (3, n_joint) [m/(N/m)]
+      !> Compliance of each row, unallocated without bars: (3, n_joint) [m/(N/m)]
       real(wp), allocatable :: soft(:, :)
-      !> Forces that they follow none of, where they do: (3, n_joint) [N/m]
+      !> Force of each row at zero opening, likewise: (3, n_joint) [N/m]
       real(wp), allocatable :: rest(:, :)
-      !> Whether the springs give for good: joints that were found may be more than the blocks can
-      !> follow, and forces without give would then not be unique
+      !> True for permanently compliant springs: found joints may be redundant, and the forces of
+      !> rigid ones would not be unique
       logical :: give = .false.
    end type joint_springs_t
 
    !> Unlimited strength or force [N/m]
    real(wp), parameter :: unbounded = sqrt(huge(1.0_wp))
 
-   !> Least size of a block across a joint, over the root of its area
+   !> Smallest size of a block across a joint, over the square root of its area
    real(wp), parameter :: least_size = 0.1_wp
-   !> Largest ratio of joint stiffnesses; slivers would shorten the longest step
+   !> Largest ratio of joint stiffnesses; without it slivers shorten the longest step
    real(wp), parameter :: stiffest = 1.0e2_wp
 
 contains
 
-   !> Place of a block's vertex among all vertices; counts on past the last vertex
+   !> Number of a block's vertex among all vertices; past the last vertex it continues with the
+   !> first
    pure integer function vertex_number(system, block, vertex)
       type(block_system_t), intent(in) :: system
       integer, intent(in) :: block  !! Number of the block
@@ -108,7 +110,7 @@ contains
       vertex_number = system%first_vertex(block) + modulo(vertex - 1, n)
    end function vertex_number
 
-   !> Whether two joints are of the same corners and edges, in the same order
+   !> True if two joints have the same corners and edges in the same order
    elemental logical function same_joint(a, b)
       type(joint_t), intent(in) :: a  !! One joint
       type(joint_t), intent(in) :: b
@@ -117,13 +119,13 @@ contains
          & a%contact%vertex == b%contact%vertex .and. a%contact%edge == b%contact%edge)
    end function same_joint
 
-   !> Joint of two edges that coincide and run against each other: both vertices of the second
-   !> block's edge touch the first block's edge
+   !> Joint of two coinciding edges of opposite direction: both vertices of the second block's edge
+   !> touch the first block's edge
    pure type(joint_t) function edge_to_edge_joint(system, edge_pair, law) result(joint)
       type(block_system_t), intent(in) :: system
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
-      integer, intent(in) :: law  !! Number of its law
+      integer, intent(in) :: law  !! Number of the joint law
       integer :: edge(2), k
 
       edge = [(vertex_number(system, edge_pair(1), edge_pair(2) + k), k=0, 1)]
@@ -139,13 +141,12 @@ contains
       joint%contact%lock = [0.0_wp, 1.0_wp]
    end function edge_to_edge_joint
 
-   !> Where a joint is, and how far it is open
+   !> Position of a joint, and its opening and slip
    pure subroutine place_joint(vertex, joint, place, gap)
       real(wp), intent(in) :: vertex(:, :)  !! Corners of the blocks: (2, n_vertex) [m]
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(out) :: place
-      !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
-      !> [m]
+      !> Opening at the two contacts, and slip of the second block along the edge: (3) [m]
       real(wp), intent(out) :: gap(3)
       real(wp) :: start(2), finish(2), lock(2), tangent(2), slip
       integer :: k
@@ -163,8 +164,8 @@ contains
             gap(k) = gap(k) - c%closed_at
             slip = slip_at(vertex, c)
             gap(3) = gap(3) + c%share*slip
-            ! both blocks feel the shear force on the line of the edge: off it, an open joint would
-            ! turn them
+            ! the shear force acts on both blocks along the line of the edge; otherwise it would
+            ! rotate them at an open joint
             lock = c%share*((1.0_wp - c%lock)*start + c%lock*finish)
             place%middle(:, c%edge_side) = place%middle(:, c%edge_side) + lock
             lock = lock + c%share*slip*tangent
@@ -181,7 +182,7 @@ contains
       place%normal = right_normal(place%tangent)
    end subroutine place_joint
 
-   !> How far the joint's second block has slipped at a contact, along the edges of the first
+   !> Slip of the joint's second block at a contact, along the edges of the first [m]
    pure real(wp) function slip_at(vertex, contact)
       real(wp), intent(in) :: vertex(:, :)
       type(contact_t), intent(in) :: contact
@@ -196,11 +197,11 @@ contains
    pure subroutine new_joint_springs(system, motion, joint, law, place, penalty_ratio, n_dof, &
       & springs)
       type(block_system_t), intent(in) :: system
-      !> How they have moved where the joints are placed: (6, n_block)
+      !> Motion of the blocks at the position of the joints: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(joint_t), intent(in) :: joint(:)        !! The joints: (n_joint)
-      type(joint_law_t), intent(in) :: law(:)      !! Laws that they may have: (n_law)
-      type(joint_place_t), intent(in) :: place(:)  !! Where they are: (n_joint)
+      type(joint_law_t), intent(in) :: law(:)      !! Laws of the joints: (n_law)
+      type(joint_place_t), intent(in) :: place(:)  !! Positions of the joints: (n_joint)
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
       integer, intent(in) :: n_dof  !! Unknowns of one block
@@ -225,13 +226,13 @@ contains
          & springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
    end subroutine new_joint_springs
 
-   !> Rows of the springs of joints that have been placed
+   !> Rows of the springs of placed joints
    pure subroutine place_rows(system, motion, joint, place, row)
       type(block_system_t), intent(in) :: system
-      !> How the blocks have moved where the joints are placed: (6, n_block)
+      !> Motion of the blocks at the position of the joints: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(joint_t), intent(in) :: joint(:)
-      type(joint_place_t), intent(in) :: place(:)  !! Where they are: (n_joint)
+      type(joint_place_t), intent(in) :: place(:)  !! Positions of the joints: (n_joint)
       real(wp), intent(out) :: row(:, :, :, :)     !! The rows: (n_dof, 3, 2, n_joint)
       integer :: j, side
 
@@ -245,13 +246,14 @@ contains
       end do
    end subroutine place_rows
 
-   !> What the joint sees of one block's unknowns
+   !> Rows of a joint for the unknowns of one block
    pure function rows_of_joint(joint, place, side, centroid, motion, n_dof) result(row)
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(in) :: place
-      integer, intent(in) :: side          !! 1 or 2, which of the joint's blocks
+      integer, intent(in) :: side          !! The block: 1 or 2 for the first or second block of the
+                                           !! joint
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
-      real(wp), intent(in) :: motion(6)    !! How the block has moved: (6)
+      real(wp), intent(in) :: motion(6)    !! Motion of the block: (6)
       integer, intent(in) :: n_dof
       real(wp) :: row(n_dof, 3)            !! Opening at both contacts, slip: (n_dof, 3)
       real(wp) :: t(2, 6)
@@ -268,12 +270,12 @@ contains
       row = real(2*side - 3, wp)*row
    end function rows_of_joint
 
-   !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's
-   !> size across it, t that along it; of given edges t is their length, of found ones l is twice
-   !> the way from the centre
+   !> Stiffness E t/l = E area/l**2 of the softer movable block at a joint: l is the block's size
+   !> across the joint, t along it. For given edges t is their length; for found ones l is twice the
+   !> distance of the centre
    pure function block_stiffness(system, centroid, joint, place) result(stiffness)
       type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: centroid(:, :)  !! Their centres of gravity: (2, n_block) [m]
+      real(wp), intent(in) :: centroid(:, :)  !! Centres of gravity of the blocks: (2, n_block) [m]
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(in) :: place
       real(wp) :: stiffness                   !! The stiffness [N/m per metre depth]
@@ -297,14 +299,14 @@ contains
       end do
    end function block_stiffness
 
-   !> Bounds of a joint's force and the tension that its contacts carry. The tension is at most that
-   !> at the apex of the Mohr-Coulomb cone; a contact that has slid or parted has neither cohesion
-   !> nor tension, and a joint of which none is whole its residual friction
+   !> Bounds of a joint's force and the tensile strength of its contacts. The tension is at most
+   !> that at the apex of the Mohr-Coulomb cone. A contact that has slid or opened has no cohesion
+   !> and no tensile strength; a joint without intact contacts has the residual friction
    pure subroutine mohr_coulomb(joint, law, intact, cone, shift)
       type(joint_t), intent(in) :: joint
       type(joint_law_t), intent(in) :: law
-      real(wp), intent(in) :: intact(2)  !! Share that is left of each contact's strength: (2)
-      type(cone_t), intent(out) :: cone  !! Bounds of the force, with the cone moved by the tension
+      real(wp), intent(in) :: intact(2)  !! Remaining share of each contact's strength: (2)
+      type(cone_t), intent(out) :: cone  !! Bounds of the force, with the cone offset by the tension
       !> Tension of each contact and a zero for the shear force: (3) [N/m]
       real(wp), intent(out) :: shift(3)
       real(wp) :: whole(2), cohesion

@@ -16,23 +16,23 @@ module dda_contacts
    public :: begin_memory, find_contacts, follow_contacts, keep_contacts, raise_springs
    public :: set_joints, set_strength
 
-   !> Pairs of edges that were near, and how far their corners can go before others may be
+   !> Pairs of edges that were near, and their range of validity
    type :: edge_pairs_t
       integer, allocatable :: pair(:, :)     !! The pairs in the order of their blocks: (2, n_pair)
-      real(wp), allocatable :: vertex(:, :)  !! Corners when they were found: (2, n_vertex) [m]
-      !> Reach of each block that they were found for, margin included: (n_block) [m]
+      real(wp), allocatable :: vertex(:, :)  !! Corners at the time of the search: (2, n_vertex) [m]
+      !> Reach of each block in the search, including the margin: (n_block) [m]
       real(wp), allocatable :: reach(:)
    end type edge_pairs_t
 
-   !> What a search needs of the scene, made once, and what it remembers
+   !> Data of the joint search: constant data of the scene, and stored pairs
    type :: joint_search_t
-      type(outline_t) :: outline  !! How the corners follow one another
+      type(outline_t) :: outline  !! Outline of the blocks
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), allocatable :: law(:, :)
-      !> Blocks lie together within this share of the smaller one's size
+      !> Gap within which blocks touch, over the size of the smaller one
       real(wp) :: tolerance = contact_tolerance
-      type(edge_pairs_t) :: near  !! Where to look; joints do not depend on it
-      !> Blocks that are not there, so that nothing meets them; unallocated if all are: (n_block)
+      type(edge_pairs_t) :: near  !! Stored pairs; the result does not depend on them
+      !> Blocks not present, without contacts; unallocated if there are none: (n_block)
       logical, allocatable :: absent(:)
    end type joint_search_t
 
@@ -40,32 +40,32 @@ module dda_contacts
    type :: contacts_t
       !> The joints: (n_joint)
       type(joint_t), allocatable :: joint(:)
-      !> Laws that they have: (n_law)
+      !> Laws of the joints: (n_law)
       type(joint_law_t), allocatable :: law(:)
-      !> Where they are; unallocated before the first step, where they are where the blocks began:
-      !> (n_joint)
+      !> Positions of the joints; unallocated before the first step, when they are those of the
+      !> reference shape: (n_joint)
       type(joint_place_t), allocatable :: place(:)
-      !> Their springs
+      !> Springs of the joints
       type(joint_springs_t) :: springs
-      !> Face of the friction cone that each joint's force lies on; this and what follows only where
-      !> something is known of it: (n_joint)
+      !> Face of the friction cone of each joint's force; this and the following arrays are
+      !> allocated once they have values: (n_joint)
       type(joint_face_t), allocatable :: face(:)
       !> Trial force N1, N2, T of the springs, from the first step on: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
       !> Force N1, N2, T: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Opening at the two contacts and slip since the beginning: (3, n_joint) [m]
+      !> Opening at the two contacts and total slip: (3, n_joint) [m]
       real(wp), allocatable :: gap(:, :)
-      !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
+      !> Opening at the two contacts and slip of the last step: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
-      !> Slip that is past and done, where blocks move, from the first step on: (n_joint) [m]
+      !> Irreversible slip, in current geometry, from the first step on: (n_joint) [m]
       real(wp), allocatable :: past_slip(:)
-      !> Share that is left of each contact's strength, from the first step on: 1 is whole, 0 has
-      !> slid or parted: (2, n_joint)
+      !> Remaining share of each contact's strength, from the first step on: 1 intact, 0 after
+      !> sliding or opening: (2, n_joint)
       real(wp), allocatable :: intact(:, :)
-      !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
+      !> True to search for new contacts of moving blocks; otherwise the joints are given
       logical :: searched = .false.
-      !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
+      !> True to continue the slip of found contacts; false in dynamic runs
       logical :: remember = .true.
       !> The search
       type(joint_search_t) :: search
@@ -73,7 +73,7 @@ module dda_contacts
 
 contains
 
-   !> Place joints that have not been placed yet
+   !> Place joints that have no position yet
    pure subroutine place_all_joints(system, contacts)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(inout) :: contacts
@@ -83,7 +83,7 @@ contains
          & contacts%place = [(joint_place(system, contacts, j), j=1, size(contacts%joint))]
    end subroutine place_all_joints
 
-   !> Where a joint is
+   !> Position of a joint
    pure type(joint_place_t) function joint_place(system, contacts, j) result(place)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
@@ -97,7 +97,7 @@ contains
       end if
    end function joint_place
 
-   !> Faces, forces and openings of joints that have carried nothing yet
+   !> Allocate faces, forces and openings, if missing
    pure subroutine begin_forces(contacts)
       type(contacts_t), intent(inout) :: contacts
 
@@ -108,9 +108,9 @@ contains
       allocate (contacts%gap, contacts%increment, source=contacts%force)
    end subroutine begin_forces
 
-   !> Hand contacts over without a copy of what is large
+   !> Move contacts without copying large arrays
    pure subroutine move_contacts(from, to)
-      type(contacts_t), intent(inout) :: from  !! The contacts; what is large is gone
+      type(contacts_t), intent(inout) :: from  !! The contacts; large arrays are deallocated
       type(contacts_t), intent(inout) :: to
       type(contacts_t) :: large
 
@@ -119,7 +119,7 @@ contains
       call move_large(large, to)
    end subroutine move_contacts
 
-   !> Move what is large
+   !> Move the large arrays
    pure subroutine move_large(from, to)
       type(contacts_t), intent(inout) :: from, to
 
@@ -139,8 +139,7 @@ contains
       call move_alloc(from%search%near%vertex, to%search%near%vertex)
    end subroutine move_large
 
-   !> Joints of the pairs of edges that lie together in the reference shape, closed and free of
-   !> force
+   !> Joints of the coinciding pairs of edges in the reference shape, closed and free of force
    pure subroutine find_contacts(system, edge_pair, law, contacts)
       type(block_system_t), intent(in) :: system
       !> Block and edge, block and edge of each joint: (4, n_joint)
@@ -159,9 +158,9 @@ contains
       call begin_forces(contacts)
    end subroutine find_contacts
 
-   !> Take these joints, of which nothing is known yet
+   !> Set the joints and delete their states
    pure subroutine set_joints(joint, contacts)
-      !> The joints: (n_joint); they become those of the contacts
+      !> The joints: (n_joint); moved to the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
       type(contacts_t), intent(inout) :: contacts  !! The contacts; their search is kept
 
@@ -174,7 +173,7 @@ contains
       contacts%springs = joint_springs_t()
    end subroutine set_joints
 
-   !> What contacts carry from step to step where they have carried nothing yet
+   !> Allocate the states of contacts, if missing
    pure subroutine begin_memory(contacts)
       type(contacts_t), intent(inout) :: contacts
 
@@ -185,8 +184,8 @@ contains
       allocate (contacts%intact(2, size(contacts%joint)), source=1.0_wp)
    end subroutine begin_memory
 
-   !> Springs of contacts that have none yet, as strong as what is left of the joints: in reference
-   !> geometry where the blocks were at the beginning, in current geometry where they are
+   !> Make the springs of contacts, if missing, with the remaining strength: in reference geometry
+   !> at the reference shape, in current geometry at the present positions
    pure subroutine raise_springs(settings, system, contacts)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -201,10 +200,10 @@ contains
       call set_strength(contacts)
    end subroutine raise_springs
 
-   !> Keep some of the joints with what they carry, without springs: blocks may have other numbers
-   !> in the equations
+   !> Keep selected joints with their states, without springs, because the numbers of the equations
+   !> may change
    pure subroutine keep_contacts(kept, contacts)
-      logical, intent(in) :: kept(:)  !! Which: (n_joint)
+      logical, intent(in) :: kept(:)  !! True for joints to keep: (n_joint)
       type(contacts_t), intent(inout) :: contacts
       type(contacts_t) :: old
       type(joint_t), allocatable :: joint(:)
@@ -229,7 +228,7 @@ contains
       contacts%intact = old%intact(:, k)
    end subroutine keep_contacts
 
-   !> Bounds of the forces by what is left of the joints' strength
+   !> Set the bounds of the forces from the remaining strength of the joints
    pure subroutine set_strength(contacts)
       type(contacts_t), intent(inout) :: contacts
       integer :: j
@@ -242,14 +241,14 @@ contains
       end do
    end subroutine set_strength
 
-   !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step
-   !> before as multipliers, so that the springs only carry what changes
+   !> Update joints to the present blocks: rows, openings, and the forces of the previous step as
+   !> multipliers, so that the springs carry only changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
       type(block_system_t), intent(in) :: system
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
       integer, intent(in) :: n_dof                 !! Unknowns of one block
-      type(contacts_t), intent(inout) :: contacts  !! The contacts; what they carry is kept
+      type(contacts_t), intent(inout) :: contacts  !! The contacts; their states are kept
       type(joint_springs_t) :: before
       real(wp) :: gap(3)
       integer :: j

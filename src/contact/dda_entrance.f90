@@ -1,4 +1,4 @@
-!> Joints between two near blocks (Shi: df05): common edges, corners at edges, and corners at
+!> Joints between two near blocks (Shi: df05): coinciding edges, corners at edges, and corners at
 !> corners by the entrance edge
 module dda_entrance
    use, intrinsic :: iso_fortran_env, only : int64
@@ -14,27 +14,26 @@ module dda_entrance
    public :: neighbourhood_t, joint_list_t, add_joints, add_single, contact_key, join_edges
    public :: take_joints, was_closed
 
-   !> What a search looks at
+   !> Data of a search around two blocks
    type :: neighbourhood_t
-      !> How the corners follow one another, measured
+      !> Outline of the blocks, measured
       type(outline_t) :: outline
-      !> First corner of each block, and one beyond the last: (n_block + 1)
+      !> First corner of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> Corners where the blocks are: (2, n_vertex) [m]
+      !> Present corners: (2, n_vertex) [m]
       real(wp), allocatable :: vertex(:, :)
-      !> How they are about to move; only directions and ratios count: (2, n_vertex) [m]
+      !> Expected motion of the corners, for directions and ratios only: (2, n_vertex) [m]
       real(wp), allocatable :: travel(:, :)
-      !> Where the corners would be then, where lines part convex blocks: (2, n_vertex) [m]
+      !> Expected corners, if convex blocks use separating axes: (2, n_vertex) [m]
       real(wp), allocatable :: ahead(:, :)
-      !> Depth within which two blocks lie together: what goes in no deeper has not crossed a line
-      !> [m]
+      !> Penetration within which two blocks still count as separated [m]
       real(wp) :: level = 0.0_wp
-      !> Whether nothing has touched before
+      !> True in the reference shape, before any contact
       logical :: beginning = .false.
-      !> At the beginning corners nearer to the end of an edge than this share of the reach have met
-      !> it
+      !> In the reference shape, a corner closer to the end of an edge than this share of the reach
+      !> touches the end
       real(wp) :: ends = 1.0_wp
-      !> Keys of the contacts that were closed, rising: (n_closed)
+      !> Keys of the contacts that were closed, ascending: (n_closed)
       integer(int64), allocatable :: closed(:)
    end type neighbourhood_t
 
@@ -46,26 +45,26 @@ module dda_entrance
       type(joint_t), allocatable :: joint(:)  !! Its joints: (most_joints)
    end type joint_piece_t
 
-   !> Joints found so far, in pieces: one array that grew would need its room several times
+   !> List of joints in pieces: a single growing array would temporarily need several times its size
    type :: joint_list_t
       integer :: n = 0                              !! Number of joints
-      type(joint_piece_t), allocatable :: piece(:)  !! The joints, all pieces but the last full
+      type(joint_piece_t), allocatable :: piece(:)  !! The joints; all pieces but the last are full
    end type joint_list_t
 
    !> Sine of the largest angle between edges of a joint
    real(wp), parameter :: parallel = 0.1_wp
-   !> Least overlap of two edges, over the shorter one
+   !> Smallest overlap of two edges, over the shorter one
    real(wp), parameter :: least_overlap = 1.0e-6_wp
-   !> Distance below which corners have met, over the shorter edge
+   !> Distance below which two corners count as coincident, over the shorter edge
    real(wp), parameter :: met = 1.0e-3_wp
 
 contains
 
-   !> A number that tells contacts apart
+   !> Key of a contact
    elemental integer(int64) function contact_key(corner, edge, n_vertex)
-      integer, intent(in) :: corner    !! Number of the corner among all
-      integer, intent(in) :: edge      !! Number of the edge among all
-      integer, intent(in) :: n_vertex  !! Number of all corners
+      integer, intent(in) :: corner    !! Number of the corner, among all corners
+      integer, intent(in) :: edge      !! Number of the edge, among all edges
+      integer, intent(in) :: n_vertex  !! Total number of corners
 
       contact_key = int(corner, int64)*int(n_vertex + 1, int64) + int(edge, int64)
    end function contact_key
@@ -75,7 +74,7 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
-      real(wp), intent(in) :: reach  !! Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach  !! Largest gap [m]
       type(joint_list_t), intent(inout) :: list
       type(key_set_t) :: taken
       integer :: i
@@ -88,19 +87,20 @@ contains
          call join_corner(near, edge_pair(1, i), edge_pair(2, i), 2, reach, taken, list)
          call join_corner(near, edge_pair(2, i), edge_pair(1, i), 1, reach, taken, list)
       end do
-      ! corners that touch corners and nothing else at the beginning are no joint
+      ! in the reference shape, two corners that only touch each other have no joint
       if (near%beginning) return
       do i = 1, size(edge_pair, 2)
          call join_corners(near, edge_pair(:, i), reach, taken, list)
       end do
    end subroutine add_joints
 
-   !> Join two edges that lie together: the overlap ends at a corner of the one or of the other
+   !> Join two coinciding edges: each end of the overlap is a corner of one of them
    pure subroutine join_edges(near, pair, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: pair(2)           !! Edge of the first block, edge of the second: (2)
       real(wp), intent(in) :: reach
-      type(key_set_t), intent(inout) :: taken  !! Keys of the contacts that belong to a joint
+      type(key_set_t), intent(inout) :: taken  !! Keys of the contacts that already belong to a
+                                               !! joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       type(corner_view_t) :: view
@@ -114,7 +114,7 @@ contains
          angle = abs(cross(first, second))
          if (dot_product(first, second) > 0.0_wp .or. angle > parallel) return
          direction = (first - second)/norm2(first - second)
-         ! places along the direction of both ends of both edges, from the start of the first
+         ! positions of the ends of both edges along the direction, from the start of the first
          from(1) = 0.0_wp
          to(1) = dot_product(direction, v(:, next(pair(1))) - v(:, pair(1)))
          from(2) = dot_product(direction, v(:, next(pair(2))) - v(:, pair(1)))
@@ -127,7 +127,7 @@ contains
          call choose_end(near, [next(pair(1)), pair(2)], [pair(2), pair(1)], to(2) - to(1), &
             & min(met, angle)*shorter, corner(2), edge(2))
       end associate
-      ! corners that have just passed one another are no edges yet
+      ! corners that have just passed each other have no common edge yet
       if (length < met*shorter .and. .not. (near%beginning .or. was_closed(near, corner(1), &
          & edge(1)) .or. was_closed(near, corner(2), edge(2)))) return
       joint%n_contact = 2
@@ -144,15 +144,15 @@ contains
       call add_joint(near, pair, joint, list)
    end subroutine join_edges
 
-   !> Which corner ends the overlap of two edges: the inner one; where they have met, the one that
-   !> touched before
+   !> Corner at one end of the overlap of two edges: the inner one; of two coincident corners, the
+   !> one that touched before
    pure subroutine choose_end(near, of_first, of_second, ahead, zone, corner, edge)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: of_first(2)   !! Corner of the first block and edge of the second: (2)
       integer, intent(in) :: of_second(2)  !! Corner of the second block and edge of the first: (2)
-      !> How far the corner of the first block lies inside the other edge [m]
+      !> Distance of the corner of the first block inside the other edge [m]
       real(wp), intent(in) :: ahead
-      real(wp), intent(in) :: zone  !! Corners that lie nearer have met [m]
+      real(wp), intent(in) :: zone  !! Distance within which corners are coincident [m]
       integer, intent(out) :: corner, edge
       logical :: by_first
 
@@ -166,8 +166,8 @@ contains
       edge = merge(of_first(2), of_second(2), by_first)
    end subroutine choose_end
 
-   !> Join a corner and an edge that it points to, away from the edge's own corners: at the
-   !> beginning by what counts as touching, later by where corners have met
+   !> Join a corner and an edge that it faces, except near the ends of the edge: in the reference
+   !> shape within the touching distance, later within the distance of coincident corners
    pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge
@@ -181,7 +181,8 @@ contains
 
       view = view_corner(near%outline, near%vertex, corner, edge, reach)
       if (.not. view%faces) return
-      ! in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
+      ! at a reflex corner the edge ends at its neighbour; at a convex corner another edge may be
+      ! nearer
       zone = merge(near%ends*reach, meeting_zone(near, corner, edge), near%beginning)
       if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
       if (.not. is_convex(near%outline, near%vertex, near%outline%next(edge))) zone(2) = -zone(2)
@@ -190,8 +191,8 @@ contains
       call add_single(near, corner, edge, edge_side, taken, list)
    end subroutine join_corner
 
-   !> Join two corners: of the edges beside them, the one that the other corner would cross last is
-   !> the entrance. Corners that touch and nothing else have none
+   !> Join two corners: the entrance is the adjacent edge whose line the other corner would cross
+   !> last. Corners that only touch each other have none
    pure subroutine join_corners(near, pair, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: pair(2)  !! Corner of the first block, corner of the second: (2)
@@ -237,13 +238,13 @@ contains
       call add_single(near, corner(best), edge(best), merge(2, 1, best <= 2), taken, list)
    end subroutine join_corners
 
-   !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays
-   !> outside, before all times if it is inside and stays there
+   !> Time at which a corner crosses the line of an edge, in units of its expected motion: huge if
+   !> it stays outside, -huge if it stays inside
    pure real(wp) function crossing_time(near, corner, edge, view, slack)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge
       type(corner_view_t), intent(in) :: view
-      !> A corner no deeper than this has not crossed: springs that carry give a little [m]
+      !> Penetration that does not count as crossing, because of compliant springs [m]
       real(wp), intent(in) :: slack
       real(wp) :: approach, gap
 
@@ -256,7 +257,7 @@ contains
       end if
    end function crossing_time
 
-   !> How near to the ends of an edge a corner has met them, where they stick out [m]
+   !> Distance from the ends of an edge within which a corner coincides with them [m]
    pure function meeting_zone(near, corner, edge) result(zone)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge
@@ -267,7 +268,7 @@ contains
       end associate
    end function meeting_zone
 
-   !> Whether a contact was closed before
+   !> True if a contact was closed before
    pure logical function was_closed(near, corner, edge)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: corner, edge
@@ -299,7 +300,7 @@ contains
       call add_joint(near, pair, joint, list)
    end subroutine add_single
 
-   !> Put a joint into the list
+   !> Append a joint to the list
    pure subroutine add_joint(near, pair, joint, list)
       type(neighbourhood_t), intent(in) :: near
       !> A corner or edge of the first block and one of the second: (2)
@@ -325,7 +326,7 @@ contains
       list%piece(k)%joint(list%n - (k - 1)*most_joints) = joint
    end subroutine add_joint
 
-   !> Take all joints out of a list
+   !> Move all joints out of a list
    pure subroutine take_joints(list, joint)
       type(joint_list_t), intent(inout) :: list            !! The list, empty afterwards
       type(joint_t), allocatable, intent(out) :: joint(:)  !! The joints: (n)

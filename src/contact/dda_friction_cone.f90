@@ -1,4 +1,4 @@
-!> The contact force of a joint as a projection: open, sliding and locked are faces of its cone
+!> Contact force of a joint as a projection: open, sliding and locked are faces of its cone
 !>
 !> A joint carries two normal forces N1, N2 at its corners and one shear force T. Admissible are
 !>
@@ -23,10 +23,10 @@ module dda_friction_cone
       integer :: slip = 0
    end type joint_face_t
 
-   !> What bounds the force of a joint
+   !> Kinds of friction cones
    type :: cone_kind_enum
-      integer :: frictional = 0  !! Limit and friction bound the shear force
-      integer :: no_slip = 1     !! Nothing bounds the shear force; limit and friction are 0
+      integer :: frictional = 0  !! Shear force bounded by limit and friction
+      integer :: no_slip = 1     !! Shear force without bound; limit and friction are 0
       integer :: mirror = 2      !! A plane of symmetry: any normal forces and no shear force
    end type cone_kind_enum
 
@@ -35,17 +35,17 @@ module dda_friction_cone
 
    !> Bounds of the joint force
    type :: cone_t
-      !> Coefficient of friction; 0 where the limit alone bounds the shear force
+      !> Coefficient of friction; 0 if the limit alone bounds the shear force
       real(wp) :: friction = 0.0_wp
       real(wp) :: limit = 0.0_wp   !! Shear force that the joint carries without normal force [N/m]
-      logical :: single = .false.  !! Whether the joint has one corner only: the second stays open
+      logical :: single = .false.  !! True if the joint has one corner only: the second stays open
       !> One of `cone_kind`
       integer :: kind = cone_kind%frictional
    end type cone_t
 
 contains
 
-   !> The admissible force nearest to a trial force, and the face that it lies on
+   !> The admissible force nearest to a trial force, and its face
    pure subroutine project(cone, trial, force, face)
       type(cone_t), intent(in) :: cone   !! Bounds of the force
       real(wp), intent(in) :: trial(3)   !! Trial force N1, N2, T: (3) [N/m]
@@ -71,9 +71,9 @@ contains
       call return_to_limit(cone, trial, force, face)
    end subroutine project
 
-   !> Projection where the trial shear force is beyond the limit: find the multiplier of
+   !> Projection of a trial force beyond the shear limit: find the multiplier of
    !> |T| - multiplier = limit + friction*sum(max(N + friction*multiplier, 0)),
-   !> which falls piecewise linearly, so that trying none, one and both corners open finds it
+   !> which decreases piecewise linearly. Trials with none, one and both corners open find it
    pure subroutine return_to_limit(cone, trial, force, face)
       type(cone_t), intent(in) :: cone
       real(wp), intent(in) :: trial(3)  !! Trial force beyond the limit: (3) [N/m]
@@ -102,10 +102,10 @@ contains
       force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
    end subroutine return_to_limit
 
-   !> Largest shear force that a joint carries; one that cannot slide carries any until it parts
+   !> Largest shear force of a joint; unlimited for a closed joint that cannot slide
    pure real(wp) function shear_bound(cone, normal)
       type(cone_t), intent(in) :: cone
-      !> Normal forces beyond the tension that the contacts carry: (3), the third not used [N/m]
+      !> Normal forces plus the tensile strength of the contacts: (3), the third not used [N/m]
       real(wp), intent(in) :: normal(3)
 
       shear_bound = cone%limit + cone%friction*(normal(1) + normal(2))
@@ -113,15 +113,15 @@ contains
          & shear_bound = huge(1.0_wp)
    end function shear_bound
 
-   !> Whether a face is the inside of the cone
+   !> True if a face is the inside of the cone
    elemental logical function is_stuck(face)
       type(joint_face_t), intent(in) :: face
 
       is_stuck = face%slip == 0 .and. .not. any(face%open)
    end function is_stuck
 
-   !> A face as an affine map: force = tangent*trial + constant as long as the face is held. What
-   !> cannot slide and does has parted: it carries no shear force
+   !> A face as an affine map: force = tangent*trial + constant on this face. A sliding joint
+   !> without slip has separated: it carries no shear force
    pure subroutine apply_face(cone, face, tangent, constant)
       type(cone_t), intent(in) :: cone
       type(joint_face_t), intent(in) :: face

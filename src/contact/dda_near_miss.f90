@@ -1,8 +1,8 @@
 !> Joints of blocks as drawn, and near misses: edges with small gaps
 !>
-!> Corners of drawings are rounded. Edges within the contact tolerance form a joint. A gap that is
-!> little wider is closed by displacements that are small beside the blocks: static runs join such
-!> blocks, too, and the user is warned.
+!> Coordinates of drawings are rounded. Edges within the contact tolerance form a joint. Slightly
+!> wider gaps would close under displacements that are small compared with the blocks. Static runs
+!> therefore join such blocks too, with a warning.
 module dda_near_miss
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
@@ -18,12 +18,12 @@ module dda_near_miss
 
    !> Two blocks that almost touch
    type :: near_miss_t
-      type(joint_t) :: joint            !! The joint that they would have
-      real(wp) :: gap = 0.0_wp          !! Its widest gap, negative where the blocks overlap [m]
-      real(wp) :: place(2) = 0.0_wp     !! The corner there: (2) [m]
-      real(wp) :: allowed = 0.0_wp      !! Gap that the contact tolerance allows [m]
+      type(joint_t) :: joint            !! The possible joint
+      real(wp) :: gap = 0.0_wp          !! Largest gap, negative if the blocks overlap [m]
+      real(wp) :: place(2) = 0.0_wp     !! Corner at that gap: (2) [m]
+      real(wp) :: allowed = 0.0_wp      !! Largest gap within the contact tolerance [m]
       real(wp) :: tilt = 0.0_wp         !! Angle between its edges [rad]
-      logical :: is_joined = .false.    !! Whether static runs join the blocks
+      logical :: is_joined = .false.    !! True if static runs join the blocks
    end type near_miss_t
 
    !> Largest near miss that is joined, over the contact tolerance
@@ -33,11 +33,11 @@ module dda_near_miss
 
 contains
 
-   !> Joints of blocks as they are drawn
+   !> Joints of blocks in the reference shape
    pure subroutine drawn_joints(search, system, closes_gaps, joint)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
-      !> Whether near misses are joined
+      !> True to join near misses
       logical, intent(in) :: closes_gaps
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
@@ -55,7 +55,7 @@ contains
       call add_misses(both, system, joint, miss)
       miss = pack(miss, miss%is_joined)
       if (size(miss) == 0) return
-      ! a corner that touches is part of the joint of its edge
+      ! a touching corner belongs to the joint of its edge
       allocate (kept(size(joint)), source=.true.)
       do i = 1, size(miss)
          do j = 1, size(joint)
@@ -68,7 +68,7 @@ contains
       joint = whole(rising_order(key))
    end subroutine drawn_joints
 
-   !> Blocks that almost touch
+   !> Find blocks that almost touch
    pure subroutine find_near_misses(search, system, miss)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
@@ -83,8 +83,8 @@ contains
       call add_misses(both, system, joint, miss)
    end subroutine find_near_misses
 
-   !> Near misses beside joints: pairs of edges that have none, and the nearest corner of blocks
-   !> that have none at all
+   !> Find near misses: pairs of edges without a joint, and the nearest corner of blocks without any
+   !> joint
    pure subroutine add_misses(search, system, joint, miss)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
@@ -112,7 +112,7 @@ contains
          if (wide(i)%n_contact == 2) then
             if (.not. is_misfit(new, size_of(i))) cycle
          else if (n > 0) then
-            ! of corners the nearest, and none beside edges
+            ! only the nearest corner, and none in addition to edges
             if (all(list(n)%joint%block == wide(i)%block)) then
                if (list(n)%joint%n_contact == 1 .and. abs(new%gap) < abs(list(n)%gap)) list(n) = new
                cycle
@@ -124,11 +124,12 @@ contains
       miss = list(:n)
    end subroutine add_misses
 
-   !> Whether blocks have a joint: this one of two edges, or for a corner any
+   !> True if the blocks have this joint of two edges; for a corner, if they have any joint
    pure logical function has_joint(joint, key, first, wanted, other)
       type(joint_t), intent(in) :: joint(:)
-      integer(int64), intent(in) :: key(:)  !! Keys of their blocks, rising: (n_joint)
-      integer, intent(in) :: first          !! Where the joints of these blocks begin
+      integer(int64), intent(in) :: key(:)  !! Keys of the blocks of the joints,
+                                            !! ascending: (n_joint)
+      integer, intent(in) :: first          !! First joint of these blocks
       integer(int64), intent(in) :: wanted  !! Key of the blocks
       type(joint_t), intent(in) :: other
       integer :: j
@@ -158,8 +159,8 @@ contains
       miss%is_joined = abs(miss%gap) <= max(tolerance, min(joined*tolerance, widest))*size_of
    end function measured
 
-   !> Whether two edges are meant to lie together: they overlap by more than a corner, and any angle
-   !> between them is that of misplaced corners and not of a round or tapered block
+   !> True if two edges probably should coincide: they overlap by more than a corner, and their
+   !> angle is within errors of coordinates, unlike that of a round or tapered block
    pure logical function is_misfit(miss, size_of)
       type(near_miss_t), intent(in) :: miss
       real(wp), intent(in) :: size_of
@@ -167,7 +168,7 @@ contains
       is_misfit = miss%joint%length > widest*size_of .and. miss%tilt <= widest
    end function is_misfit
 
-   !> Whether a joint of edges has the contact of a corner
+   !> True if a joint of edges includes the contact of a corner
    pure logical function holds(edges, corner)
       type(joint_t), intent(in) :: edges   !! The joint of edges
       type(joint_t), intent(in) :: corner  !! The joint of a corner
@@ -176,10 +177,10 @@ contains
          & .and. edges%contact%edge == corner%contact(1)%edge)
    end function holds
 
-   !> Number that rises with the blocks of a joint
+   !> Key of the blocks of a joint, for sorting
    elemental integer(int64) function pair_key(joint, n_block)
       type(joint_t), intent(in) :: joint
-      integer, intent(in) :: n_block  !! Number of all blocks
+      integer, intent(in) :: n_block  !! Total number of blocks
 
       pair_key = int(joint%block(1), int64)*(n_block + 1) + joint%block(2)
    end function pair_key

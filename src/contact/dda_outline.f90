@@ -1,5 +1,5 @@
 !> Corners and edges of all blocks, numbered: edge i connects corner i with the next one. Vertices
-!> on a straight side are no corners: nothing meets them
+!> on a straight side are no corners and have no contacts
 module dda_outline
    use dda_block_system, only : block_system_t
    use dda_kinds, only : wp
@@ -10,28 +10,28 @@ module dda_outline
 
    public :: outline_t, outline_of, measure_edges, corner_view_t, view_corner, is_convex
 
-   !> How corners follow one another: (n_vertex) each
+   !> Topology of the corners: (n_vertex) each
    type :: outline_t
-      integer, allocatable :: block(:)     !! Block that owns the corner
-      logical, allocatable :: turns(:)     !! Whether the outline turns there; otherwise no corner
-      !> Edges between two fixed blocks, which no other block can reach: (n_vertex)
+      integer, allocatable :: block(:)     !! Block of the corner
+      logical, allocatable :: turns(:)     !! True at corners, false for vertices on a straight side
+      !> True for edges between two fixed blocks, which no other block can reach: (n_vertex)
       logical, allocatable :: covered(:)
       integer, allocatable :: next(:)      !! The next corner of the block, counter-clockwise
-      integer, allocatable :: previous(:)  !! The corner before
-      !> Unit vector along each edge where the corners are, once it is measured: (2, n_vertex)
+      integer, allocatable :: previous(:)  !! The previous corner
+      !> Unit vector along each edge, once measured: (2, n_vertex)
       real(wp), allocatable :: direction(:, :)
-      !> Length of each edge, once it is measured: (n_vertex) [m]
+      !> Length of each edge, once measured: (n_vertex) [m]
       real(wp), allocatable :: length(:)
-      logical, allocatable :: convex(:)  !! Whether a block has no notch: (n_block)
+      logical, allocatable :: convex(:)  !! True for blocks without reflex corners: (n_block)
    end type outline_t
 
-   !> A corner seen from an edge
+   !> Position of a corner relative to an edge
    type :: corner_view_t
       real(wp) :: gap = 0.0_wp        !! Height above the edge's line; negative inside [m]
-      real(wp) :: way = 0.0_wp        !! Way along the edge from its start [m]
+      real(wp) :: way = 0.0_wp        !! Distance along the edge from its start [m]
       real(wp) :: length = 0.0_wp     !! Length of the edge [m]
       real(wp) :: normal(2) = 0.0_wp  !! Outward unit normal of the edge: (2)
-      !> Whether the corner points to the edge, so that it is the first to touch
+      !> True if the corner points to the edge and would touch it first
       logical :: faces = .false.
    end type corner_view_t
 
@@ -39,9 +39,9 @@ module dda_outline
    real(wp), parameter :: dip = 0.05_wp
    !> Sine of the bend below which a corner is flat
    real(wp), parameter :: flat = 1.0e-9_wp
-   !> Distance between the ends of two edges that are one, over their length
+   !> Distance between the ends of two coinciding edges, over their length
    real(wp), parameter :: same = 1.0e-9_wp
-   !> Edges at one place that are compared; where there are more, blocks overlap and are refused
+   !> Largest number of edges compared at one place; with more, blocks overlap and are refused
    integer, parameter :: most_at_place = 16
 
 contains
@@ -84,7 +84,7 @@ contains
       allocate (outline%covered(size(outline%block)), source=.false.)
       edge = pack([(v, v=1, size(outline%block))], system%equation(outline%block) == 0 &
          & .and. outline%turns)
-      ! along a line that no row of blocks is likely to be normal to
+      ! project on a direction that is unlikely to be normal to a row of blocks
       middle = matmul([1.0_wp, 0.618_wp], system%vertex(:, edge) &
          & + system%vertex(:, outline%next(edge)))
       order = sorted_order(0*edge, middle)
@@ -103,7 +103,7 @@ contains
       end do
    end subroutine find_covered_edges
 
-   !> Whether the outline of a block turns at a vertex
+   !> True if a vertex of a block is a corner
    pure logical function turns_at(outline, vertex, v)
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :)  !! Vertices: (2, n_vertex) [m]
@@ -116,14 +116,14 @@ contains
          & .or. dot_product(before, after) < 0.0_wp
    end function turns_at
 
-   !> Let the edges of a block run from corner to corner, past vertices where it does not turn
+   !> Connect corners directly, skipping vertices on straight sides
    pure subroutine skip_straight(first, last, outline)
       integer, intent(in) :: first  !! First vertex of the block
       integer, intent(in) :: last   !! Its last vertex
       type(outline_t), intent(inout) :: outline
       integer :: v
 
-      ! a round block may turn everywhere by less than is seen
+      ! a block with many small angles keeps all its vertices
       if (count(outline%turns(first:last)) < 3) outline%turns(first:last) = .true.
       do v = first, last
          do while (.not. outline%turns(outline%next(v)))
@@ -137,7 +137,7 @@ contains
       end do
    end subroutine skip_straight
 
-   !> Measure all edges, which are asked for again and again
+   !> Compute direction and length of all edges once
    pure subroutine measure_edges(vertex, outline)
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       type(outline_t), intent(inout) :: outline  !! The outline, not yet measured
@@ -152,7 +152,7 @@ contains
       end do
    end subroutine measure_edges
 
-   !> See a corner from an edge
+   !> Position of a corner relative to an edge
    pure type(corner_view_t) function view_corner(outline, vertex, corner, edge, reach) result(view)
       type(outline_t), intent(in) :: outline  !! The outline, measured
       real(wp), intent(in) :: vertex(:, :)
@@ -173,7 +173,7 @@ contains
       view%faces = all(sides > -dip) .and. is_convex(outline, vertex, corner)
    end function view_corner
 
-   !> Whether a corner is no notch
+   !> True if a corner is not reflex
    pure logical function is_convex(outline, vertex, corner)
       type(outline_t), intent(in) :: outline
       real(wp), intent(in) :: vertex(:, :)

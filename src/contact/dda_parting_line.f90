@@ -1,5 +1,6 @@
-!> Separating axes: an edge of one convex block that has the other block on its outer side. That
-!> line is the entrance: what must not cross it keeps the blocks apart, whichever corners meet
+!> Separating axes: an edge of one convex block whose line has the other block on its outer side.
+!> This line is the entrance: as long as it is not crossed, the blocks are separated, whichever
+!> corners touch
 module dda_parting_line
    use dda_entrance, only : add_single, join_edges, joint_list_t, neighbourhood_t, was_closed
    use dda_key_set, only : key_set_t, new_key_set
@@ -10,23 +11,24 @@ module dda_parting_line
 
    public :: add_parted_joint, block_gap
 
-   !> An edge and the block beyond it
+   !> An edge and the opposite block
    type :: line_t
       integer :: edge = 0               !! Number of the edge; 0 for none
-      integer :: corner = 0             !! The corner of the other block that is nearest to its line
+      integer :: corner = 0             !! Corner of the opposite block nearest to the line
       real(wp) :: gap = -huge(1.0_wp)   !! Height of that corner above the line [m]
-      real(wp) :: time = -huge(1.0_wp)  !! When it crosses the line, in lengths of the travel
+      real(wp) :: time = -huge(1.0_wp)  !! Time at which it crosses the line, in units of the
+                                        !! expected motion
    end type line_t
 
-   !> Advantage below which a separating axis is kept, over the edge
+   !> Advantage in gap below which a separating axis is kept, over the length of the edge
    real(wp), parameter :: lasting = 1.0e-9_wp
 
 contains
 
-   !> How far two convex blocks are apart, along the normal of the edge that parts them best;
-   !> negative if they have entered one another [m]
+   !> Distance of two convex blocks along the normal of the best separating edge; negative if they
+   !> overlap [m]
    pure real(wp) function block_gap(first_vertex, vertex, block)
-      !> First corner of each block, and one beyond the last: (n_block + 1)
+      !> First corner of each block, and one past the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
       real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n_vertex) [m]
       integer, intent(in) :: block(2)       !! The two blocks: (2)
@@ -47,8 +49,8 @@ contains
    !> Heights of a block's corners above the line of an edge
    pure function heights(vertex, edge, next, from, to) result(height)
       real(wp), intent(in) :: vertex(:, :)
-      integer, intent(in) :: edge  !! Where the edge starts
-      integer, intent(in) :: next  !! Where it ends
+      integer, intent(in) :: edge  !! Start of the edge
+      integer, intent(in) :: next  !! End of the edge
       integer, intent(in) :: from  !! First corner of the block
       integer, intent(in) :: to    !! Its last corner
       real(wp) :: height(from:to)  !! The heights: (to - from + 1) [m]
@@ -59,13 +61,13 @@ contains
          & + normal(2)*(vertex(2, from:to) - vertex(2, edge))
    end function heights
 
-   !> Add the one joint of two convex blocks: the other block's edge or corner before the line that
-   !> parts them
+   !> Add the joint of two convex blocks: the edge or corner of one block at the separating line of
+   !> the other
    pure subroutine add_parted_joint(near, edge_pair, reach, list)
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
-      real(wp), intent(in) :: reach  !! Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach  !! Largest gap [m]
       type(joint_list_t), intent(inout) :: list
       type(line_t) :: line
       type(key_set_t) :: taken
@@ -83,12 +85,12 @@ contains
       call add_single(near, line%corner, line%edge, side, taken, list)
    end subroutine add_parted_joint
 
-   !> The edge whose line parts two blocks: the one that did while they touched; else, of those that
-   !> part them now, the one that the other block would cross last
+   !> The edge whose line separates two blocks: the previous one of touching blocks; else the one
+   !> that the opposite block would cross last
    pure function parting_line(near, edge_pair, reach) result(best)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: edge_pair(:, :)
-      real(wp), intent(in) :: reach  !! Blocks farther from one another than this are no matter [m]
+      real(wp), intent(in) :: reach  !! Largest distance of the blocks [m]
       type(line_t) :: best
       type(line_t) :: free, line, held, widest
       integer :: i, side
@@ -103,7 +105,7 @@ contains
             if (was_closed(near, line%corner, line%edge) .and. line%gap > held%gap) held = line
          end do
       end do
-      ! blocks meet by no edge that another one covers while they can meet by another
+      ! covered edges count only if there are no others
       if (free%time > -huge(1.0_wp)) best = free
       if (widest%gap > reach) best = widest
       if (held%edge == 0) return
@@ -118,7 +120,7 @@ contains
          & .or. .not. line%time < other%time .and. line%gap > other%gap
    end function is_later
 
-   !> Whether the edge of a line, or the one that faces it, lies between two fixed blocks
+   !> True if the edge of a line, or the opposite edge, is between two fixed blocks
    pure logical function is_covered(near, line)
       type(neighbourhood_t), intent(in) :: near
       type(line_t), intent(in) :: line
@@ -127,7 +129,7 @@ contains
          & .or. near%outline%covered(facing_edge(near, line))
    end function is_covered
 
-   !> One edge and the other block
+   !> Line of one edge for the opposite block
    pure type(line_t) function line_of(near, edge, block) result(line)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: edge   !! Number of the edge
@@ -154,7 +156,7 @@ contains
       end associate
    end function line_of
 
-   !> Edge at the nearest corner of a line that looks at it most squarely
+   !> Edge at the nearest corner of a line that is most nearly parallel to it
    pure integer function facing_edge(near, line)
       type(neighbourhood_t), intent(in) :: near
       type(line_t), intent(in) :: line
