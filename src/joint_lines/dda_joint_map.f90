@@ -1,6 +1,6 @@
 !> Contents of a joint map: outline, openings, sets, points
 !>
-!> Openings have their outlines here: circle and ellipse, arch on walls, horseshoe.
+!> The outlines of openings are computed here: circle and ellipse, arch on walls, horseshoe.
 module dda_joint_map
    use dda_kinds, only : pi, wp
    use dda_line_model, only : entity_role
@@ -10,19 +10,19 @@ module dda_joint_map
    public :: bolts_t, joint_map_t, joint_set_t, length_t, length_law, map_line_t
    public :: opening_t, arched_opening, horseshoe, ring
 
-   !> How a length is spread about its mean
+   !> Distributions of a length about its mean
    type :: length_law_enum
-      integer :: constant = 1     !! Not at all
-      integer :: uniform = 2      !! Evenly, by the randomness on either side
+      integer :: constant = 1     !! No variation
+      integer :: uniform = 2      !! Uniform, within the mean plus or minus the randomness
       integer :: exponential = 3  !! Negative exponential
       !> Normal, with the randomness as coefficient of variation, cut off at 0 and at twice the mean
       integer :: normal = 4
    end type length_law_enum
 
-   !> The laws by name
+   !> Names of the distributions
    type(length_law_enum), parameter :: length_law = length_law_enum()
 
-   !> A length that may be random
+   !> A length with its distribution
    type :: length_t
       real(wp) :: mean = 0.0_wp             !! Its mean [m]
       integer :: law = length_law%constant  !! One of length_law
@@ -32,16 +32,16 @@ module dda_joint_map
    !> A set of joints
    type :: joint_set_t
       real(wp) :: dip = 0.0_wp         !! Angle of the joints, anticlockwise from x [rad]
-      real(wp) :: dip_spread = 0.0_wp  !! Largest deviation of a joint from it, evenly spread [rad]
+      real(wp) :: dip_spread = 0.0_wp  !! Largest deviation of a joint from it, uniform [rad]
       type(length_t) :: spacing        !! Distance between neighbours
-      type(length_t) :: trace          !! Length of a trace; joints without end where its mean is 0
-      type(length_t) :: bridge         !! Rock between two traces of a joint
+      type(length_t) :: trace          !! Length of a trace; unlimited joints if the mean is 0
+      type(length_t) :: bridge         !! Length of rock between two traces of a joint
       integer :: material = 1          !! Number of the joint material
-      !> What chooses the random numbers of the set: seed and stream (2)
+      !> Seed and stream of the random numbers of the set: (2)
       integer :: seed(2) = 0
-      logical :: anchored = .false.   !! Whether one joint of the set runs through a given point
-      real(wp) :: anchor(2) = 0.0_wp  !! That point, or the origin of the set: (2) [m]
-      !> Corners of the region of the set; without any it is the whole outline: (2, n) [m]
+      logical :: anchored = .false.   !! True if one joint of the set runs through a given point
+      real(wp) :: anchor(2) = 0.0_wp  !! The given point, or the origin of the set: (2) [m]
+      !> Corners of the region of the set; without corners the whole outline: (2, n) [m]
       real(wp), allocatable :: region(:, :)
       integer :: row = 0  !! Line of the file
    end type joint_set_t
@@ -50,17 +50,17 @@ module dda_joint_map
    type :: opening_t
       real(wp), allocatable :: corner(:, :)  !! Corners, anticlockwise: (2, n) [m]
       integer :: material = 1                !! Number of the joint material of its edges
-      !> Whether it is there from the beginning; joints run through one that is not
+      !> True if it exists from the beginning; otherwise joints continue through it
       logical :: excavated = .true.
       integer :: row = 0  !! Line of the file
    end type opening_t
 
-   !> A line or a point that is placed by hand
+   !> A line or a point given explicitly
    type :: map_line_t
       !> One of entity_role
       integer :: role = entity_role%joint
-      real(wp) :: ends(4) = 0.0_wp  !! Ends, one and the same for a point: (4) [m]
-      integer :: material = 1       !! Number of its material, or of the properties of a bolt
+      real(wp) :: ends(4) = 0.0_wp  !! Ends, equal for a point: (4) [m]
+      integer :: material = 1       !! Number of its material, or of the bolt properties
       real(wp) :: bolt(3) = 0.0_wp  !! Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]
       integer :: row = 0            !! Line of the file
    end type map_line_t
@@ -69,36 +69,36 @@ module dda_joint_map
    type :: bolts_t
       integer :: opening = 1  !! Number of the opening
       integer :: number = 0   !! Number of bolts
-      !> Directions of the first and of the last, seen from the opening's centre: (2) [rad]
+      !> Directions of the first and last bolt from the opening's centre: (2) [rad]
       real(wp) :: fan(2) = 0.0_wp
-      !> Their length, and how deep inside the rock they begin: (2) [m]
+      !> Length of the bolts, and depth of their heads in the rock: (2) [m]
       real(wp) :: reach(2) = 0.0_wp
       real(wp) :: property(3) = 0.0_wp  !! Stiffness, strength and prestress: (3) [N/m, N, N]
       integer :: row = 0                !! Line of the file
    end type bolts_t
 
-   !> All of a map
+   !> Contents of a map
    type :: joint_map_t
       character(len=:), allocatable :: file  !! Name of the file, for messages
       real(wp) :: edge_node_ratio = 0.0_wp   !! Shi's e00
       !> Corners of the outline, anticlockwise: (2, n) [m]
       real(wp), allocatable :: outline(:, :)
       integer :: outline_material = 1    !! Number of the joint material of the outline
-      logical :: held_side(3) = .false.  !! Sides whose blocks are held: left, right, bottom (3)
-      !> How far from the side the line that holds them runs [m]
+      logical :: held_side(3) = .false.  !! Fixed sides: left, right, bottom (3)
+      !> Distance of the line with the fixed points from the side [m]
       real(wp) :: hold_depth = 0.0_wp
       type(joint_set_t), allocatable :: set(:)  !! Sets of joints
       !> Openings
       type(opening_t), allocatable :: opening(:)
-      type(map_line_t), allocatable :: line(:)  !! Lines and points placed by hand
+      type(map_line_t), allocatable :: line(:)  !! Lines and points given explicitly
       type(bolts_t), allocatable :: bolts(:)    !! Bolts around openings
    end type joint_map_t
 
 contains
 
-   !> A circle or an ellipse with its corners on the curve
+   !> Corners of a circle or an ellipse
    pure function ring(centre, half_axis, n) result(corner)
-      real(wp), intent(in) :: centre(2)     !! Its centre: (2) [m]
+      real(wp), intent(in) :: centre(2)     !! Centre: (2) [m]
       real(wp), intent(in) :: half_axis(2)  !! Half axes along x and y: (2) [m]
       integer, intent(in) :: n              !! Number of corners
       real(wp) :: corner(2, n)              !! The corners, anticlockwise: (2, n) [m]
@@ -106,7 +106,7 @@ contains
       corner = arc(centre, half_axis, 0.0_wp, 2.0_wp*pi*real(n - 1, wp)/real(n, wp), n)
    end function ring
 
-   !> Walls on a level floor with half an ellipse above them
+   !> Corners of an opening with walls on a level floor below half an ellipse
    pure function arched_opening(middle, width, wall, rise, n) result(corner)
       real(wp), intent(in) :: middle(2)      !! Middle of the floor: (2) [m]
       real(wp), intent(in) :: width          !! Distance of the walls [m]
@@ -125,7 +125,8 @@ contains
       end if
    end function arched_opening
 
-   !> A horseshoe: half a circle above, walls that draw in to the floor on arcs of twice its radius
+   !> Corners of a horseshoe: half a circle above, walls that narrow to the floor on arcs of twice
+   !> its radius
    pure function horseshoe(middle, radius, wall, n) result(corner)
       real(wp), intent(in) :: middle(2)
       real(wp), intent(in) :: radius  !! Radius of the roof [m]

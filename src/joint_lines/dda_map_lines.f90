@@ -1,6 +1,6 @@
 !> Joint maps to lines and points for dda cut (Shi: DL)
 !>
-!> Of each line those parts are kept that lie in rock: inside the outline, outside the openings.
+!> Parts of lines inside the outline and outside the openings are kept.
 module dda_map_lines
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
@@ -20,36 +20,37 @@ module dda_map_lines
 
    !> Maximum number of traces of a map
    integer, parameter :: most_traces = 1000000
-   !> Shortest part of a line, over its length
+   !> Smallest part of a line, over its length
    real(wp), parameter :: least_share = 1.0e-12_wp
 
    interface
 
-      !> How many joints a set has across a circle, about
+      !> Approximate number of joints of a set across a circle
       pure real(wp) module function joint_count(set, radius)
          type(joint_set_t), intent(in) :: set
          real(wp), intent(in) :: radius  !! Radius of the circle [m]
       end function joint_count
 
-      !> Traces of a set that meet a circle
+      !> Traces of a set within a circle
       pure module subroutine set_traces(set, centre, radius, trace, n)
          type(joint_set_t), intent(in) :: set
          real(wp), intent(in) :: centre(2)  !! Centre of the circle: (2) [m]
          real(wp), intent(in) :: radius
          !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
          real(wp), allocatable, intent(out) :: trace(:, :)
-         integer, intent(out) :: n  !! Their number
+         integer, intent(out) :: n  !! Number of traces
       end subroutine set_traces
 
-      !> A length by its law
+      !> Random length with a given distribution
       pure module subroutine draw_length(length, random, value)
          type(length_t), intent(in) :: length
          type(random_t), intent(inout) :: random  !! Random numbers
          real(wp), intent(out) :: value           !! The length [m]
       end subroutine draw_length
 
-      !> A length that covers a given point: long ones do so more often. With such a one over the
-      !> origin, which lies evenly in it, no place of an axis is special: means hold in any window
+      !> Random length of the piece that covers a given point; long pieces are more likely. A
+      !> position within the piece that is uniformly distributed makes all places of an axis
+      !> equivalent, so that means hold in any window
       pure module subroutine draw_covering_length(length, random, value)
          type(length_t), intent(in) :: length
          type(random_t), intent(inout) :: random
@@ -60,11 +61,12 @@ module dda_map_lines
 
 contains
 
-   !> Lines and points of a map
+   !> Make the lines and points of a map
    pure subroutine map_lines(map, model, error)
       type(joint_map_t), intent(in) :: map
       type(line_model_t), intent(out) :: model
-      type(error_t), allocatable, intent(out) :: error  !! What cannot be drawn, with file and line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if an item cannot be drawn,
+                                                        !! with file and line
       real(wp) :: inside(2)
       integer :: i
 
@@ -92,7 +94,7 @@ contains
       end do
    end subroutine map_lines
 
-   !> Whether all openings lie apart inside the outline
+   !> Check that all openings are separate and inside the outline
    pure subroutine check_openings(map, error)
       type(joint_map_t), intent(in) :: map
       type(error_t), allocatable, intent(out) :: error
@@ -118,9 +120,9 @@ contains
       end do
    end subroutine check_openings
 
-   !> Add the edges of a polygon
+   !> Add the edges of a polygon as lines
    pure subroutine add_outline(corner, material, row, model)
-      real(wp), intent(in) :: corner(:, :)  !! Its corners: (2, n) [m]
+      real(wp), intent(in) :: corner(:, :)  !! Corners: (2, n) [m]
       integer, intent(in) :: material       !! Number of the joint material
       integer, intent(in) :: row            !! Line of the file
       type(line_model_t), intent(inout) :: model
@@ -132,7 +134,7 @@ contains
       end do
    end subroutine add_outline
 
-   !> Hold the blocks along sides of the outline
+   !> Add fixed lines along sides of the outline
    pure subroutine hold_sides(map, model)
       type(joint_map_t), intent(in) :: map
       type(line_model_t), intent(inout) :: model
@@ -151,7 +153,7 @@ contains
       end do
    end subroutine hold_sides
 
-   !> Draw a set of joints
+   !> Add the traces of a joint set
    pure subroutine add_set(map, i, model, error)
       type(joint_map_t), intent(in) :: map
       integer, intent(in) :: i  !! Number of the set
@@ -177,11 +179,11 @@ contains
       end associate
    end subroutine add_set
 
-   !> Keep what of some lines lies in rock
+   !> Clip lines to the rock
    pure subroutine clip_to_rock(map, line, n)
       type(joint_map_t), intent(in) :: map
       real(wp), allocatable, intent(inout) :: line(:, :)  !! Columns of ends: (4, n or more) [m]
-      integer, intent(inout) :: n  !! Their number
+      integer, intent(inout) :: n  !! Number of lines
       integer :: i
 
       call clip_line(line, n, map%outline, .true.)
@@ -190,7 +192,7 @@ contains
       end do
    end subroutine clip_to_rock
 
-   !> Add a line or a point that is placed by hand
+   !> Add a line or a point given explicitly
    pure subroutine add_line(map, line, model, error)
       type(joint_map_t), intent(in) :: map
       type(map_line_t), intent(in) :: line
@@ -246,13 +248,13 @@ contains
       end associate
    end subroutine add_bolts
 
-   !> Cut a line at a polygon and keep what lies inside, or outside
+   !> Clip lines at a polygon
    pure subroutine clip_line(line, n, corner, inside)
       !> Columns of ends, replaced by those of the parts: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: line(:, :)
-      integer, intent(inout) :: n    !! Their number
+      integer, intent(inout) :: n    !! Number of lines
       real(wp), intent(in) :: corner(:, :)
-      logical, intent(in) :: inside  !! Whether the parts inside are kept
+      logical, intent(in) :: inside  !! True to keep the parts inside, false for those outside
       real(wp), allocatable :: part(:, :)
       integer :: i, m
 
@@ -265,14 +267,14 @@ contains
       n = m
    end subroutine clip_line
 
-   !> The parts of one line
+   !> Append the parts of one line
    pure subroutine clip_one(line, corner, inside, part, m)
-      real(wp), intent(in) :: line(4)  !! Its ends: (4) [m]
+      real(wp), intent(in) :: line(4)  !! Ends: (4) [m]
       real(wp), intent(in) :: corner(:, :)
       logical, intent(in) :: inside
       !> Receives columns of ends: (4, m or more) [m]
       real(wp), allocatable, intent(inout) :: part(:, :)
-      integer, intent(inout) :: m  !! Their number
+      integer, intent(inout) :: m  !! Number of parts
       real(wp), allocatable :: share(:)
       real(wp) :: along(2), start
       integer :: k
@@ -287,7 +289,7 @@ contains
             start = -1.0_wp
             cycle
          end if
-         ! parts on either side of a corner that is only touched are one
+         ! merge the parts on either side of a corner that is only touched
          if (start < 0.0_wp) then
             start = share(k - 1)
             m = m + 1
@@ -297,10 +299,10 @@ contains
       end do
    end subroutine clip_one
 
-   !> Where a line crosses a polygon, its own ends included, in order
+   !> Intersections of a line with a polygon, including the ends of the line
    pure function crossings(line, corner) result(share)
       real(wp), intent(in) :: line(4), corner(:, :)
-      !> Shares of its length, ascending, 0 first and 1 last: (n)
+      !> Positions as shares of the line's length, ascending, 0 first and 1 last: (n)
       real(wp), allocatable :: share(:)
       real(wp) :: place(size(corner, 2) + 2), at(2)
       integer :: i, n
@@ -320,7 +322,7 @@ contains
       share = place(sorted_order(spread(0, 1, n), place(:n)))
    end function crossings
 
-   !> A point inside a polygon: half way between its first two crossings with a level line
+   !> A point inside a polygon: midway between its first two intersections with a horizontal line
    pure function inner_point(corner) result(point)
       real(wp), intent(in) :: corner(:, :)
       real(wp) :: point(2)  !! The point: (2) [m]
@@ -331,7 +333,7 @@ contains
       low = minval(corner, 2)
       high = maxval(corner, 2)
       height = corner(2, sorted_order(spread(0, 1, size(corner, 2)), corner(2, :)))
-      ! the widest strip between two corners has no corner inside
+      ! no corner is in the widest strip between the heights of two corners
       k = maxloc(height(2:) - height(:size(height) - 1), 1)
       line = [2.0_wp*low(1) - high(1), 0.5_wp*(height(k) + height(k + 1)), &
          & 2.0_wp*high(1) - low(1), 0.5_wp*(height(k) + height(k + 1))]
@@ -339,7 +341,7 @@ contains
       point = line(1:2) + 0.5_wp*(share(2) + share(3))*(line(3:4) - line(1:2))
    end function inner_point
 
-   !> Where a ray leaves a polygon for the last time
+   !> Last intersection of a ray with a polygon
    pure function ray_exit(corner, origin, direction) result(point)
       real(wp), intent(in) :: corner(:, :)
       real(wp), intent(in) :: origin(2)     !! A point inside: (2) [m]
@@ -353,7 +355,7 @@ contains
       point = origin + share(size(share) - 1)*reach*direction
    end function ray_exit
 
-   !> Whether two polygons have edges that cross, or one holds the other
+   !> True if two polygons intersect or one contains the other
    pure logical function outlines_cross(one, other)
       real(wp), intent(in) :: one(:, :)    !! Corners: (2, n) [m]
       real(wp), intent(in) :: other(:, :)  !! Corners: (2, n) [m]

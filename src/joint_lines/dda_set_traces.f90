@@ -1,36 +1,37 @@
 !> Traces of a joint set within a circle about the middle of the outline
 !>
-!> Joints are numbered from the anchor of the set outwards, and each has its own random numbers:
-!> a larger outline has more joints and the same ones where the smaller one was.
+!> Joints are numbered from the anchor of the set outwards, each with its own random numbers. A
+!> larger outline therefore adds joints without changing those of a smaller one.
 submodule (dda_map_lines) dda_set_traces
    use dda_joint_map, only : length_law
    use dda_random, only : draw, draw_normal, new_random
    implicit none
 
-   !> What of a set has a sequence of numbers of its own
+   !> Number of generator seeds per seed of a set
    integer, parameter :: n_kind = 6
    !> Random streams per set, enough for both sides
    integer, parameter :: set_streams = 2000003
    !> Maximum number of joints on one side of the anchor
    integer, parameter :: most_joints = 1000000
 
-   !> The line of one joint
+   !> Axis of one joint
    type :: axis_t
       real(wp) :: along(2) = 0.0_wp   !! Unit vector along it: (2)
-      real(wp) :: foot(2) = 0.0_wp    !! Its point that is nearest to the anchor of the set: (2) [m]
-      real(wp) :: window(2) = 0.0_wp  !! Where the circle begins and ends, from the foot: (2) [m]
+      real(wp) :: foot(2) = 0.0_wp    !! Point nearest to the anchor of the set: (2) [m]
+      real(wp) :: window(2) = 0.0_wp  !! Start and end of the chord in the circle, from the
+                                      !! foot: (2) [m]
    end type axis_t
 
 contains
 
-   !> How many joints a set has across a circle, about
+   !> Approximate number of joints of a set across a circle
    module procedure joint_count
       joint_count = 2.0_wp*radius/set%spacing%mean
       if (set%trace%mean > 0.0_wp) joint_count = joint_count*max(1.0_wp, &
          & 2.0_wp*radius/(set%trace%mean + set%bridge%mean))
    end procedure joint_count
 
-   !> Traces of a set that meet a circle
+   !> Traces of a set within a circle
    module procedure set_traces
       type(random_t) :: random
       real(wp) :: place(2), step, reach
@@ -51,7 +52,7 @@ contains
          number = 0
          do while (abs(place(way)) <= reach .and. number < most_joints)
             number = number + 1
-            ! a joint through the anchor is both the first to the left and to the right
+            ! a joint through the anchor starts both sequences
             if (.not. (set%anchored .and. way == 2 .and. number == 1)) &
                & call add_joint(set, centre, radius, place(way), &
                & number*merge(1, -1, way == 2), trace, n)
@@ -65,7 +66,7 @@ contains
    pure subroutine add_joint(set, centre, radius, distance, number, trace, n)
       type(joint_set_t), intent(in) :: set
       real(wp), intent(in) :: centre(2), radius
-      !> How far the joint is from the anchor, along the normal [m]
+      !> Distance of the joint from the anchor, along the normal [m]
       real(wp), intent(in) :: distance
       !> Number of the joint, negative on one side
       integer, intent(in) :: number
@@ -92,7 +93,7 @@ contains
       end if
    end subroutine add_joint
 
-   !> Traces and bridges from the foot of a joint outwards
+   !> Add traces and bridges from the foot of a joint outwards
    pure subroutine add_traces(set, axis, number, random, trace, n)
       type(joint_set_t), intent(in) :: set
       type(axis_t), intent(in) :: axis
@@ -128,19 +129,19 @@ contains
       end do
    end subroutine add_traces
 
-   !> The law of traces or of bridges
+   !> Distribution of traces or of bridges
    pure type(length_t) function part_law(set, is_trace)
       type(joint_set_t), intent(in) :: set
-      logical, intent(in) :: is_trace  !! Whether it is a trace
+      logical, intent(in) :: is_trace  !! True for a trace, false for a bridge
 
       part_law = set%bridge
       if (is_trace) part_law = set%trace
    end function part_law
 
-   !> Add the part of a joint between two places, as far as it is in the window
+   !> Add the part of a joint between two positions, clipped to the window
    pure subroutine add_part(axis, part, trace, n)
       type(axis_t), intent(in) :: axis
-      real(wp), intent(in) :: part(2)  !! Where the part begins and ends along it: (2) [m]
+      real(wp), intent(in) :: part(2)  !! Start and end of the part along the joint: (2) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
       integer, intent(inout) :: n      !! Number of traces
       real(wp) :: from, to
@@ -153,7 +154,7 @@ contains
       trace(:, n) = [axis%foot + from*axis%along, axis%foot + to*axis%along]
    end subroutine add_part
 
-   !> A length by its law
+   !> Random length with a given distribution
    module procedure draw_length
       real(wp) :: number
 
@@ -174,7 +175,7 @@ contains
       end select
    end procedure draw_length
 
-   !> A length that covers a given point
+   !> Random length of the piece that covers a given point
    module procedure draw_covering_length
       real(wp) :: more, number
 
@@ -187,7 +188,7 @@ contains
       do
          call draw_length(length, random, value)
          call draw(random, number)
-         ! no law but the exponential one goes beyond twice the mean
+         ! except for the exponential distribution, lengths are below twice the mean
          if (2.0_wp*length%mean*number <= value) exit
       end do
    end procedure draw_covering_length
