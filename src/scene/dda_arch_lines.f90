@@ -31,11 +31,11 @@ module dda_arch_lines
 
 contains
 
-   !> The lines and fixed points of an arch
+   !> Make the lines and fixed points of an arch
    pure subroutine arch_lines(deck, model, error)
       type(deck_t), intent(in) :: deck  !! The deck of a case, with an arch
       type(line_model_t), intent(out) :: model
-      !> Abutments that are too large to lie side by side
+      !> Allocated if the abutments are too large to be placed side by side
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
       real(wp) :: corner(2, 4, 2)
@@ -48,7 +48,7 @@ contains
          corner(:, :, side) = scene%system%vertex(:, first:first + 3)
          call widen(deck, corner(:, :, side))
       end do
-      ! the face first, from the intrados to the extrados
+      ! the springing face first, from the intrados to the extrados
       corner(:, :, 1) = corner(:, [4, 1, 2, 3], 1)
       corner(:, :, 2) = corner(:, [1, 4, 3, 2], 2)
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) &
@@ -69,7 +69,7 @@ contains
       model%edge_node_ratio = edge_node_ratio(model)
    end subroutine arch_lines
 
-   !> Chords of a voussoir at the intrados and at the extrados
+   !> Add the chords of a voussoir at the intrados and at the extrados
    pure subroutine add_chords(system, block, model)
       type(block_system_t), intent(in) :: system
       integer, intent(in) :: block  !! Number of the voussoir
@@ -86,7 +86,7 @@ contains
       end do
    end subroutine add_chords
 
-   !> The joint between a voussoir and the next one, a little too long
+   !> Add the joint between a voussoir and the next one, with an overshoot
    pure subroutine add_joint(system, block, model)
       type(block_system_t), intent(in) :: system
       integer, intent(in) :: block  !! Number of the voussoir on the left
@@ -102,9 +102,9 @@ contains
       call add_entity(model%line, [intrados - more, extrados + more], 1, 0)
    end subroutine add_joint
 
-   !> An abutment with its four fixed points
+   !> Add an abutment with its four fixed points
    pure subroutine add_abutment(corner, material, model)
-      real(wp), intent(in) :: corner(2, 4)  !! Its corners, the face first: (2, 4) [m]
+      real(wp), intent(in) :: corner(2, 4)  !! Corners, starting with the springing face: (2, 4) [m]
       integer, intent(in) :: material       !! Joint material of the face
       type(line_model_t), intent(inout) :: model
       real(wp) :: share(2), point(2)
@@ -124,7 +124,7 @@ contains
       end do
    end subroutine add_abutment
 
-   !> Joint material of the springings: another one where they alone cannot slide
+   !> Joint material of the springings: a separate one if only they cannot slide
    pure integer function face_material(deck)
       type(deck_t), intent(in) :: deck
 
@@ -132,8 +132,8 @@ contains
       if (deck%value(arch_springing)%text == "no-slip") face_material = 2
    end function face_material
 
-   !> An edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less where
-   !> edges are short
+   !> Edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less for short
+   !> edges
    pure real(wp) function edge_node_ratio(model)
       type(line_model_t), intent(in) :: model
       real(wp) :: shortest, height, width
@@ -151,7 +151,7 @@ contains
          & width/2.6_wp)))
    end function edge_node_ratio
 
-   !> The analysis of an arch, with the constants of the original
+   !> Analysis of an arch, with Shi's constants
    pure type(limerick_analysis_t) function arch_analysis(deck) result(analysis)
       type(deck_t), intent(in) :: deck
       type(analysis_material_t) :: stone
@@ -162,7 +162,7 @@ contains
       call set_constants(deck, analysis%limerick_constants_t)
       analysis%dynamic = analysis%dynamic .or. deck%value(analysis_mode)%text == "dynamic"
       if (deck%value(analysis_mode)%text /= "limerick") then
-         ! in the other modes these keys mean something else
+         ! in the other modes these keys have another meaning
          analysis%auto_time_step = usual%auto_time_step
          analysis%penalty_factor = usual%penalty_factor
       end if
@@ -182,10 +182,10 @@ contains
       analysis%joint(2:)%friction_deg = no_slip_deg
    end function arch_analysis
 
-   !> What the files cannot carry
+   !> Keys that the Limerick files cannot represent
    pure function what_is_lost(deck) result(text)
       type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
+      character(len=:), allocatable :: text  !! Keys separated by commas; empty if there are none
 
       text = ""
       if (abs(deck%value(load_gravity_direction_deg)%number + 90.0_wp) > 0.0_wp) &

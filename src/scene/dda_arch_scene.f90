@@ -30,7 +30,7 @@ module dda_arch_scene
 
    !> Friction angle from which no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
-   !> Default rotation of a collapse in a search in time [rad]
+   !> Default rotation that means collapse in a dynamic search [rad]
    real(wp), parameter :: overturned = pi/4.0_wp
 
    !> Default number of steps per step of full length
@@ -38,7 +38,7 @@ module dda_arch_scene
 
 contains
 
-   !> The scene that the deck of one case describes
+   !> Make the scene of an arch
    pure subroutine arch_scene(deck, scene)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(out) :: scene
@@ -51,8 +51,8 @@ contains
       scene%system%unit_weight = unit_weight(deck)
       half_angle = degree*deck%value(arch_half_angle_deg)%number
       scene%settings = settings_of(deck, half_angle, size(half_joints_deg(deck)))
-      ! rounding feigns an acceleration: a corner off by eps r makes the weight of a voussoir wrong
-      ! by eps over the thickness ratio
+      ! acceleration by round-off: an error eps r of a corner changes the weight of a voussoir by
+      ! eps over the thickness ratio
       scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, min(1.0_wp, &
          & half_angle**2/2.0_wp)*epsilon(1.0_wp)/deck%value(arch_thickness_ratio)%number)
       n = size(edge_pair, 2)
@@ -62,7 +62,7 @@ contains
       allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine arch_scene
 
-   !> What a chain of rigid voussoirs is made from, without what the settings say
+   !> Data of a chain of rigid voussoirs, without settings
    pure type(arch_numbers_t) function arch_numbers(deck) result(numbers)
       type(deck_t), intent(in) :: deck
 
@@ -89,7 +89,7 @@ contains
       angle(n - size(half) + 1:) = half
    end function joint_angles_deg
 
-   !> The blocks' material
+   !> Material of the blocks
    pure type(material_t) function material_of(deck) result(material)
       type(deck_t), intent(in) :: deck
 
@@ -100,7 +100,7 @@ contains
       material%plane_strain = deck%value(material_plane)%text == "strain"
    end function material_of
 
-   !> The law of the joints
+   !> Law of the joints
    pure type(joint_law_t) function joint_law(deck) result(law)
       type(deck_t), intent(in) :: deck
       real(wp) :: friction_deg
@@ -128,7 +128,7 @@ contains
       end if
    end function half_joints_deg
 
-   !> The shape of the arch
+   !> Shape of the arch
    pure type(arch_shape_t) function shape_of(deck) result(shape)
       type(deck_t), intent(in) :: deck
       real(wp), allocatable :: joints(:), span(:)
@@ -153,11 +153,11 @@ contains
          & deck%value(material_density)%number*deck%value(load_gravity)%number)
    end function unit_weight
 
-   !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
-   !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
+   !> Settings of a run. The tolerance of accelerations at rest follows the search tolerance and the
+   !> rise: with the same deficit of thickness, a shallow arch accelerates less
    pure type(settings_t) function settings_of(deck, half_angle, joints) result(settings)
       type(deck_t), intent(in) :: deck
-      !> Angle from the crown to a springing; a right angle for what is no arch [rad]
+      !> Angle from the crown to a springing; a right angle for other structures [rad]
       real(wp), intent(in) :: half_angle
       integer, intent(in) :: joints  !! Joints of one half of an arch, or all joints
       type(scene_plan_t) :: plan
@@ -193,8 +193,7 @@ contains
       call set_loads(deck, settings)
       rise = min(1.0_wp, half_angle**2/2.0_wp)
       settings%rest_tolerance = 1.0e-3_wp*rise*deck%value(search_tolerance)%number
-      ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
-      ! other
+      ! round-off: the thrust is w r, the weight of a voussoir 2 w r alpha/n
       noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
@@ -211,11 +210,11 @@ contains
       settings%load_factor = deck%value(load_load_factor)%number
    end subroutine set_loads
 
-   !> Exact critical thickness ratio of the very same polygons by limit analysis
+   !> Exact critical thickness ratio of the same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)
       type(deck_t), intent(in) :: deck
       real(wp), intent(out) :: eta   !! The ratio
-      logical, intent(out) :: known  !! Whether there is one and it is known
+      logical, intent(out) :: known  !! True if it exists and is known
       type(arch_shape_t) :: shape
       type(discrete_solution_t) :: solution
       real(wp) :: friction
@@ -239,8 +238,8 @@ contains
       if (known) eta = solution%eta
    end subroutine exact_thickness
 
-   !> Where a search for the thickness ratio begins: somewhat below what an arch of many voussoirs
-   !> needs, by the first two terms of its series in the half angle
+   !> Start of a search for the thickness ratio: slightly below that of an arch of many voussoirs,
+   !> by the first two terms of its series in the half angle
    pure real(wp) function search_start(deck)
       type(deck_t), intent(in) :: deck
       real(wp) :: square
@@ -249,10 +248,10 @@ contains
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
-   !> What the rounding of corners makes of the critical thickness ratio eta, relative to it, at the
-   !> deck's own thickness. A corner off by eps r makes the weight of a voussoir wrong by eps/eta,
-   !> and with it the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with
-   !> eta; with a margin of 8
+   !> Relative error of the critical thickness ratio eta by round-off of corners, at the deck's own
+   !> thickness. An error eps r of a corner changes the weight of a voussoir by eps/eta and the
+   !> position of the thrust by alpha^2/8*eps/eta of the radius, which is compared with eta; with a
+   !> margin of 8
    pure real(wp) function arch_resolution(deck)
       type(deck_t), intent(in) :: deck
       real(wp) :: square

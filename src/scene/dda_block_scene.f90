@@ -1,4 +1,4 @@
-!> A scene from input blocks; water becomes forces on their corners
+!> Scene from a block plan; water pressure becomes forces at the corners
 module dda_block_scene
    use dda_block_input, only : block_plan_t, unsupported_block
    use dda_block_system, only : forget_rest, new_block_system
@@ -21,19 +21,19 @@ module dda_block_scene
 
    !> Distance of a point on an edge, over its length
    real(wp), parameter :: touching = 1.0e-8_wp
-   !> Interpolated times between two of the file, for forces quadratic in the level
+   !> Interpolated times between two of the file, for forces that are quadratic in the water level
    integer, parameter :: between = 32
 
-   !> What the deck says of all blocks and joints
+   !> Properties of the deck for all blocks and joints
    type :: base_t
       type(material_t) :: material      !! Material of the blocks
       real(wp) :: unit_weight = 0.0_wp  !! Weight per volume [N/m3]
-      !> Acceleration of gravity, for materials with a density of their own [m/s2]
+      !> Acceleration of gravity, for materials with their own density [m/s2]
       real(wp) :: gravity = 9.81_wp
-      !> Friction angle, cohesion, tensile strength of the joints, friction angle of those that have
-      !> slid, slip over which strength goes: (5) [deg, Pa, Pa, deg, m]
+      !> Friction angle, cohesion and tensile strength of the joints, residual friction angle, slip
+      !> over which strength is lost: (5) [deg, Pa, Pa, deg, m]
       real(wp) :: law(5) = [50.0_wp, 0.0_wp, 0.0_wp, 90.0_wp, 0.0_wp]
-      real(wp) :: water_rise = 0.0_wp  !! By how much all lines of heads have risen [m]
+      real(wp) :: water_rise = 0.0_wp  !! Rise of all piezometric lines [m]
    end type base_t
 
    !> Largest friction angle; an open joint must not carry unlimited friction [deg]
@@ -41,10 +41,10 @@ module dda_block_scene
 
 contains
 
-   !> Add the forces of all water to the loaded points
+   !> Add the water forces to the loaded points
    pure subroutine add_water_loads(plan, rise, boundary)
       type(block_plan_t), intent(in) :: plan
-      real(wp), intent(in) :: rise  !! By how much all lines of heads have risen [m]
+      real(wp), intent(in) :: rise  !! Rise of all piezometric lines [m]
       type(boundary_t), intent(inout) :: boundary
       type(loaded_point_t), allocatable :: point(:)
       real(wp), allocatable :: force(:, :, :), time(:), part(:, :)
@@ -87,7 +87,7 @@ contains
       end do
    end subroutine add_water_loads
 
-   !> Times at which the forces are recorded
+   !> Times of the water forces
    pure subroutine times_of(water, time)
       type(water_t), intent(in) :: water
       real(wp), allocatable, intent(out) :: time(:)  !! The times: (n) [s]
@@ -107,7 +107,7 @@ contains
       end do
    end subroutine times_of
 
-   !> By how much a line of heads has risen at a time
+   !> Rise of a piezometric line at a time [m]
    pure real(wp) function rise_at(water, time)
       type(water_t), intent(in) :: water
       real(wp), intent(in) :: time  !! The time [s]
@@ -124,17 +124,17 @@ contains
       end do
    end function rise_at
 
-   !> Add the pressure on a part of an edge to both ends of the edge
+   !> Add the pressure on a part of an edge to the forces at both ends of the edge
    pure subroutine add_part(plan, water, rise, time, part, covered, edge, at_start, at_end)
       type(block_plan_t), intent(in) :: plan
       type(water_t), intent(in) :: water
       real(wp), intent(in) :: rise, time(:)
       real(wp), intent(in) :: part(4)  !! Ends of the part: (4) [m]
-      logical, intent(in) :: covered   !! Whether another block lies on it: a joint
+      logical, intent(in) :: covered   !! True if another block covers the part: a joint
       real(wp), intent(in) :: edge(4)  !! Ends of the edge: (4) [m]
       !> Receives the force at the start of the edge: (2, n) [N/m]
       real(wp), intent(inout) :: at_start(:, :)
-      real(wp), intent(inout) :: at_end(:, :)  !! Receives that at its end: (2, n) [N/m]
+      real(wp), intent(inout) :: at_end(:, :)  !! Receives the force at its end: (2, n) [N/m]
       real(wp) :: force(2, 2), share(2), along(2)
       integer :: i, k
 
@@ -152,7 +152,7 @@ contains
       end do
    end subroutine add_part
 
-   !> Boxes of all blocks
+   !> Tree of the bounding boxes of all blocks
    pure subroutine edge_boxes(plan, tree)
       type(block_plan_t), intent(in) :: plan
       type(box_tree_t), intent(out) :: tree
@@ -168,14 +168,14 @@ contains
       call new_box_tree(low, high, tree)
    end subroutine edge_boxes
 
-   !> Parts of an edge between the corners of other blocks on it, and which of them are joints
+   !> Divide an edge at the corners of other blocks on it, and find the parts that are joints
    pure subroutine split_edge(plan, tree, block, edge, part, covered)
       type(block_plan_t), intent(in) :: plan
       type(box_tree_t), intent(in) :: tree
       integer, intent(in) :: block                      !! Block of the edge
       real(wp), intent(in) :: edge(4)
       real(wp), allocatable, intent(out) :: part(:, :)  !! Ends of the parts: (4, n) [m]
-      logical, allocatable, intent(out) :: covered(:)   !! Whether another block lies on each: (n)
+      logical, allocatable, intent(out) :: covered(:)   !! True for covered parts: (n)
       integer, allocatable :: near(:)
       real(wp), allocatable :: share(:)
       real(wp) :: along(2), length, outward(2), s, place(2)
@@ -211,11 +211,11 @@ contains
       end do
    end subroutine split_edge
 
-   !> Make the scene of a plan; its settings are the caller's, with the plan's points
+   !> Make the scene of a plan with its points; other settings must be present
    pure subroutine block_scene(plan, base, scene)
       type(block_plan_t), intent(in) :: plan
-      type(base_t), intent(in) :: base       !! What the deck says of all blocks and joints
-      type(scene_t), intent(inout) :: scene  !! The scene; its settings are set
+      type(base_t), intent(in) :: base       !! Properties of the deck for all blocks and joints
+      type(scene_t), intent(inout) :: scene  !! The scene; its settings must be set
       type(joint_law_t), allocatable :: law(:, :)
       type(material_t), allocatable :: material(:)
       real(wp), allocatable :: unit_weight(:)
@@ -248,17 +248,17 @@ contains
          end if
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law, plan%tolerance)
-         ! in time gaps are no more than they are drawn, and close as blocks move
+         ! dynamic runs keep the gaps of the drawing, which close by motion
          call search_contacts(system, scene%contacts, closes_gaps=.not. &
             & (scene%settings%dynamic .and. scene%settings%current))
-         ! a run that moves blocks makes it again
+         ! a run in current geometry makes the outline again
          scene%contacts%search%outline = outline_t()
       end associate
       allocate (scene%joint_angle_deg(0))
    end subroutine block_scene
 
-   !> The first movable block that no chain of joints ties to a fixed one or to a held point; 0 if
-   !> there is none
+   !> The first movable block without a chain of joints to a fixed one or to a restrained point; 0
+   !> if there is none
    pure integer function floating_block(scene)
       type(scene_t), intent(in) :: scene
       logical :: fixed(size(scene%system%area))
@@ -287,12 +287,12 @@ contains
       floating_block = unsupported_block(fixed, pair)
    end function floating_block
 
-   !> Materials by number; what the plan leaves out is that of the deck
+   !> Materials by number; missing properties are those of the deck
    pure subroutine materials_of(plan, base, material, unit_weight)
       type(block_plan_t), intent(in) :: plan
       type(base_t), intent(in) :: base
       type(material_t), allocatable, intent(out) :: material(:)  !! The materials: (n_material)
-      !> Their weight per volume: (n_material) [N/m3]
+      !> Weight per volume of each: (n_material) [N/m3]
       real(wp), allocatable, intent(out) :: unit_weight(:)
       integer :: i, n
 
@@ -334,7 +334,7 @@ contains
       end do
    end function laws_of
 
-   !> Whether blocks may meet for whose materials the plan gives no friction
+   !> True if blocks may touch whose materials have no friction in the plan
    pure logical function lacks_friction(plan)
       type(block_plan_t), intent(in) :: plan
       logical, allocatable :: given(:, :), moves(:)
@@ -358,17 +358,17 @@ contains
       lacks_friction = .false.
       do j = 1, n
          do i = 1, j
-            ! two blocks, not both fixed
+            ! requires two blocks, not both fixed
             if (merge(blocks(i) < 2, min(blocks(i), blocks(j)) == 0, i == j)) cycle
             if (.not. given(i, j) .and. (moves(i) .or. moves(j))) lacks_friction = .true.
          end do
       end do
    end function lacks_friction
 
-   !> A law of joints that may open
+   !> Law of joints that may open
    pure type(joint_law_t) function law_of(value) result(law)
-      !> Friction angle, cohesion, tensile strength, friction angle after slip, slip over which
-      !> strength goes: (5) [deg, Pa, Pa, deg, m]
+      !> Friction angle, cohesion, tensile strength, residual friction angle, slip over which
+      !> strength is lost: (5) [deg, Pa, Pa, deg, m]
       real(wp), intent(in) :: value(5)
 
       law%friction = friction_coefficient(min(value(1), most_friction_deg))

@@ -1,4 +1,4 @@
-!> Blocks of a deck as a file of blocks, with the actions on their points
+!> Write the blocks of a deck as a file of blocks, with the actions on their points
 module dda_block_text
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
@@ -22,8 +22,8 @@ module dda_block_text
 
 contains
 
-   !> Whether all joints of a deck's lines have one law: a file of blocks has laws of pairs of block
-   !> materials, not of lines
+   !> True if all joints of a deck's lines have one law: a file of blocks has laws per pair of block
+   !> materials, not per line
    pure logical function has_one_law(deck)
       type(deck_t), intent(in) :: deck  !! The deck of the case, with its blocks
       type(joint_law_t) :: first, law
@@ -38,7 +38,7 @@ contains
       end do
    end function has_one_law
 
-   !> The blocks of a deck's lines
+   !> Text of the blocks of a deck's lines
    pure function line_text(deck) result(text)
       !> The deck of the case, with its blocks; its joints have one law
       type(deck_t), intent(in) :: deck
@@ -60,7 +60,7 @@ contains
       text = lines_of(lines)
    end function line_text
 
-   !> The numbers that a file of blocks has for a law
+   !> Numbers of a law in a file of blocks
    pure function numbers_of(law) result(number)
       type(joint_law_t), intent(in) :: law
       real(wp) :: number(5)  !! Friction, cohesion, tension, residual friction, slip length: (5)
@@ -68,10 +68,10 @@ contains
       number = [law%friction, law%cohesion, law%tension, law%residual, law%slip_length]
    end function numbers_of
 
-   !> Add the blocks. Material 1 is that of the deck, so those of the lines are counted from 2
+   !> Add the blocks. Material 1 is that of the deck, so those of the lines start at 2
    pure subroutine add_cut_blocks(cut, system, lines)
       type(cut_model_t), intent(in) :: cut
-      type(block_system_t), intent(in) :: system  !! What they are made of, and how they begin
+      type(block_system_t), intent(in) :: system  !! Their materials and initial state
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: line
       logical :: held(size(cut%area))
@@ -94,9 +94,9 @@ contains
 
    !> Add a block with its corners
    pure subroutine add_block(line, vertex, origin, lines)
-      character(len=*), intent(in) :: line  !! Its first line
-      real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
-      real(wp), intent(in) :: origin(2)     !! Where the origin of their coordinates is: (2) [m]
+      character(len=*), intent(in) :: line  !! First line of the block
+      real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n) [m]
+      real(wp), intent(in) :: origin(2)     !! Origin of the coordinates: (2) [m]
       type(growing_text_t), intent(inout) :: lines
       integer :: v
 
@@ -145,7 +145,7 @@ contains
       end do
    end subroutine add_laws
 
-   !> Add what is held, loaded and measured; blocks that two points hold are fixed
+   !> Add restraints, loads and monitoring points; blocks with two restrained points become fixed
    pure subroutine add_points(deck, lines)
       type(deck_t), intent(in) :: deck
       type(growing_text_t), intent(inout) :: lines
@@ -168,10 +168,10 @@ contains
       end do
    end subroutine add_points
 
-   !> Add a force with its history
+   !> Add a force with its time history
    pure subroutine add_load(load, at, lines)
       type(load_history_t), intent(in) :: load
-      character(len=*), intent(in) :: at  !! Where it acts
+      character(len=*), intent(in) :: at  !! Words for the point of application
       type(growing_text_t), intent(inout) :: lines
       integer :: i
 
@@ -183,10 +183,10 @@ contains
       end do
    end subroutine add_load
 
-   !> What a file of blocks has no place for
+   !> Items that a file of blocks cannot represent
    pure function line_losses(deck) result(text)
       type(deck_t), intent(in) :: deck
-      !> What it is, parted by commas; empty if nothing is lost
+      !> The items, separated by commas; empty if there are none
       character(len=:), allocatable :: text
 
       text = ""
@@ -198,7 +198,7 @@ contains
       if (len(text) > 0) text = text(3:)
    end function line_losses
 
-   !> The blocks of a deck's arch, with what acts on points of them
+   !> Text of the blocks of a deck's arch, with the actions on their points
    pure function shape_text(deck) result(text)
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: text  !! Lines, each ended by a line feed
@@ -263,10 +263,10 @@ contains
       end do
    end subroutine add_bar_lines
 
-   !> What a file of blocks has no place for
+   !> Items that a file of blocks cannot represent
    pure function shape_losses(deck) result(text)
       type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: text  !! Keys, parted by commas; empty if nothing is lost
+      character(len=:), allocatable :: text  !! Keys separated by commas; empty if there are none
 
       text = ""
       if (deck%value(arch_lune_deg)%given) text = ", arch%lune_deg"

@@ -1,4 +1,4 @@
-!> Scenes of arches of any shape and of files of blocks
+!> Scenes of shaped arches and of files of blocks
 submodule (dda_deck_scene) dda_blocks_of_deck
    use dda_arch_assembly, only : arch_assembly_t, n_movable
    use dda_arch_form, only : arch_form_t, form_problem_t
@@ -18,7 +18,7 @@ submodule (dda_deck_scene) dda_blocks_of_deck
 
 contains
 
-   !> The scene of an arch of any shape
+   !> Make the scene of a shaped arch
    module procedure shape_scene
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
@@ -42,7 +42,7 @@ contains
       end if
    end procedure shape_scene
 
-   !> The scene of blocks as a file or an arch gives them
+   !> Make the scene of a block plan
    module procedure file_scene
       type(base_t) :: base
 
@@ -57,7 +57,7 @@ contains
       call block_scene(blocks, base, scene)
    end procedure file_scene
 
-   !> Number of blocks that can move in the scene of a case
+   !> Number of movable blocks in the scene of a case
    module procedure movable_blocks
       type(arch_form_t) :: form
       type(form_problem_t) :: problem

@@ -15,7 +15,7 @@ submodule (dda_deck_scene) dda_deck_ground
 
 contains
 
-   !> Give the ground of a scene the motion that &ground asks for
+   !> Set the ground motion of a scene from &ground
    module procedure move_ground
       associate (acceleration => scene%settings%boundary%base_acceleration)
          if (deck%value(ground_pulse)%given) then
@@ -28,8 +28,8 @@ contains
       end associate
    end procedure move_ground
 
-   !> A pulse. What is constant before its beginning and after its end is no time of the run, and
-   !> nothing
+   !> Acceleration of a pulse. It ends with a drop to zero, because a history is constant after its
+   !> last time
    pure type(history_t) function pulse_of(deck) result(pulse)
       type(deck_t), intent(in) :: deck
       real(wp) :: duration, frequency, along(2), half_step
@@ -42,7 +42,7 @@ contains
          if (.not. deck%value(ground_duration)%given) duration = 1.0_wp/frequency
          n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
          allocate (pulse%time(n + 2), pulse%value(2, n + 2))
-         ! corners lie so far outside the sine that the broken line has its impulse
+         ! vertices lie outside the sine, so that the polygonal curve has the same impulse
          half_step = pi*frequency*duration/real(n, wp)
          do i = 0, n
             pulse%time(i + 1) = duration*real(i, wp)/real(n, wp)
@@ -59,7 +59,7 @@ contains
       pulse%value(:, n + 2) = 0.0_wp
    end function pulse_of
 
-   !> Unit vector of the direction of a pulse; the four main ones are free of rounding
+   !> Unit vector of the direction of a pulse; exact along the axes
    pure function direction_of(deck) result(direction)
       type(deck_t), intent(in) :: deck
       real(wp) :: direction(2)  !! Components along x and y: (2)
@@ -69,8 +69,8 @@ contains
       where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
    end function direction_of
 
-   !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
-   !> given; none before its first time and after its last
+   !> Acceleration of the record of a case, rotated, and scaled if an amplitude is given; zero
+   !> outside the record
    pure type(history_t) function record_of(deck) result(acceleration)
       type(deck_t), intent(in) :: deck
       type(history_t) :: motion

@@ -1,4 +1,4 @@
-!> The scene of a deck of any kind, and scenes that differ by one number
+!> Scene of a deck of any kind, and family of scenes of a search
 module dda_deck_scene
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, set_loads, settings_of, &
       & unit_weight
@@ -21,43 +21,43 @@ module dda_deck_scene
 
    public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family, put_value
 
-   !> The scenes of one deck whose searched parameter varies
+   !> Scenes of one deck as a function of the searched parameter
    type, extends(family_t) :: deck_family_t
       type(deck_t), allocatable :: deck  !! The deck of one case
-      !> The parameter
+      !> The searched parameter
       type(parameter_t) :: parameter
    contains
-      !> Make the scene of one value
+      !> Make the scene of a value
       procedure :: build => build_deck_scene
-      !> Make the scene of one value from that of another one
+      !> Make the scene of a value from that of another value
       procedure :: turn => turn_deck_scene
    end type deck_family_t
 
    interface
 
-      !> The scene of blocks as a file or an arch gives them
+      !> Make the scene of a block plan
       pure module subroutine file_scene(deck, blocks, scene)
          type(deck_t), intent(in) :: deck
          type(block_plan_t), intent(in) :: blocks
          type(scene_t), intent(out) :: scene
       end subroutine file_scene
 
-      !> Number of blocks that can move in the scene of a case
+      !> Number of movable blocks in the scene of a case
       pure integer module function movable_blocks(deck)
          type(deck_t), intent(in) :: deck
       end function movable_blocks
 
-      !> The scene of an arch of any shape
+      !> Make the scene of a shaped arch
       pure module subroutine shape_scene(deck, scene)
          type(deck_t), intent(in) :: deck
-         !> The scene; of an arch that cannot be, without blocks
+         !> The scene; without blocks if the arch does not exist
          type(scene_t), intent(out) :: scene
       end subroutine shape_scene
 
-      !> Give the ground of a scene the motion that &ground asks for
+      !> Set the ground motion of a scene from &ground
       pure module subroutine move_ground(deck, scene)
          type(deck_t), intent(in) :: deck
-         !> The scene, whose ground moves as the file of blocks says, if it does
+         !> The scene; without &ground, the motion of its file of blocks is kept
          type(scene_t), intent(inout) :: scene
       end subroutine move_ground
 
@@ -65,7 +65,7 @@ module dda_deck_scene
 
 contains
 
-   !> The scene that the deck of one case describes
+   !> Make the scene of a deck
    pure subroutine deck_scene(deck, scene)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(out) :: scene
@@ -85,10 +85,10 @@ contains
       if (source_of(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
 
-   !> Multiply the displacements of points that a file of blocks leads
+   !> Scale the prescribed displacements
    pure subroutine scale_paths(factor, scene)
-      real(wp), intent(in) :: factor         !! Their factor
-      type(scene_t), intent(inout) :: scene  !! The scene; its paths are multiplied
+      real(wp), intent(in) :: factor         !! Factor of the displacements
+      type(scene_t), intent(inout) :: scene  !! The scene; its prescribed displacements are scaled
       integer :: i
 
       if (.not. allocated(scene%settings%boundary%held)) return
@@ -99,10 +99,10 @@ contains
       end do
    end subroutine scale_paths
 
-   !> Make a deck a family, its numbers read
+   !> Prepare the family of a deck
    pure subroutine new_family(parameter, family)
       type(parameter_t), intent(in) :: parameter
-      type(deck_family_t), intent(inout) :: family  !! New but for the deck
+      type(deck_family_t), intent(inout) :: family  !! The family; only its deck must be set
       type(scene_plan_t) :: plan
 
       plan = plan_scene(family%deck)
@@ -122,11 +122,11 @@ contains
       end associate
    end subroutine new_family
 
-   !> Put one value of the parameter into a deck
+   !> Set the parameter in a deck
    pure subroutine put_value(family, value, deck, error)
       class(deck_family_t), intent(in) :: family
       real(wp), intent(in) :: value        !! The value
-      type(deck_t), intent(inout) :: deck  !! That of the family, or its values alone
+      type(deck_t), intent(inout) :: deck  !! The deck of the family, or a copy of its values
       type(error_t), allocatable, intent(out) :: error
 
       if (number_fits(deck_key(family%parameter%key), value)) then
@@ -137,10 +137,10 @@ contains
       end if
    end subroutine put_value
 
-   !> Make the scene of one value of the parameter
+   !> Make the scene of a value of the parameter
    pure subroutine build_deck_scene(family, value, scene, error)
       class(deck_family_t), intent(in) :: family
-      real(wp), intent(in) :: value  !! Value of its parameter
+      real(wp), intent(in) :: value  !! Value of the parameter
       type(scene_t), intent(out) :: scene
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
@@ -156,8 +156,8 @@ contains
       end if
    end subroutine build_deck_scene
 
-   !> Make the scene of one value from that of another one: where a load coefficient is the
-   !> parameter, nothing else differs
+   !> Make the scene of a value from that of another value; for a load coefficient only the settings
+   !> differ
    pure subroutine turn_deck_scene(family, value, scene, error)
       class(deck_family_t), intent(in) :: family
       real(wp), intent(in) :: value
@@ -168,7 +168,7 @@ contains
       if (family%load == searched_load%none .or. .not. allocated(scene%contacts%joint)) then
          call family%build(value, scene, error)
       else
-         ! numbers alone are asked for: blocks may be many
+         ! copy only the values, because there may be many blocks
          deck%file = family%deck%file
          deck%value = family%deck%value
          call put_value(family, value, deck, error)

@@ -1,4 +1,4 @@
-!> Fill on an arch up to a level surface: weight, passive pressure, spread of axle loads
+!> Fill on an arch up to a level surface: weight, passive pressure, load spread of axles
 module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
    use dda_arch_scene, only : unit_weight
@@ -21,31 +21,32 @@ module dda_fill_loads
 
    !> The fill of a case
    type :: fill_t
-      type(top_chord_t), allocatable :: chord(:)  !! Chords that it lies on: (n)
-      !> Where the extrados of each span turns from rising to falling, along x: (n_span) [m]
+      type(top_chord_t), allocatable :: chord(:)  !! Chords below the fill: (n)
+      !> Abscissa of the crown of each span's extrados: (n_span) [m]
       real(wp), allocatable :: crown_x(:)
       real(wp) :: surface = 0.0_wp         !! Height of its surface [m]
       real(wp) :: unit_weight(2) = 0.0_wp  !! Weight per volume of fill and of backing: (2) [N/m3]
-      !> Height of the surface of the backing; below all where there is none [m]
+      !> Height of the surface of the backing; -huge if there is none [m]
       real(wp) :: backing = -huge(1.0_wp)
-      real(wp) :: spread = 0.0_wp   !! How far axles spread to either side, over the depth
+      real(wp) :: spread = 0.0_wp   !! Load spread of axles: width to either side over depth
       real(wp) :: passive = 0.0_wp  !! Largest horizontal pressure over the weight above
-      !> Whether it yields where blocks move, and its pressure over displacement then [N/m3]
+      !> True for passive pressure that follows the displacement, and its stiffness [N/m3]
       logical :: yields = .false.
       real(wp) :: stiffness = 0.0_wp
    end type fill_t
 
-   !> Rise over length below which a chord receives no passive pressure
+   !> Relative rise of a chord below which it receives no passive pressure
    real(wp), parameter :: level = 1.0e-9_wp
-   !> Distance from the crown of a load on neither side, over the width of the fill
+   !> Distance of loads from the crown that belong to neither side, over the width of the fill
    real(wp), parameter :: at_crown = 1.0e-12_wp
-   !> Length of the bars of passive pressure over the arch, so that they stay level
+   !> Length of the bars of passive pressure over the width of the fill, so that they stay
+   !> horizontal
    real(wp), parameter :: far = 1.0e3_wp
 
 contains
 
-   !> Whether the arch of a deck leans against its fill where blocks move, or joints have strength:
-   !> else limit analysis decides
+   !> True if passive pressure or backing needs the displacement: in dynamic runs, in current
+   !> geometry or with joint strength. Otherwise limit analysis decides
    pure logical function fill_yields(deck)
       type(deck_t), intent(in) :: deck
 
@@ -59,7 +60,7 @@ contains
          & .or. deck%value(joint_tension)%number > 0.0_wp)
    end function fill_yields
 
-   !> The fill of a deck
+   !> Make the fill of a deck
    pure type(fill_t) function fill_of(deck, assembly) result(fill)
       type(deck_t), intent(in) :: deck  !! The deck of the case, with &fill
       type(arch_assembly_t), intent(in) :: assembly
@@ -86,10 +87,10 @@ contains
          & *tan(degree*(45.0_wp + 0.5_wp*deck%value(fill_friction_deg)%number))**2
    end function fill_of
 
-   !> Where the extrados of a span turns from rising to falling, between the middles of two chords
-   !> in proportion to their slopes; where it does not turn, its highest point [m]
+   !> Abscissa of the crown of a span's extrados: between two chords of opposite slope, by linear
+   !> interpolation of the slope; otherwise the highest point [m]
    pure real(wp) function crown_of(chord) result(x)
-      type(top_chord_t), intent(in) :: chord(:)  !! Its chords from left to right: (n)
+      type(top_chord_t), intent(in) :: chord(:)  !! Chords from left to right: (n)
       real(wp) :: middle(size(chord)), slope(size(chord)), highest
       integer :: i
 
@@ -110,10 +111,10 @@ contains
       end do
    end function crown_of
 
-   !> Put the weight of the fill on the blocks below it: of what stands above each chord
+   !> Add the weight of the fill to the blocks below it, chord by chord
    pure subroutine add_fill_weight(fill, scene)
       type(fill_t), intent(in) :: fill
-      type(scene_t), intent(inout) :: scene  !! The scene; the loads are added
+      type(scene_t), intent(inout) :: scene  !! The scene; loads are added
       type(loaded_point_t) :: loaded(size(fill%chord))
       real(wp) :: weight, x
       integer :: i
@@ -128,15 +129,15 @@ contains
       call add_loads(loaded, scene)
    end subroutine add_fill_weight
 
-   !> Weight of the fill and the backing above a chord, and where it acts
+   !> Weight of the fill and the backing above a chord, and its line of action
    pure subroutine weigh(fill, chord, weight, x)
       type(fill_t), intent(in) :: fill
       type(top_chord_t), intent(in) :: chord
       real(wp), intent(out) :: weight  !! The weight [N/m]
-      real(wp), intent(out) :: x       !! Where it acts along x [m]
+      real(wp), intent(out) :: x       !! Abscissa of its resultant [m]
       real(wp) :: sums(2), part(2), bend
 
-      ! all of it as fill, then what is backing is heavier or lighter by the difference
+      ! all of it as fill, then the difference of backing and fill
       sums = fill%unit_weight(1)*trapezium(chord%left, chord%right, fill%surface)
       part = 0.0_wp
       associate (low => min(chord%left(2), chord%right(2)), &
@@ -160,7 +161,7 @@ contains
       if (weight > 0.0_wp) x = sums(2)/weight
    end subroutine weigh
 
-   !> Area below a level line above a chord, and its first moment along x
+   !> Area between a horizontal line and a chord, and its first moment along x
    pure function trapezium(left, right, top) result(part)
       real(wp), intent(in) :: left(2)   !! Left end of the chord: (2) [m]
       real(wp), intent(in) :: right(2)  !! Right end of the chord: (2) [m]
@@ -174,10 +175,10 @@ contains
       part(2) = left(1)*part(1) + width**2*(depth(1) + 2.0_wp*depth(2))/6.0_wp
    end function trapezium
 
-   !> What the arch of a scene can lean against
+   !> Add the passive pressure of the fill to a scene
    pure subroutine press_fill(fill, scene)
       type(fill_t), intent(in) :: fill
-      !> The scene with its live loads; its bounded forces are set
+      !> The scene with its live loads; its forces between zero and a bound are set
       type(scene_t), intent(inout) :: scene
       integer :: side
 
@@ -187,11 +188,11 @@ contains
       call press_side(fill, side, scene)
    end subroutine press_fill
 
-   !> Lean against the backing, whatever the force, and the fill on the side away from the live load
-   !> of a span, on both sides of a span without
+   !> Apply unlimited pressure of the backing, and the passive pressure of the fill: on the side
+   !> opposite to the live load of a span, or on both sides of a span without live load
    pure subroutine press_side(fill, side, scene)
       type(fill_t), intent(in) :: fill
-      integer, intent(in) :: side  !! Where the live load is, see live_side
+      integer, intent(in) :: side  !! Side of the live load, see live_side
       type(scene_t), intent(inout) :: scene
       type(bounded_force_t) :: force(size(fill%chord))
       real(wp) :: height(size(fill%chord)), middle(2), rise
@@ -228,13 +229,13 @@ contains
       end if
    end subroutine press_side
 
-   !> Fill that yields, as bars from far away that hang slack rather than push: a block that leans
-   !> against it stretches its bar
+   !> Passive pressure that follows the displacement, as long bars without compression: a block that
+   !> moves towards the fill elongates its bar
    pure subroutine add_yielding(fill, force, height, scene)
       type(fill_t), intent(in) :: fill
       type(bounded_force_t), intent(in) :: force(:)  !! Largest forces of the fill: (n)
-      real(wp), intent(in) :: height(:)              !! Heights of their chords: (n) [m]
-      !> The scene; receives the bars behind those that it has
+      real(wp), intent(in) :: height(:)              !! Heights of the chords: (n) [m]
+      !> The scene; the bars are appended
       type(scene_t), intent(inout) :: scene
       type(bar_t), allocatable :: bar(:)
       type(bar_state_t), allocatable :: state(:)
@@ -261,14 +262,14 @@ contains
       call move_alloc(state, scene%system%bar)
    end subroutine add_yielding
 
-   !> Number of the span whose crown is nearest to the resultant of the live loads on points, with a
-   !> minus where that is to its left; 0 where it is on no side
+   !> Span whose crown is nearest to the resultant of the live loads on points, negative if the
+   !> resultant is on its left; 0 at a crown
    pure integer function live_side(fill, origin, loaded, more) result(side)
       type(fill_t), intent(in) :: fill
       !> Origin of the coordinates of the points: (2) [m]
       real(wp), intent(in) :: origin(2)
-      type(loaded_point_t), intent(in) :: loaded(:)          !! Loads, live ones among them: (n)
-      type(loaded_point_t), intent(in), optional :: more(:)  !! More of them: (m)
+      type(loaded_point_t), intent(in) :: loaded(:)          !! Live and other loads: (n)
+      type(loaded_point_t), intent(in), optional :: more(:)  !! Further loads: (m)
       real(wp) :: total(2), x
 
       total = live_total(loaded)
@@ -281,15 +282,15 @@ contains
          & abs(x - fill%crown_x(side)) <= at_crown*width_of(fill))
    end function live_side
 
-   !> Shares of a way at which the side of the live loads changes: where their resultant passes a
-   !> crown or is as near to one crown as to the next
+   !> Positions at which the side of the live loads changes: their resultant is at a crown or midway
+   !> between two crowns
    pure function side_changes(fill, origin, total) result(share)
       type(fill_t), intent(in) :: fill
       real(wp), intent(in) :: origin(2)
-      !> Totals of the live loads at the beginning, half way and at the end, quadratic between:
-      !> (2, 3) [N/m, N]
+      !> Totals of the live loads at the start, the middle and the end of the interval, quadratic
+      !> between: (2, 3) [N/m, N]
       real(wp), intent(in) :: total(2, 3)
-      real(wp), allocatable :: share(:)  !! Between 0 and 1, rising: (n)
+      real(wp), allocatable :: share(:)  !! Positions as shares of the interval, ascending: (n)
       real(wp), allocatable :: line(:)
       real(wp) :: root(2)
       integer :: i, j
@@ -307,7 +308,7 @@ contains
       share = share(sorted_order(spread(0, 1, size(share)), share))
    end function side_changes
 
-   !> Zeros of a parabola by its values at 0, 1/2 and 1; -1 in the place of those it does not have
+   !> Zeros of a parabola from its values at 0, 1/2 and 1; -1 for missing ones
    pure function quadratic_roots(value) result(root)
       real(wp), intent(in) :: value(3)  !! The values: (3)
       real(wp) :: root(2)               !! The zeros: (2)
@@ -323,14 +324,14 @@ contains
       if (abs(value(1)) < huge(part)*abs(part)) root(2) = value(1)/part
    end function quadratic_roots
 
-   !> How wide the fill is [m]
+   !> Width of the fill [m]
    pure real(wp) function width_of(fill)
       type(fill_t), intent(in) :: fill
 
       width_of = maxval(fill%chord%right(1)) - minval(fill%chord%left(1))
    end function width_of
 
-   !> Sum of the sizes of live loads, and of their moments along x
+   !> Sums of the absolute values of live loads and of their moments along x
    pure function live_total(loaded) result(total)
       type(loaded_point_t), intent(in) :: loaded(:)
       real(wp) :: total(2)  !! The sums: (2) [N/m, N]

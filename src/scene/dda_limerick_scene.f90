@@ -1,4 +1,4 @@
-!> The model of Shi's scheme for a deck or a file of blocks
+!> Model of Shi's scheme for a deck or a file of blocks
 module dda_limerick_scene
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : boundary_t, held_point_t, measured_point_t
@@ -27,7 +27,7 @@ module dda_limerick_scene
 
    !> Default depth of abutments over the radius; half size 14.9 m for a radius of 10 m
    real(wp), parameter :: usual_depth = 0.43_wp
-   !> Default displacement of a collapse over the radius or half size
+   !> Default displacement that means collapse, over the radius or half size
    real(wp), parameter :: usual_collapse = 0.05_wp
 
    !> Position of restraints from the corners towards the middle of a block
@@ -35,7 +35,7 @@ module dda_limerick_scene
 
 contains
 
-   !> The model that the deck of one case describes
+   !> Make the model of a deck
    pure subroutine limerick_scene(deck, scene, model)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
@@ -63,11 +63,11 @@ contains
          & *model%constants%max_displacement_ratio*half_size(model)/acceleration)
    end subroutine limerick_scene
 
-   !> The arch that a deck describes, between its abutments
+   !> Model of an arch between its abutments
    pure subroutine arch_model(deck, scene, model)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene  !! Its scene; the springings are its last two blocks
-      !> The model; its parts but for the direction of the weight are set
+      !> The model; all parts except the direction of gravity are set
       type(limerick_model_t), intent(inout) :: model
       integer :: b, i, n, nv
 
@@ -91,15 +91,15 @@ contains
             end do
          end associate
       end do
-      ! the first law is for all joints, the second for springings that cannot slide: the abutments'
-      ! faces, and the voussoirs' edges upon them
+      ! the first law is that of all joints; the second that of springings without slip, at the
+      ! faces of the abutments and the adjacent voussoirs
       allocate (model%law(1, 2))
       model%law(1, :) = finite_law(scene%contacts%law(scene%contacts%joint([2, 1])%law))
       i = model%first_vertex(n)
       model%edge_law([nv + 4, nv + 8, model%first_vertex(2) - 1, i + (nv + 1 - i)/2 - 1]) = 2
    end subroutine arch_model
 
-   !> Depth of the abutments, away from the springing joint [m]
+   !> Depth of the abutments, normal to the springing joint [m]
    pure real(wp) function abutment_depth(deck)
       type(deck_t), intent(in) :: deck
 
@@ -107,7 +107,7 @@ contains
          & usual_depth*deck%value(arch_radius)%number)
    end function abutment_depth
 
-   !> Make an abutment as large as the deck says; it reaches beyond the joint at either end
+   !> Enlarge an abutment as given in the deck; it extends beyond the joint at both ends
    pure subroutine widen(deck, vertex)
       type(deck_t), intent(in) :: deck
       !> Corners, counter-clockwise; the last edge contains the springing joint: (2, 4) [m]
@@ -124,10 +124,10 @@ contains
       vertex(:, 3) = vertex(:, 4) + outward
    end subroutine widen
 
-   !> Constants of the scheme that the deck gives
+   !> Set the constants of the scheme that the deck gives
    pure subroutine set_constants(deck, constants)
       type(deck_t), intent(in) :: deck
-      !> The constants; those that the deck does not give are left as they are
+      !> The constants; others are unchanged
       type(limerick_constants_t), intent(inout) :: constants
 
       call take(deck%value(limerick_close_ratio), constants%close_ratio)
@@ -151,16 +151,16 @@ contains
          & constants%exact_rotation = deck%value(limerick_rotation)%text == "exact"
    end subroutine set_constants
 
-   !> Take a number that the deck gives
+   !> Set a number if the deck gives it
    pure subroutine take(value, number)
       type(deck_value_t), intent(in) :: value
-      real(wp), intent(inout) :: number  !! The number; left as it is if the deck does not give it
+      real(wp), intent(inout) :: number  !! The number; unchanged if the deck does not give it
 
       if (value%given) number = value%number
    end subroutine take
 
-   !> The model of the blocks that a deck's files make, without its constants. The corners of the
-   !> scene's joints are measured points, the last ones
+   !> Model of the blocks from a deck's files, without constants. The corners of the scene's joints
+   !> are its last monitoring points
    pure subroutine lines_model(deck, scene, model)
       type(deck_t), intent(in) :: deck  !! The deck of one case, with its blocks; checked
       type(scene_t), intent(in) :: scene
@@ -183,7 +183,7 @@ contains
       call add_corners(deck, scene, model%boundary)
    end subroutine lines_model
 
-   !> Materials with their weights and states at the beginning
+   !> Set materials with their weights and initial states
    pure subroutine set_materials(deck, scene, model)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
@@ -195,7 +195,7 @@ contains
          model%material(m)%material_t = scene%system%materials(m)
          if (.not. allocated(deck%file_analysis)) cycle
          associate (listed => deck%file_analysis%material(m))
-            ! height counts from zero in the file, here from the origin of the cut
+            ! heights are relative to zero in the file, here to the origin of the cut
             model%material(m)%stress = listed%stress &
                & + listed%stress_gradient*deck%cut%scale%origin(2)
             model%material(m)%stress_gradient = listed%stress_gradient
@@ -207,11 +207,11 @@ contains
       end do
    end subroutine set_materials
 
-   !> Points that are held, loaded and measured; among the last the corners of the scene's blocks,
-   !> from which its joints are told
+   !> Restraints, loads and monitoring points. The corners of the scene's blocks are the last
+   !> monitoring points, from which the state of joints is computed
    pure subroutine add_corners(deck, scene, boundary)
       type(deck_t), intent(in) :: deck
-      !> The scene; edges that lie together in part are parted there
+      !> The scene; edges that coincide in part are split there
       type(scene_t), intent(in) :: scene
       type(boundary_t), intent(out) :: boundary
       type(measured_point_t), allocatable :: measured(:)
@@ -232,13 +232,12 @@ contains
       call move_alloc(measured, boundary%measured)
    end subroutine add_corners
 
-   !> The model of a plan's blocks, without its constants. Every block has a material of its own,
-   !> for its stress and velocity are its own; the first material, which the first step looks at,
-   !> is that of a block that moves
+   !> Model of a block plan, without constants. Each block has its own material because of its own
+   !> stress and velocity. The first material, which the first step uses, is that of a movable block
    pure subroutine blocks_model(plan, scene, model)
       type(block_plan_t), intent(in) :: plan
       type(scene_t), intent(in) :: scene
-      !> The model; its parts but for the direction of the weight are set
+      !> The model; all parts except the direction of gravity are set
       type(limerick_model_t), intent(inout) :: model
       integer :: b, n
 
@@ -269,11 +268,11 @@ contains
       call take_points(plan, scene%settings%load_factor, model%boundary)
    end subroutine blocks_model
 
-   !> The plan's points, and those that hold its fixed blocks
+   !> Points of the plan, and fixed points of its fixed blocks
    pure subroutine take_points(plan, load_factor, boundary)
       type(block_plan_t), intent(in) :: plan
-      real(wp), intent(in) :: load_factor  !! What live loads are multiplied by
-      !> The points of the scene, which may be more than the plan's
+      real(wp), intent(in) :: load_factor  !! Factor of live loads
+      !> The points of the scene; points may be added
       type(boundary_t), intent(inout) :: boundary
       type(held_point_t), allocatable :: held(:)
       integer :: b, i, n, v
@@ -301,21 +300,21 @@ contains
       boundary%held = held(:n)
    end subroutine take_points
 
-   !> Coordinates of the points that hold a block: its corners, moved towards their middle
+   !> Coordinates of the fixed points of a block: its corners, shifted towards their mean
    pure function inner_points(corner) result(point)
-      real(wp), intent(in) :: corner(:)  !! A coordinate of all corners: (n) [m]
-      real(wp) :: point(size(corner))    !! That of the points: (n) [m]
+      real(wp), intent(in) :: corner(:)  !! One coordinate of all corners: (n) [m]
+      real(wp) :: point(size(corner))    !! The same coordinate of the points: (n) [m]
 
       point = (1.0_wp - inset)*corner + inset*sum(corner)/real(size(corner), wp)
    end function inner_points
 
-   !> Whether Shi's scheme can run a plan: it holds points where they are, in both
-   !> directions, knows no motion of the ground, and begins every static step at rest
+   !> Check that Shi's scheme can run a plan: it has no ground motion or absorbing boundaries,
+   !> restrains points in both directions, and starts every static step at rest
    pure subroutine check_limerick_blocks(plan, file, dynamic, error)
       type(block_plan_t), intent(in) :: plan
-      character(len=*), intent(in) :: file              !! Name of its file
-      logical, intent(in) :: dynamic                    !! Whether velocities are kept
-      type(error_t), allocatable, intent(out) :: error  !! What it cannot do
+      character(len=*), intent(in) :: file              !! Name of the file
+      logical, intent(in) :: dynamic                    !! True to keep velocities
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an unsupported item
       integer :: b, i
 
       if (allocated(plan%boundary%base_acceleration%time)) call fatal_error(error, &

@@ -1,4 +1,4 @@
-!> A scene from cut blocks: common edges are joints
+!> Scene from cut blocks; common edges are joints
 module dda_line_scene
    use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_bar, only : bar_t
@@ -29,17 +29,17 @@ module dda_line_scene
    !> Cohesion and tensile strength of bonds between pieces of a block [Pa]
    real(wp), parameter :: bond_strength = 1.0e15_wp
 
-   !> Least stiffness of a bolt without properties
+   !> Smallest stiffness of a bolt without properties
    real(wp), parameter :: least_stiffness = 1.0e-12_wp
 
 contains
 
-   !> Cut the lines of a deck into blocks, once, with the points that act on them; a deck without
-   !> lines is left as it is
+   !> Cut the lines of a deck into blocks, once, with their points; a deck without lines is
+   !> unchanged
    pure subroutine cut_lines(deck, error)
-      !> The deck; receives the blocks in place of the lines, and the points
+      !> The deck; the lines are replaced by blocks and points
       type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! Lines that make no blocks
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the lines cannot be cut
 
       if (.not. allocated(deck%lines)) return
       allocate (deck%cut)
@@ -49,7 +49,7 @@ contains
       call points_of_lines(deck, held_blocks(deck%cut), deck%plan%boundary)
    end subroutine cut_lines
 
-   !> The scene of the blocks that a deck's files make
+   !> Make the scene of the blocks from a deck's files
    pure subroutine line_scene(deck, scene)
       type(deck_t), intent(in) :: deck  !! The deck of a case, with its blocks; checked
       type(scene_t), intent(out) :: scene
@@ -78,10 +78,10 @@ contains
       scene%system%bar%force = scene%settings%boundary%bar%prestress
    end subroutine line_scene
 
-   !> Points of the files that hold, load and measure blocks
+   !> Restraints, loads and monitoring points of the files
    pure subroutine points_of_lines(deck, fixed, boundary)
       type(deck_t), intent(in) :: deck
-      logical, intent(in) :: fixed(:)  !! Whether a block needs no points to be held: (n_block)
+      logical, intent(in) :: fixed(:)  !! True for blocks that need no restrained points: (n_block)
       type(boundary_t), intent(inout) :: boundary
       integer :: n(3), i
 
@@ -110,7 +110,7 @@ contains
       end associate
    end subroutine points_of_lines
 
-   !> Force on a load point; one of which the analysis says nothing has none
+   !> Force on a load point; zero if the analysis has none
    pure type(history_t) function force_of(deck, source)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: source  !! Number of the load point
@@ -124,7 +124,7 @@ contains
       end associate
    end function force_of
 
-   !> Bolts as bars. The stiffness of old files is that of a bar of length one
+   !> Bolts as bars. In older files the stiffness is that of a bar of unit length
    pure function bars_of(deck, cut) result(bar)
       type(deck_t), intent(in) :: deck
       type(cut_model_t), intent(in) :: cut
@@ -151,10 +151,10 @@ contains
       end do
    end function bars_of
 
-   !> Whether this version can run the blocks of a deck
+   !> Check that the blocks of a deck can be run
    pure subroutine check_line_scene(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! What it cannot do
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an unsupported item
       type(block_system_t) :: system
       character(len=:), allocatable :: problem
 
@@ -174,10 +174,10 @@ contains
          & deck%value(scene_geometry)%place)
    end subroutine check_line_scene
 
-   !> The blocks with their materials, weights and states at the beginning
+   !> Blocks with their materials, weights and initial states
    pure subroutine line_system(deck, cut, system)
       type(deck_t), intent(in) :: deck
-      type(cut_model_t), intent(in) :: cut  !! The blocks, perhaps with more corners than the deck's
+      type(cut_model_t), intent(in) :: cut  !! The blocks, possibly with additional corners
       type(block_system_t), intent(out) :: system
       integer :: b, m
 
@@ -190,7 +190,7 @@ contains
          allocate (system%materials(size(list)))
          do m = 1, size(list)
             system%materials(m) = material_of(deck)
-            ! keys that the deck gives go before
+            ! keys of the deck take precedence
             associate (material => system%materials(m))
                if (.not. deck%value(material_density)%given) material%density = list(m)%density
                if (.not. deck%value(material_young)%given) material%young = list(m)%young
@@ -211,10 +211,10 @@ contains
       end associate
    end subroutine line_system
 
-   !> The law of a joint; keys that the deck gives go before the analysis file
+   !> Law of a joint; keys of the deck take precedence over the analysis file
    pure type(joint_law_t) function law_of_joint(deck, number) result(law)
       type(deck_t), intent(in) :: deck
-      integer, intent(in) :: number  !! Number of the joint's material
+      integer, intent(in) :: number  !! Number of the joint material
       type(limerick_joint_t) :: listed
 
       if (number == bond_joint) then
@@ -233,11 +233,10 @@ contains
       if (.not. deck%value(joint_tension)%given) law%tension = listed%tension
    end function law_of_joint
 
-   !> Blocks that cannot move: those with two fixed points apart from one another, in any of the
-   !> pieces that a bond holds together
+   !> Fixed blocks: those with two distinct fixed points, in any pieces connected by a bond
    pure function held_blocks(cut) result(held)
       type(cut_model_t), intent(in) :: cut
-      logical :: held(size(cut%area))  !! Whether each is held: (n_block)
+      logical :: held(size(cut%area))  !! True for fixed blocks: (n_block)
       integer :: first(size(cut%area)), i
 
       held = .false.

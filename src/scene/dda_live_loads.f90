@@ -1,4 +1,4 @@
-!> Live loads of a deck on the blocks of its scene
+!> Live loads of a deck on the blocks of a scene
 module dda_live_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
@@ -24,11 +24,11 @@ module dda_live_loads
 
 contains
 
-   !> Put the forces of &live and the axles of &vehicle on the blocks of a scene
+   !> Add the forces of &live and the axles of &vehicle to a scene
    pure subroutine add_live_loads(deck, scene, fill)
       type(deck_t), intent(in) :: deck
-      type(scene_t), intent(inout) :: scene  !! The scene; forces in none of its blocks are left out
-      !> What lies on the blocks and spreads axles
+      type(scene_t), intent(inout) :: scene  !! The scene; forces outside all blocks are omitted
+      !> Fill that spreads the axle loads
       type(fill_t), intent(in), optional :: fill
       type(loaded_point_t), allocatable :: live(:)
 
@@ -42,11 +42,11 @@ contains
       end if
    end subroutine add_live_loads
 
-   !> The forces of &live on the blocks of a scene
+   !> Forces of &live on the blocks of a scene
    pure function loads_of_live(deck, scene) result(of_live)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> The forces; those in no block are left out: (n)
+      !> The forces, without those outside all blocks: (n)
       type(loaded_point_t), allocatable :: of_live(:)
       type(loaded_point_t), allocatable :: loaded(:)
       real(wp), allocatable :: point(:, :), force(:, :)
@@ -72,7 +72,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> Origin of the blocks' coordinates: (2) [m]
       real(wp), intent(in) :: origin(2)
-      real(wp), allocatable, intent(out) :: point(:, :)  !! The points, seen from there: (2, n) [m]
+      real(wp), allocatable, intent(out) :: point(:, :)  !! Points relative to the origin: (2, n) [m]
       real(wp), allocatable, intent(out) :: force(:, :)  !! The forces: (2, n) [N/m]
       integer :: n
 
@@ -85,8 +85,8 @@ contains
       if (deck%value(live_fy)%given) force(2, :) = deck%value(live_fy)%numbers
    end subroutine live_lists
 
-   !> Block that moves and holds a point most deeply or has it on its outline, else one that is
-   !> fixed and does; 0 if none does
+   !> Movable block that contains a point most deeply or on its outline, else such a fixed block; 0
+   !> if there is none
    pure integer function block_at(system, point)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: point(2)  !! The point: (2) [m]
@@ -95,10 +95,10 @@ contains
       if (block_at == 0) block_at = deepest_block(system, system%equation == 0, point)
    end function block_at
 
-   !> Block of some that holds a point most deeply or has it on its outline; 0 if none does
+   !> Selected block that contains a point most deeply or on its outline; 0 if there is none
    pure integer function deepest_block(system, of, point)
       type(block_system_t), intent(in) :: system
-      logical, intent(in) :: of(:)  !! Which of them: (n_block)
+      logical, intent(in) :: of(:)  !! True for selected blocks: (n_block)
       real(wp), intent(in) :: point(2)
       real(wp) :: deepest, depth, low(2), high(2), margin
       integer :: b
@@ -121,11 +121,11 @@ contains
       end do
    end function deepest_block
 
-   !> Check that the forces of &live act on blocks that move
+   !> Check that the forces of &live act on movable blocks
    pure subroutine check_live_points(deck, scene, error)
       type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene  !! Its scene, with or without them
-      !> A point in no block, or in one that is fixed
+      type(scene_t), intent(in) :: scene  !! The scene, with or without the forces
+      !> Allocated for a point outside all blocks or in a fixed block
       type(error_t), allocatable, intent(out) :: error
       type(loaded_point_t), allocatable :: axle(:)
       character(len=:), allocatable :: text
@@ -133,7 +133,8 @@ contains
       integer :: b, i
 
       if (has_group(deck, vehicle_group) .and. .not. deck%value(vehicle_worst)%flag) then
-         ! a function's result in an expression is not freed in all its parts
+         ! a separate variable: gfortran does not free all parts of a function result in an
+         ! expression
          axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
          if (size(axle) == 0) call key_error(error, &
             & "&vehicle needs an axle above a block that moves, got none at position " &
@@ -158,7 +159,7 @@ contains
       end do
    end subroutine check_live_points
 
-   !> Whether a case has anything that the load factor multiplies
+   !> True if a case has live loads
    pure logical function bears_live(deck)
       type(deck_t), intent(in) :: deck
 

@@ -1,8 +1,8 @@
-!> Model options of a scene: the parts of the method without which its answer would be another one
+!> Model options of a scene: the parts of the method that its result depends on
 !>
-!> Whether a structure stands is a matter of equilibrium alone as long as its shape stays. Strain
-!> matters where blocks move, where they keep their velocities, where joints break one after the
-!> other, and where a displacement means collapse; and it shares out the joint forces at rest.
+!> In reference geometry equilibrium alone decides stability. Strain matters in current geometry, in
+!> dynamic runs, for joints that break one after the other, and for a displacement that means
+!> collapse; it also distributes the joint forces at rest.
 module dda_scene_plan
    use dda_block_system, only : n_unknown
    use dda_deck, only : deck_t, has_group, source_of
@@ -19,49 +19,48 @@ module dda_scene_plan
    !> Unknowns of a rigid block: u0, v0, r0
    integer, parameter :: n_rigid = 3
 
-   !> Why blocks have strains or not
+   !> Reasons for or against strain
    type :: strain_reason_enum
-      integer :: forced = 0   !! The deck says how many unknowns a block has
-      integer :: none = 1     !! Equilibrium alone decides
-      integer :: moving = 2   !! Blocks move, and strain moves their corners
-      integer :: dynamic = 3  !! Velocities are kept: the blocks' vibrations are part of the motion
-      !> Which joint breaks first follows from how the blocks share out the forces
+      integer :: forced = 0   !! Number of unknowns given in the deck
+      integer :: none = 1     !! No strain: equilibrium alone decides
+      integer :: moving = 2   !! Current geometry: strain moves the corners
+      integer :: dynamic = 3  !! Dynamic run: vibrations of the blocks are part of the motion
+      !> Joint strength: the distribution of forces determines which joint breaks first
       integer :: strength = 4
-      integer :: displacement = 5  !! A displacement means collapse, and strain is part of it
-      !> The joint forces of a single decision are wanted, and strain shares them out
+      integer :: displacement = 5  !! Displacement that means collapse: strain contributes to it
+      !> Output of joint forces without a search: strain distributes them
       integer :: forces = 6
-      integer :: original = 7  !! Shi's scheme has strain
-      !> Blocks from files, whose joints have laws and whose states have stress of their own
+      integer :: original = 7  !! Shi's scheme, which has strain
+      !> Blocks from files, with their own joint laws and stresses
       integer :: files = 8
    end type strain_reason_enum
 
    !> Names of the reasons
    type(strain_reason_enum), parameter :: strain_reason = strain_reason_enum()
 
-   !> Parts of a scene
+   !> Model options of a scene
    type :: scene_plan_t
       !> Unknowns of a block in the decisions: 6, or 3 without strain
       integer :: unknowns = n_unknown
-      !> Why, one of strain_reason
+      !> Reason, one of strain_reason
       integer :: reason = 0
-      !> Whether velocities are kept
+      !> True if velocities are kept from step to step
       logical :: velocities = .false.
-      !> Whether blocks move and contacts follow them
+      !> True in current geometry
       logical :: moving = .false.
-      !> Whether joints have cohesion or tensile strength, and may lose it
+      !> True if joints have cohesion, tensile strength or residual friction
       logical :: strength = .false.
-      !> Whether the blocks lie in a row, unmoved, each touching its two neighbours alone
+      !> True for a row of blocks in reference geometry, each with two neighbours only
       logical :: row = .false.
-      !> Whether the blocks are a chain: rigid, unmoved, each touching its two neighbours alone,
-      !> which flat arrays without pattern and search can hold
+      !> True for a chain: a row of rigid blocks, stored in arrays without pattern and search
       logical :: chain = .false.
-      !> Whether the left half of the row will do, as the loads are upright
+      !> True if the left half of a symmetric row suffices
       logical :: halved = .false.
    end type scene_plan_t
 
 contains
 
-   !> What the scene of one case needs
+   !> Model options of a case
    pure type(scene_plan_t) function plan_scene(deck) result(plan)
       type(deck_t), intent(in) :: deck
 
@@ -83,8 +82,8 @@ contains
          plan%reason = strain_reason%forced
          plan%unknowns = nint(deck%value(analysis_unknowns)%number)
       end if
-      ! the condition number is one of the equations with a pattern, and a displacement that means
-      ! collapse one of corners: neither is known of a chain
+      ! a chain has no condition number, which needs equations with a pattern, and no displacements
+      ! of corners
       plan%row = source_of(deck) == "arch" .and. deck%value(analysis_mode)%text == "static" &
          & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, live_group) &
          & .or. has_group(deck, vehicle_group))

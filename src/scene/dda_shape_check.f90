@@ -1,4 +1,4 @@
-!> Checks of arches of any shape and of their ties
+!> Checks of shaped arches and their ties
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
@@ -32,16 +32,16 @@ module dda_shape_check
 
 contains
 
-   !> Check every case of a deck; the ends of a search take the place of what is searched
+   !> Check every case of a deck, and the ends of its search
    pure subroutine check_shapes(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! An arch that cannot be, or be run so
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an unsupported arch
       type(deck_t) :: work
       integer :: number, n
       logical :: one_kind
 
       n = n_cases(deck)
-      ! which keys are given is the same for all cases
+      ! all cases have the same given keys
       one_kind = .not. any(deck%sweeps%parameter%key == arch_shape)
       do number = 1, n
          call turn_to_case(deck, number, work, error)
@@ -73,7 +73,7 @@ contains
          return
       end if
       do key = search_low, search_high
-         ! where an end is not given, the deck's own value
+         ! without a given end, the value of the deck
          from = merge(key, deck%searched%key, deck%value(key)%given)
          trial = deck
          call put_number(trial, deck%searched, deck%value(from)%number, place_of(deck, key), error)
@@ -84,10 +84,10 @@ contains
       end do
    end subroutine check_one
 
-   !> Check that there is such an arch
+   !> Check that the arch exists
    pure subroutine check_form(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! What makes none
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if it does not exist
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
       integer :: key
@@ -102,7 +102,7 @@ contains
       call key_error(error, full_name(deck_key(key))//": "//trim(problem%text), deck, key)
    end subroutine check_form
 
-   !> Check that what is asked of such an arch can be computed
+   !> Check that the models of the deck support shaped arches
    pure subroutine check_models(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -157,7 +157,7 @@ contains
          & call key_error(error, full_name(deck_key(key))//": "//problem, deck, key)
    end subroutine check_models
 
-   !> Whether weight acts otherwise than downwards
+   !> True if gravity is not vertical
    pure logical function changes_weight(deck)
       type(deck_t), intent(in) :: deck
 
@@ -169,9 +169,9 @@ contains
          & .or. index(deck%value(search_parameter)%text, "gravity_direction_deg") > 0
    end function changes_weight
 
-   !> Put the bars of &tie between the blocks that hold their ends
+   !> Add the bars of &tie to the blocks at their ends
    pure subroutine add_ties(deck, plan)
-      type(deck_t), intent(in) :: deck           !! The deck of the case, with &tie, checked
+      type(deck_t), intent(in) :: deck           !! The deck of the case with &tie, checked
       type(block_plan_t), intent(inout) :: plan  !! The blocks; receives the bars
       type(bar_t), allocatable :: bar(:)
       type(site_t) :: site
@@ -195,10 +195,10 @@ contains
       call move_alloc(bar, plan%boundary%bar)
    end subroutine add_ties
 
-   !> Ends of all ties
+   !> End points of all ties
    pure subroutine tie_ends(deck, ends)
       type(deck_t), intent(in) :: deck
-      !> x and y of the one end, then of the other: (4, n) [m]
+      !> Coordinates x, y of the first end, then of the second: (4, n) [m]
       real(wp), allocatable, intent(out) :: ends(:, :)
 
       integer :: i
@@ -212,7 +212,7 @@ contains
    !> Check the ties of a case
    pure subroutine check_ties(deck, error)
       type(deck_t), intent(in) :: deck
-      !> Lists that do not go together, or an end in no block
+      !> Allocated for lists of different lengths or an end outside all blocks
       type(error_t), allocatable, intent(out) :: error
       integer :: key, n
 

@@ -1,4 +1,4 @@
-!> Arches of any shape from a deck: shape, blocks, actions
+!> Shaped arches of a deck: form, blocks, actions
 module dda_shape_scene
    use dda_arch_assembly, only : arch_assembly_t, assemble_arch
    use dda_arch_form, only : arch_form_t, form_problem_t
@@ -28,11 +28,11 @@ module dda_shape_scene
 
 contains
 
-   !> The form of a deck, its keys checked against one another
+   !> Form of a deck, with checks between its keys
    pure subroutine shape_form(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(out) :: form
-      type(form_problem_t), intent(out) :: problem  !! Keys that do not go together
+      type(form_problem_t), intent(out) :: problem  !! Keys that contradict each other
 
       form%shape = deck%value(arch_shape)%text
       form%by_radius = (form%shape == "circular" .or. form%shape == "segmental") &
@@ -61,7 +61,7 @@ contains
       if (len_trim(problem%text) == 0) call take_thickness(deck, form, problem)
    end subroutine shape_form
 
-   !> Check the keys that make the line of an arch
+   !> Check the keys of the line of an arch
    pure subroutine check_lines(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
@@ -101,7 +101,7 @@ contains
       end if
    end subroutine check_lines
 
-   !> Check the keys of piers and buttresses, and of what has no use beside others
+   !> Check the keys of piers and buttresses, and keys without effect
    pure subroutine check_supports(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
@@ -135,11 +135,11 @@ contains
       end if
    end subroutine check_supports
 
-   !> Thickness of a form at the crown and at the springings
+   !> Set the thickness of a form at the crown and at the springings
    pure subroutine take_thickness(deck, form, problem)
       type(deck_t), intent(in) :: deck
-      type(arch_form_t), intent(inout) :: form        !! Its form; the thickness is set
-      type(form_problem_t), intent(inout) :: problem  !! None, or several that contradict
+      type(arch_form_t), intent(inout) :: form        !! The form; its thickness is set
+      type(form_problem_t), intent(inout) :: problem  !! Contradicting keys, if any
       logical :: constant, crown, ratio, springing
 
       constant = deck%value(arch_thickness)%given
@@ -165,7 +165,7 @@ contains
          & deck%value(arch_springing_thickness)%number]
    end subroutine take_thickness
 
-   !> The blocks of a deck's arch
+   !> Make the blocks of a deck's arch
    pure subroutine shape_assembly(deck, assembly, problem)
       type(deck_t), intent(in) :: deck
       type(arch_assembly_t), intent(out) :: assembly
@@ -176,7 +176,7 @@ contains
       if (len_trim(problem%text) == 0) call assemble_arch(form, assembly, problem)
    end subroutine shape_assembly
 
-   !> Displace the springings as &support says: both ends of their joints are led
+   !> Prescribe the displacements of &support at both ends of the springing joints
    pure subroutine lead_springings(deck, plan)
       type(deck_t), intent(in) :: deck
       type(block_plan_t), intent(inout) :: plan  !! Blocks of an arch without buttresses
@@ -191,7 +191,7 @@ contains
          do side = 0, 1
             if (.not. any(given(3*side + 1:3*side + 3))) cycle
             key = support_left_dx + 3*side
-            ! the first of the fixed blocks, and the last one
+            ! the first fixed block is left, the last one right
             block = merge(size(plan%fixed), findloc(plan%fixed, .true., dim=1), side == 1)
             plan%fixed(block) = .false.
             associate (ends => plan%vertex(:, [plan%first_vertex(block), &
@@ -211,11 +211,11 @@ contains
 
    contains
 
-      !> Displacement of the end of an arm that is turned anticlockwise
+      !> Displacement of the end of an arm by an anticlockwise rotation
       pure function turned(arm, angle) result(way)
-         real(wp), intent(in) :: arm(2)  !! The arm: (2) [m]
-         real(wp), intent(in) :: angle   !! The angle [rad]
-         real(wp) :: way(2)              !! The displacement: (2) [m]
+         real(wp), intent(in) :: arm(2)  !! Arm: (2) [m]
+         real(wp), intent(in) :: angle   !! Angle [rad]
+         real(wp) :: way(2)              !! Displacement: (2) [m]
 
          way = sin(angle)*[-arm(2), arm(1)] - 2.0_wp*sin(0.5_wp*angle)**2*arm
       end function turned
@@ -236,10 +236,10 @@ contains
       call move_alloc(loaded, scene%settings%boundary%loaded)
    end subroutine add_loads
 
-   !> Number of the joint between two voussoirs that is nearest to the crown of the first span
+   !> Find the joint of two voussoirs nearest to the crown of the first span
    pure subroutine find_crown_joint(assembly, scene)
       type(arch_assembly_t), intent(in) :: assembly
-      type(scene_t), intent(inout) :: scene  !! Their scene; the number is set
+      type(scene_t), intent(inout) :: scene  !! The scene; the number is set
       real(wp) :: off, least
       integer :: j
 
@@ -257,12 +257,12 @@ contains
       end do
    end subroutine find_crown_joint
 
-   !> Give the blocks of a dome's lune the weight of its wedges, whose depth is the angle times the
-   !> distance from the axis. The weight acts where the depth has it: it is put there by a pair of
-   !> forces, as that of a block acts at the centre of its face
+   !> Set the weight of the wedges of a dome's lune, whose depth is the angle times the distance
+   !> from the axis. A pair of forces shifts the weight from the centre of the face to the centre of
+   !> the wedge
    pure subroutine add_lune_weights(lune_deg, scene)
       real(wp), intent(in) :: lune_deg  !! Angle of the lune [deg]
-      !> The scene, its axis at x = 0; weights are set, and loads added
+      !> The scene, with the axis at x = 0; weights are set and loads added
       type(scene_t), intent(inout) :: scene
       type(loaded_point_t) :: pair(2)
       real(wp) :: sums(3), weight
@@ -303,10 +303,10 @@ contains
       end associate
    end function wedge_sums
 
-   !> The part of a polygon on one side of the axis
+   !> Part of a polygon on one side of the axis
    pure function half_plane(vertex, side) result(part)
-      real(wp), intent(in) :: vertex(:, :)  !! Its corners: (2, n) [m]
-      real(wp), intent(in) :: side          !! 1 for what is right of x = 0, -1 for what is left
+      real(wp), intent(in) :: vertex(:, :)  !! Corners: (2, n) [m]
+      real(wp), intent(in) :: side          !! 1 for x > 0, -1 for x < 0
       real(wp), allocatable :: part(:, :)   !! Corners of the part: (2, m) [m]
       real(wp) :: corner(2, 2*size(vertex, 2)), share
       integer :: i, m, n, next

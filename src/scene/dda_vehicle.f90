@@ -15,38 +15,38 @@ module dda_vehicle
    !> A vehicle
    type :: vehicle_t
       real(wp), allocatable :: axle(:)    !! Weight of each axle: (n) [N/m]
-      real(wp), allocatable :: offset(:)  !! Distance of each from the first, to the right: (n) [m]
-      real(wp) :: length = 0.0_wp         !! Length over which each is spread, about its middle [m]
-      real(wp) :: position = 0.0_wp       !! Where the first axle is [m]
-      !> How far an axle spreads to either side, over the depth of the blocks below the surface
+      real(wp), allocatable :: offset(:)  !! Distance to the right of the first axle: (n) [m]
+      real(wp) :: length = 0.0_wp         !! Loaded length of each axle, about its middle [m]
+      real(wp) :: position = 0.0_wp       !! Position of the first axle [m]
+      !> Load spread: width to either side over the depth of the blocks below the surface
       real(wp) :: spread = 0.0_wp
-      real(wp) :: surface = 0.0_wp  !! Height of the surface that it stands on [m]
+      real(wp) :: surface = 0.0_wp  !! Height of the road surface [m]
    end type vehicle_t
 
-   !> What axles stand on: edges of blocks that have their block below them
+   !> Edges that carry axles: upper edges of blocks
    type :: road_t
-      real(wp), allocatable :: left(:, :), right(:, :)  !! Left and right end of each: (2, n) [m]
-      integer, allocatable :: block(:)                  !! Its block: (n)
-      logical, allocatable :: moves(:)                  !! Whether that moves: (n)
-      !> Places between which one edge is the highest, rising: (m) [m]
+      real(wp), allocatable :: left(:, :), right(:, :)  !! Left, right end of each edge: (2, n) [m]
+      integer, allocatable :: block(:)                  !! Block of each edge: (n)
+      logical, allocatable :: moves(:)                  !! True for edges of movable blocks: (n)
+      !> Abscissae between which the highest edge is the same, ascending: (m) [m]
       real(wp), allocatable :: corner(:)
-      !> That edge, between each of them and the next; 0 where there is none: (0:m)
+      !> Highest edge between each of them and the next; 0 if there is none: (0:m)
       integer, allocatable :: highest(:)
-      real(wp) :: reach(2) = 0.0_wp  !! Where the edges of blocks that move begin and end: (2) [m]
+      real(wp) :: reach(2) = 0.0_wp  !! Range of the edges of movable blocks along x: (2) [m]
       real(wp) :: size = 0.0_wp      !! Size of all blocks [m]
    end type road_t
 
-   !> Height below the upper face within which a corner is on it, over the total size
+   !> Depth below the upper face within which a corner belongs to it, over the total size
    real(wp), parameter :: on_top = 1.0e-9_wp
-   !> Position beyond all corners and loaded lengths, over the total size
+   !> Distance beyond all corners and loaded lengths, over the total size
    real(wp), parameter :: beyond_all = 1.0e6_wp
 
 contains
 
-   !> The vehicle of a deck
+   !> Make the vehicle of a deck
    pure type(vehicle_t) function vehicle_of(deck, fill) result(vehicle)
       type(deck_t), intent(in) :: deck            !! The deck of the case, with &vehicle
-      type(fill_t), intent(in), optional :: fill  !! Fill that it stands on
+      type(fill_t), intent(in), optional :: fill  !! Fill below the vehicle
       real(wp), allocatable :: spacing(:)
       integer :: i
 
@@ -63,7 +63,7 @@ contains
       vehicle%surface = fill%surface
    end function vehicle_of
 
-   !> The edges that axles may stand on
+   !> Edges that may carry axles
    pure type(road_t) function road_of(system) result(road)
       type(block_system_t), intent(in) :: system
       integer :: b, k, n, next
@@ -90,7 +90,7 @@ contains
       call see_highest(road)
    end function road_of
 
-   !> See which edge is the highest where: edges are taken in where they begin, from left to right
+   !> Find the highest edge of each interval, by a sweep from left to right
    pure subroutine see_highest(road)
       type(road_t), intent(inout) :: road
       integer, allocatable :: above(:), order(:)
@@ -122,7 +122,7 @@ contains
             top = -huge(top)
             do j = 1, n
                y = height(road, above(j), middle)
-               ! of two at one height the first
+               ! of two equally high edges, the first
                if (y < top .or. .not. y > top .and. above(j) > road%highest(i)) cycle
                top = y
                road%highest(i) = above(j)
@@ -131,7 +131,7 @@ contains
       end do
    end subroutine see_highest
 
-   !> Live loads of the axles; what is not above a block that moves is left out
+   !> Live loads of the axles, without parts that are not above a movable block
    pure function axle_loads(vehicle, road, origin) result(loaded)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
@@ -176,13 +176,13 @@ contains
       end do
    end function axle_loads
 
-   !> Half the length over which an axle is spread [m]. It spreads from the lower end of the upper
-   !> edge below it, of blocks that move; beside them all, of the nearest end
+   !> Half the loaded length of an axle [m]. The load spreads down to the lower end of the upper
+   !> edge below the axle, or of the nearest end edge beyond the movable blocks
    pure real(wp) function half_length(vehicle, road, origin, x) result(half)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
-      real(wp), intent(in) :: x  !! Where the axle is, in these coordinates [m]
+      real(wp), intent(in) :: x  !! Abscissa of the axle, relative to the origin [m]
       real(wp) :: top
       integer :: edge
 
@@ -197,11 +197,11 @@ contains
       half = half + vehicle%spread*max(0.0_wp, vehicle%surface - origin(2) - top)
    end function half_length
 
-   !> The upper edge at the nearest end of the blocks that move; a fixed one that meets it there is
-   !> none, by whatever rounding it may be the higher one
+   !> Upper edge at the nearest end of the movable blocks. Adjacent fixed edges are excluded,
+   !> because round-off would decide between them
    pure integer function end_edge(road, x)
       type(road_t), intent(in) :: road
-      real(wp), intent(in) :: x  !! Where the axle is, beside them all [m]
+      real(wp), intent(in) :: x  !! Abscissa of the axle, beyond the movable blocks [m]
       real(wp) :: top, y
       logical :: ends
       integer :: k
@@ -223,13 +223,13 @@ contains
       end do
    end function end_edge
 
-   !> Positions between which the loads of all axles change smoothly: where an end of one passes a
-   !> corner of an upper face, or its middle, where what it is spread over is another length beyond
+   !> Positions between which the loads of all axles vary smoothly: an end of a loaded length is at
+   !> a corner of an upper face, or its middle where the loaded length changes
    pure function passages(vehicle, road, origin) result(at)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
-      real(wp), allocatable :: at(:)  !! The positions, rising: (n) [m]
+      real(wp), allocatable :: at(:)  !! The positions, ascending: (n) [m]
       real(wp), allocatable :: corner(:), edge(:), place(:)
       real(wp) :: far, half, middle
       integer :: i, j, n
@@ -255,18 +255,18 @@ contains
       at = at(sorted_order(spread(0, 1, size(at)), at))
    end function passages
 
-   !> The highest edge at a place
+   !> Find the highest edge at an abscissa
    pure subroutine find_top(road, x, edge, top)
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: x
-      integer, intent(out) :: edge  !! Its number; 0 if there is none
-      real(wp), intent(out) :: top  !! Its height [m]
+      integer, intent(out) :: edge  !! Number of the edge; 0 if there is none
+      real(wp), intent(out) :: top  !! Height of the edge [m]
       real(wp) :: y
       integer :: after, before, k, middle
 
       edge = 0
       top = -huge(top)
-      ! the last corner that is not to the right
+      ! the last corner at or to the left of x
       before = 0
       after = size(road%corner) + 1
       do while (after - before > 1)
@@ -277,12 +277,12 @@ contains
             after = middle
          end if
       end do
-      ! on a corner the edge to its left counts, too, past those corners that are at the same place
+      ! at a corner the edge to its left counts too, across coincident corners
       do k = before, 0, -1
          associate (other => road%highest(k))
             if (other > 0) then
                y = height(road, other, x)
-               ! of two at one height the first
+               ! of two equally high edges, the first
                if (y > top .or. .not. y < top .and. other <= edge) then
                   top = y
                   edge = other
@@ -294,7 +294,7 @@ contains
       end do
    end subroutine find_top
 
-   !> Height of an edge at a place
+   !> Height of an edge at an abscissa
    pure real(wp) function height(road, k, x)
       type(road_t), intent(in) :: road
       integer, intent(in) :: k  !! Number of the edge
@@ -304,10 +304,10 @@ contains
          & *(road%right(2, k) - road%left(2, k))
    end function height
 
-   !> Places of the corners of the upper faces, where an axle goes from block to block
+   !> Abscissae of the corners of the upper faces
    pure function upper_corners(road) result(x)
       type(road_t), intent(in) :: road
-      real(wp), allocatable :: x(:)  !! Their places, each once, rising: (n) [m]
+      real(wp), allocatable :: x(:)  !! Distinct abscissae, ascending: (n) [m]
       real(wp) :: corner(2, 2*size(road%block)), top
       logical :: upper(2*size(road%block))
       integer :: edge, k
