@@ -13,8 +13,7 @@ submodule (dda_text) dda_read_number
       pure function c_strtod(text, rest) bind(c, name="strtod") result(value)
          import :: c_char, c_double, c_ptr
          character(kind=c_char), intent(in) :: text(*)  !! The number, ended by a null character
-         type(c_ptr), intent(in), value :: rest         !! Receives the place after the number; null
-                                                        !! if not needed
+         type(c_ptr), intent(in), value :: rest         !! Receives the end of the number, or null
          real(c_double) :: value
       end function c_strtod
    end interface

@@ -54,8 +54,7 @@ contains
    !> List items per owner: owner i has item(first(i)) to item(first(i + 1) - 1), ascending
    pure subroutine list_by_owner(owner, first, item)
       integer, intent(in) :: owner(:)   !! Owner of each item, 0 for none: (n)
-      integer, intent(out) :: first(:)  !! First item of each owner, and one past the end: (n_owner
-                                        !! + 1)
+      integer, intent(out) :: first(:)  !! First item of each owner, and end: (n_owner + 1)
       integer, allocatable, intent(out) :: item(:)  !! The items that have an owner
       integer :: i
 

@@ -72,8 +72,7 @@ module dda_text
    !> A text built line by line
    type :: growing_text_t
       private
-      character(len=:), allocatable :: text  !! The lines, each with its line end, and spare room
-                                             !! after them
+      character(len=:), allocatable :: text  !! The lines with their ends, and spare room
       integer :: length = 0                  !! Length of the lines
    end type growing_text_t
 

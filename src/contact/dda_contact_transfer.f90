@@ -157,8 +157,7 @@ contains
    pure subroutine take_over_slip(system, past, source, in_time, joint, place)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)  !! The contacts of the previous step
-      integer, intent(in) :: source(2)             !! Contacts that the joint continues, 0 for
-                                                   !! none: (2)
+      integer, intent(in) :: source(2)             !! Continued contacts, 0 for none: (2)
       !> True in dynamic runs, where each step accepts the present penetration
       logical, intent(in) :: in_time
       type(joint_t), intent(inout) :: joint

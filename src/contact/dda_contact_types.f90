@@ -24,8 +24,7 @@ module dda_contact_types
       integer :: vertex = 0        !! Number of the vertex, among all vertices
       integer :: edge = 0          !! Number of the edge, that of its first vertex
       integer :: edge_end = 0      !! Second vertex of the edge
-      integer :: edge_side = 1     !! Owner of the edge: 1 or 2 for the first or second block of the
-                                   !! joint
+      integer :: edge_side = 1     !! Block of the joint that owns the edge: 1 or 2
       real(wp) :: length = 0.0_wp  !! Tributary length of the contact [m]
       !> Share of the joint's shear force at this contact; the shares of a joint add up to one
       real(wp) :: share = 0.5_wp
@@ -250,8 +249,7 @@ contains
    pure function rows_of_joint(joint, place, side, centroid, motion, n_dof) result(row)
       type(joint_t), intent(in) :: joint
       type(joint_place_t), intent(in) :: place
-      integer, intent(in) :: side          !! The block: 1 or 2 for the first or second block of the
-                                           !! joint
+      integer, intent(in) :: side          !! Block of the joint: 1 or 2
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: motion(6)    !! Motion of the block: (6)
       integer, intent(in) :: n_dof

@@ -99,8 +99,7 @@ contains
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: pair(2)           !! Edge of the first block, edge of the second: (2)
       real(wp), intent(in) :: reach
-      type(key_set_t), intent(inout) :: taken  !! Keys of the contacts that already belong to a
-                                               !! joint
+      type(key_set_t), intent(inout) :: taken  !! Keys of contacts that are in a joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       type(corner_view_t) :: view

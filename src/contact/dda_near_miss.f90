@@ -127,8 +127,7 @@ contains
    !> True if the blocks have this joint of two edges; for a corner, if they have any joint
    pure logical function has_joint(joint, key, first, wanted, other)
       type(joint_t), intent(in) :: joint(:)
-      integer(int64), intent(in) :: key(:)  !! Keys of the blocks of the joints,
-                                            !! ascending: (n_joint)
+      integer(int64), intent(in) :: key(:)  !! Keys of their blocks, ascending: (n_joint)
       integer, intent(in) :: first          !! First joint of these blocks
       integer(int64), intent(in) :: wanted  !! Key of the blocks
       type(joint_t), intent(in) :: other

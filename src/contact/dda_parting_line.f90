@@ -16,8 +16,7 @@ module dda_parting_line
       integer :: edge = 0               !! Number of the edge; 0 for none
       integer :: corner = 0             !! Corner of the opposite block nearest to the line
       real(wp) :: gap = -huge(1.0_wp)   !! Height of that corner above the line [m]
-      real(wp) :: time = -huge(1.0_wp)  !! Time at which it crosses the line, in units of the
-                                        !! expected motion
+      real(wp) :: time = -huge(1.0_wp)  !! Crossing time in units of the expected motion
    end type line_t
 
    !> Advantage in gap below which a separating axis is kept, over the length of the edge

@@ -179,8 +179,7 @@ contains
       character(len=*), intent(in) :: raw  !! Bytes of a file
       !> The text; lines end in a line feed instead of CR LF, CR or LF
       character(len=:), allocatable, intent(out) :: text
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if the bytes are no text, with
-                                                        !! the line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for invalid bytes, with line
       character(len=1), parameter :: lf = achar(10), cr = achar(13), tab = achar(9)
       character(len=3), parameter :: mark = char(239)//char(187)//char(191)
       integer :: i, n, line, code

@@ -150,8 +150,7 @@ contains
       type(word_list_t), intent(inout) :: words
       character(len=*), intent(in) :: what
       real(wp), intent(out) :: value
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set for an
-                                                          !! invalid number
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error or an invalid number
       real(wp), parameter :: most = 1.0e30_wp
       integer :: row
 

@@ -102,8 +102,7 @@ contains
       integer, intent(in) :: part                       !! Place of the part that is read
       type(form_t), intent(in) :: form(:)               !! Elements allowed in it
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if an element is invalid or
-                                                        !! occurs twice
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid element
       !> Entry of each element in the form: 0 for the root and the part, below 0 if it is skipped
       integer, allocatable :: entry(:)
       !> Parent in which each entry last occurred: (size of form)

@@ -29,8 +29,7 @@ contains
       integer, intent(in) :: at                           !! Place of the element
       character(len=*), intent(in) :: name                !! Name of the attribute
       type(word_list_t), intent(out) :: words
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set if the
-                                                          !! attribute is missing
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error or a missing attribute
 
       call split_words(attribute_of(tree, at, name), tree%file, tree%element(at)%row, words)
       words%row = tree%element(at)%row
@@ -71,8 +70,7 @@ contains
       character(len=*), intent(in) :: words_for_yes       !! Words for yes, separated by blanks
       character(len=*), intent(in) :: word_for_no         !! The word for no
       logical, intent(inout) :: yes                       !! The choice
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier error; else set for another
-                                                          !! word or a missing attribute
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error or another word
       character(len=:), allocatable :: word
       integer :: at
 
@@ -156,8 +154,7 @@ contains
       integer, intent(in) :: at
       real(wp), intent(in) :: gravity
       type(analysis_material_t), intent(inout) :: material
-      type(warnings_t), intent(inout) :: warnings  !! Receives a warning of a unit weight that is
-                                                   !! not used
+      type(warnings_t), intent(inout) :: warnings  !! Receives unused unit weights
       real(wp) :: weight
 
       weight = material%density*gravity

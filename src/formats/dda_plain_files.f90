@@ -34,8 +34,7 @@ contains
       character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
-                                                        !! the line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid file, with line
       type(word_list_t) :: words
       integer :: k, n(0:size(plain_order))
 

@@ -27,8 +27,7 @@ module dda_read_limerick
          type(xml_tree_t), intent(inout) :: tree
          type(limerick_analysis_t), intent(out) :: analysis
          type(warnings_t), intent(inout) :: warnings
-         type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
-                                                           !! the line
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid file
       end subroutine read_ddaml_analysis
 
    end interface
@@ -47,8 +46,7 @@ contains
       character(len=*), intent(in) :: file              !! Name of the file
       type(line_model_t), intent(out) :: model
       type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file is invalid, with
-                                                        !! file and line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid file
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
       logical :: is_ddaml

@@ -27,8 +27,7 @@ module dda_xml_tags
       integer :: next = 1      !! Next character of the text
       integer :: row = 1       !! Line of that character
       real :: pairs = 0.0      !! Sum over all elements of the squared number of attributes
-      integer :: n_names = 0   !! Upper limit of the number of different names of elements and
-                               !! attributes
+      integer :: n_names = 0   !! Upper limit of the number of different names
       type(key_set_t) :: seen  !! Keys of tags whose names have been counted
    end type scan_t
 

@@ -150,8 +150,7 @@ contains
       character(len=*), intent(in) :: text              !! The file's text
       character(len=*), intent(in) :: file              !! Name of the file
       type(xml_builder_t), intent(out) :: builder
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if the text is refused before
-                                                        !! parsing
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for text refused unparsed
 
       builder%tree%file = file
       allocate (builder%tree%element(16))

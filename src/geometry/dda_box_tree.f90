@@ -35,8 +35,7 @@ contains
    pure subroutine box_pairs(low, high, group, pair, segment, margin)
       real(wp), intent(in) :: low(:, :)   !! Lower left corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)  !! Upper right corners: (2, n) [m]
-      integer, intent(in) :: group(:)     !! Group of each box; boxes of one group are not compared:
-                                          !! (n)
+      integer, intent(in) :: group(:)     !! Group of each box; pairs within one are omitted: (n)
       !> The pairs, the smaller number first: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       real(wp), intent(in), optional :: segment(:, :)  !! Ends x1, y1, x2, y2: (4, n) [m]

@@ -65,8 +65,7 @@ contains
    pure subroutine map_lines(map, model, error)
       type(joint_map_t), intent(in) :: map
       type(line_model_t), intent(out) :: model
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if an item cannot be drawn,
-                                                        !! with file and line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the map is invalid
       real(wp) :: inside(2)
       integer :: i
 

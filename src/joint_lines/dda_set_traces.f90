@@ -18,8 +18,7 @@ submodule (dda_map_lines) dda_set_traces
    type :: axis_t
       real(wp) :: along(2) = 0.0_wp   !! Unit vector along it: (2)
       real(wp) :: foot(2) = 0.0_wp    !! Point nearest to the anchor of the set: (2) [m]
-      real(wp) :: window(2) = 0.0_wp  !! Start and end of the chord in the circle, from the
-                                      !! foot: (2) [m]
+      real(wp) :: window(2) = 0.0_wp  !! Start and end in the circle, from the foot: (2) [m]
    end type axis_t
 
 contains

@@ -52,10 +52,8 @@ module dda_cutting
       !> Remove the blocks that contain hole points (Shi: dc11)
       pure module subroutine remove_holes(model, cut, error)
          type(line_model_t), intent(in) :: model
-         type(cut_model_t), intent(inout) :: cut           !! The blocks; those with a hole point
-                                                           !! are removed
-         type(error_t), allocatable, intent(out) :: error  !! Allocated for a hole point outside all
-                                                           !! blocks
+         type(cut_model_t), intent(inout) :: cut           !! The blocks; some may be removed
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for a point in no block
       end subroutine remove_holes
 
       !> Assign points and fixed lines to blocks. A fixed line holds the block at each edge that it
@@ -77,8 +75,7 @@ module dda_cutting
       pure module subroutine give_materials(model, cut, error)
          type(line_model_t), intent(in) :: model
          type(cut_model_t), intent(inout) :: cut
-         type(error_t), allocatable, intent(out) :: error  !! Allocated for a material line outside
-                                                           !! all blocks
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for a line in no block
       end subroutine give_materials
 
       !> Drop edges with a free end until there are none (Shi: dc05)
@@ -136,8 +133,7 @@ contains
    pure subroutine cut_blocks(model, cut, error)
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(out) :: cut
-      type(error_t), allocatable, intent(out) :: error  !! Allocated if the lines cannot be cut into
-                                                        !! blocks
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the lines make no blocks
       type(network_t) :: network
       type(loops_t) :: loops
       integer :: n_edge

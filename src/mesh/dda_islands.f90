@@ -133,8 +133,7 @@ contains
       integer, intent(in) :: island(:)  !! Edges of the island: (n)
       type(network_t), intent(inout) :: network  !! Receives nodes at crossings
       type(crossed_t), intent(inout) :: crossed  !! Receives the crossings
-      integer, allocatable, intent(inout) :: bond(:, :)  !! Receives the end nodes of the cuts: (2,
-                                                         !! n)
+      integer, allocatable, intent(inout) :: bond(:, :)  !! Receives end nodes of cuts: (2, n)
       integer, allocatable :: edge(:), node(:), order(:)
       real(wp), allocatable :: height(:)
       real(wp) :: x

@@ -64,8 +64,7 @@ contains
       real(wp), intent(in) :: rise
       real(wp), intent(in) :: part(4)         !! Ends of the part of the edge: (4) [m]
       integer, intent(in) :: leg              !! Number of the point at the end of the segment
-      real(wp), intent(in) :: share(2)        !! Start and end of the segment along the part, as
-                                              !! shares: (2)
+      real(wp), intent(in) :: share(2)        !! Start and end along the part, as shares: (2)
       real(wp), intent(inout) :: force(2, 2)  !! Receives the forces at both ends: (2, 2) [N/m]
       real(wp) :: depth(2), s(2), place(2), inward(2), at, pressure, weight
       integer :: i

@@ -72,7 +72,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> Origin of the blocks' coordinates: (2) [m]
       real(wp), intent(in) :: origin(2)
-      real(wp), allocatable, intent(out) :: point(:, :)  !! Points relative to the origin: (2, n) [m]
+      real(wp), allocatable, intent(out) :: point(:, :)  !! Points from the origin: (2, n) [m]
       real(wp), allocatable, intent(out) :: force(:, :)  !! The forces: (2, n) [N/m]
       integer :: n
 

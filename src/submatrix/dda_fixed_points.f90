@@ -70,8 +70,7 @@ contains
    pure subroutine follow_fixed_points(system, settings, time, dt, fixed)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: time                  !! Time of the prescribed displacements at the
-                                                    !! end of the step [s]
+      real(wp), intent(in) :: time                  !! Time at the end of the step [s]
       real(wp), intent(in) :: dt                    !! Length of the step [s]
       type(fixed_points_t), intent(inout) :: fixed  !! The springs; forces are kept
       real(wp) :: t(2, 6), place(2), centre(2), path(2), rate(2)
