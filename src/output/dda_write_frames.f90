@@ -9,14 +9,14 @@ module dda_write_frames
    public :: frames_header, frame_lines, frame_joints_header, frame_joint_lines
    public :: points_header, point_lines
 
-   !> One row of frame_joints.csv without what its frame has in common
+   !> A row of frame_joints.csv without the columns of its frame
    type :: frame_joint_row_t
       integer :: joint = 0                !! Number of the joint, from 1
-      real(wp) :: contact(2, 2) = 0.0_wp  !! Where the two contacts of the joint are: (2, 2) [m]
-      !> Where the force acts; of no force, the middle of the joint: (2) [m]
+      real(wp) :: contact(2, 2) = 0.0_wp  !! Positions of the two contacts: (2, 2) [m]
+      !> Point of application of the force; without force, the middle of the joint: (2) [m]
       real(wp) :: point(2) = 0.0_wp
       real(wp) :: force(2) = 0.0_wp      !! Force of the joint on its second block: (2) [N/m]
-      character(len=8) :: state(2) = ""  !! What the two contacts do, in a word each: (2)
+      character(len=8) :: state(2) = ""  !! State of each contact in one word: (2)
    end type frame_joint_row_t
 
    !> Names of the columns of frames.csv
@@ -32,12 +32,12 @@ contains
    !> Rows of one frame in frames.csv
    pure function frame_lines(case_and_frame, step, time, first_vertex, point, absent) result(lines)
       character(len=*), intent(in) :: case_and_frame  !! Numbers of the case and of the frame
-      integer, intent(in) :: step                     !! Accepted steps before it
-      real(wp), intent(in) :: time                    !! Sum of the lengths of these steps [s]
-      !> First corner of each block, and one beyond the last: (n_block + 1)
+      integer, intent(in) :: step                     !! Number of accepted steps
+      real(wp), intent(in) :: time                    !! Time [s]
+      !> First corner of each block, and one past the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
       real(wp), intent(in) :: point(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
-      !> Blocks that have no rows, as they are not there: (n_block)
+      !> Absent blocks, without rows: (n_block)
       logical, intent(in), optional :: absent(:)
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
@@ -74,15 +74,15 @@ contains
       lines = lines_of(rows)
    end function frame_joint_lines
 
-   !> Rows of the measured points of one case in points.csv
+   !> Rows of the monitoring points of one case in points.csv
    pure function point_lines(number, when, point, track, origin, speed) result(lines)
       integer, intent(in) :: number       !! Number of the case
       real(wp), intent(in) :: when(:, :)  !! Step and time: (2, n) [-, s]
-      !> Where the points are in the reference shape: (2, n_point) [m]
+      !> Coordinates of the points in the reference shape: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
-      real(wp), intent(in) :: track(:, :, :)  !! Where they are in each step: (2, n_point, n) [m]
-      real(wp), intent(in) :: origin(2)       !! Where the origin of the coordinates is: (2) [m]
-      !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
+      real(wp), intent(in) :: track(:, :, :)  !! Their coordinates in each step: (2, n_point, n) [m]
+      real(wp), intent(in) :: origin(2)       !! Origin of the coordinates: (2) [m]
+      !> Their velocities, absent if not known: (2, n_point, n or more) [m/s]
       real(wp), intent(in), optional :: speed(:, :, :)
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: fast

@@ -11,14 +11,14 @@ module dda_write_results
 
    !> The blocks of one case
    type :: told_blocks_t
-      !> First corner of each block, and one beyond the last: (n_block + 1)
+      !> First corner of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> fixed, held (by points) or free: (n_block)
+      !> State: fixed, held (by points) or free: (n_block)
       character(len=5), allocatable :: state(:)
-      !> Corners at the beginning, in the user's coordinates: (2, n_vertex) [m]
+      !> Initial corners in user coordinates: (2, n_vertex) [m]
       real(wp), allocatable :: corner(:, :)
-      !> Displacements of the corners at the end, or a collapse mechanism whose largest displacement
-      !> is 1; unallocated where they are not known: (2, n_vertex) [m]
+      !> Final displacements of the corners, or a collapse mechanism scaled to a largest
+      !> displacement of 1; unallocated if not known: (2, n_vertex) [m]
       real(wp), allocatable :: displacement(:, :)
    end type told_blocks_t
 
@@ -35,7 +35,7 @@ module dda_write_results
 
    !> A number that may be unknown
    type :: number_t
-      logical :: known = .false.  !! Whether it is known
+      logical :: known = .false.  !! True if it is known
       real(wp) :: value = 0.0_wp  !! The number
    end type number_t
 
@@ -43,7 +43,7 @@ module dda_write_results
    type :: result_row_t
       character(len=:), allocatable :: deck  !! Name of the deck
       integer :: number = 0                  !! Number of the case, from 1
-      !> Values of the swept parameters that have no column of their own: (n)
+      !> Values of the swept parameters without their own column: (n)
       character(len=:), allocatable :: swept
       integer :: blocks = 0                           !! Movable blocks
       type(number_t) :: half_angle_deg                !! Angle from the crown to a springing [deg]
@@ -51,45 +51,44 @@ module dda_write_results
       type(number_t) :: friction_deg                  !! Friction angle [deg]
       character(len=64) :: mode = ""                  !! static or dynamic
       character(len=64) :: geometry = ""              !! reference or current
-      character(len=10) :: verdict = ""               !! Answer of the case in a word
-      type(number_t) :: critical                      !! Middle of the bracket
-      type(number_t) :: critical_low                  !! Its lower end
-      type(number_t) :: critical_high                 !! Its upper end
-      character(len=4) :: collapses_at = ""           !! low or high: the end that falls
+      character(len=10) :: verdict = ""               !! Verdict in one word
+      type(number_t) :: critical                      !! Critical value: middle of the bracket
+      type(number_t) :: critical_low                  !! Lower end of the bracket
+      type(number_t) :: critical_high                 !! Upper end of the bracket
+      character(len=4) :: collapses_at = ""           !! Collapsed end of the bracket: low or high
       type(number_t) :: exact                         !! The exact value
       type(number_t) :: relative_error                !! (critical - exact)/exact
       character(len=10) :: collapse_mode = ""         !! rotational, mixed, sliding or none
       type(number_t) :: sliding_share                 !! Slip over slip and opening
       real(wp), allocatable :: intrados_hinge_deg(:)  !! Hinges at the intrados [deg]: (n)
       real(wp), allocatable :: extrados_hinge_deg(:)  !! Hinges at the extrados [deg]: (n)
-      !> intrados, extrados or none; blank where there is no arch
+      !> intrados, extrados or none; blank for other structures
       character(len=8) :: springing_hinge = ""
       integer :: steps = 0  !! Time steps
-      !> Passes of the open-close loop
+      !> Open-close iterations
       integer :: open_close_iterations = 0
       integer :: factorisations = 0  !! Factorisations
       real(wp) :: seconds = 0.0_wp   !! Wall time of the case [s]
       integer :: unknowns = 0        !! Unknowns of a block in the decisions
-      type(number_t) :: exact_low    !! Associated limit of what is searched, proven from below
-      type(number_t) :: exact_high   !! Likewise, from above
-      !> Largest force or moment that the forces of the proof leave on a block, over the largest
-      !> load
+      type(number_t) :: exact_low    !! Lower bound of the associated critical value, certified
+      type(number_t) :: exact_high   !! Upper bound, likewise
+      !> Largest unbalanced force or moment on a block in the certificate, over the largest load
       type(number_t) :: imbalance
-      !> Largest violation of the law of a joint by forces or velocities of the proof, relative
+      !> Largest relative violation of a joint law in the certificate
       type(number_t) :: law_violation
-      !> Power of the loads on the mechanism of the proof, over what they could do at most
+      !> Power of the loads on the mechanism of the certificate, over its upper limit
       type(number_t) :: mechanism_power
-      !> Thickness of an arch that stands over its critical thickness
+      !> Thickness of a stable arch over its critical thickness
       type(number_t) :: safety_thickness
-      !> Least and greatest thrust of a joint of what stands [N/m]
+      !> Smallest and largest thrust of a joint of a stable structure [N/m]
       type(number_t) :: thrust_min, thrust_max
-      !> Time to which the histories of a static run were followed [s]
+      !> Time reached on the histories of a static run [s]
       type(number_t) :: path_time
-      type(number_t) :: worst_position      !! Where the leftmost axle of a vehicle is worst [m]
-      character(len=8) :: worst_direction = ""  !! forward, backward; blank without such a place
-      !> Largest opening or slip against the law of contact where blocks move in time [m/s]
+      type(number_t) :: worst_position      !! Worst position of the leftmost axle of a vehicle [m]
+      character(len=8) :: worst_direction = ""  !! forward, backward; blank without a worst position
+      !> Largest opening or slip rate that violates the contact law in a dynamic run [m/s]
       type(number_t) :: contact_residual
-      logical :: tells_condition = .false.  !! Whether the table has a column of condition numbers
+      logical :: tells_condition = .false.  !! True if the table has a column of condition numbers
       type(number_t) :: condition           !! Estimated condition number of the last equations
    end type result_row_t
 
@@ -97,28 +96,29 @@ module dda_write_results
    type :: joint_row_t
       integer :: number = 0  !! Number of the case, from 1
       integer :: joint = 0   !! Number of the joint, from 1 at the left springing
-      !> Angle from the crown, positive to the right; unknown where there is no arch [deg]
+      !> Angle from the crown, positive to the right; unknown for other structures [deg]
       type(number_t) :: angle_deg
       real(wp) :: intrados(2) = 0.0_wp   !! Corner at the intrados: (2) [m]
       real(wp) :: extrados(2) = 0.0_wp   !! Corner at the extrados: (2) [m]
       real(wp) :: normal_force = 0.0_wp  !! Force on the joint, compression positive [N/m]
       !> Force along the joint on its right block, towards the extrados [N/m]
       real(wp) :: shear_force = 0.0_wp
-      !> Place of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force,
-      !> and of a joint of one corner
+      !> Position of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force
+      !> and for a joint with one corner
       type(number_t) :: eccentricity_ratio
       real(wp) :: opening_intrados = 0.0_wp  !! Opening at the intrados [m]
-      !> Opening at the extrados; unknown of a joint of one corner [m]
+      !> Opening at the extrados; unknown for a joint with one corner [m]
       type(number_t) :: opening_extrados
       !> Motion of the right block along the joint, towards the extrados [m]
       real(wp) :: slip = 0.0_wp
-      character(len=14) :: state = ""  !! What the joint does, in a word
+      character(len=14) :: state = ""  !! State of the joint in one word
       integer :: block(2) = 0          !! Its two blocks: (2)
-      !> Where the force acts; of no force, the middle of the joint: (2) [m]
+      !> Point of application of the force; without force, the middle of the joint: (2) [m]
       real(wp) :: point(2) = 0.0_wp
       real(wp) :: force(2) = 0.0_wp            !! Force on the second block: (2) [N/m]
-      character(len=14) :: mechanism = "none"  !! What the joint does in the collapse, in a word
-      !> Unit vector in which the second block slides past the first, unknown where none slides: (2)
+      character(len=14) :: mechanism = "none"  !! State in the collapse mechanism in one word
+      !> Unit vector of the slip of the second block relative to the first, unknown without
+      !> slip: (2)
       type(number_t) :: slides(2)
    end type joint_row_t
 
@@ -155,11 +155,11 @@ contains
       lines = lines_of(rows)
    end function block_lines
 
-   !> Rows of one case
+   !> Rows of one case in energy.csv
    pure function energy_lines(number, value) result(lines)
       integer, intent(in) :: number
-      !> Time and energies after each step, as the columns have them: (11, n_step) [s, J per metre,
-      !> m/s]
+      !> Time and energies after each step, in the order of the columns: (11, n_step) [s, J per
+      !> metre, m/s]
       real(wp), intent(in) :: value(:, :)
       character(len=:), allocatable :: lines
       type(growing_text_t) :: text
@@ -171,15 +171,14 @@ contains
       lines = lines_of(text)
    end function energy_lines
 
-   !> Rows of one case
+   !> Rows of one case in reactions.csv
    pure function reaction_lines(number, time, support, reaction, origin) result(lines)
       integer, intent(in) :: number
       real(wp), intent(in) :: time(:)       !! The times: (n_time) [s]
-      integer, intent(in) :: support(:, :)  !! Block, and number of the held point or 0: (2, n)
-      !> Force, and moment about the origin of the blocks' coordinates:
-      !> (3, n, n_time) [N/m, N/m, N]
+      integer, intent(in) :: support(:, :)  !! Block, and restrained point or 0: (2, n)
+      !> Force, and moment about the origin of the coordinates: (3, n, n_time) [N/m, N/m, N]
       real(wp), intent(in) :: reaction(:, :, :)
-      real(wp), intent(in) :: origin(2)  !! Where that origin is in coordinates of the user: (2) [m]
+      real(wp), intent(in) :: origin(2)  !! Origin in user coordinates: (2) [m]
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       real(wp) :: moment
@@ -198,18 +197,18 @@ contains
       lines = lines_of(rows)
    end function reaction_lines
 
-   !> A known number
+   !> Make a known number
    elemental type(number_t) function some_number(value)
       real(wp), intent(in) :: value  !! The value
 
       some_number = number_t(.true., value)
    end function some_number
 
-   !> Names of the columns of results.csv
+   !> Header of results.csv
    pure function results_header(swept, tells_condition) result(line)
-      !> Names of the swept parameters that have no column of their own, each with a comma behind it
+      !> Names of the swept parameters without their own column, each followed by a comma
       character(len=*), intent(in) :: swept
-      logical, intent(in) :: tells_condition  !! Whether the table has a column of condition numbers
+      logical, intent(in) :: tells_condition  !! True if the table has a column of condition numbers
       character(len=:), allocatable :: line
 
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
@@ -259,7 +258,7 @@ contains
          & //number_fields(row%slides)
    end function joint_line
 
-   !> Numbers as texts with commas between them, nothing for what is unknown
+   !> Numbers separated by commas, empty fields for unknown ones
    pure function number_fields(number) result(text)
       type(number_t), intent(in) :: number(:)  !! The numbers: (n)
       character(len=:), allocatable :: text
@@ -278,7 +277,7 @@ contains
       text = buffer(:n - 1)
    end function number_fields
 
-   !> Angles joined by semicolons, without the last digits that only rounding makes
+   !> Angles separated by semicolons, rounded to remove round-off
    pure function joined(angles) result(text)
       real(wp), intent(in), allocatable :: angles(:)  !! The angles: (:) [deg]
       character(len=:), allocatable :: text
@@ -292,7 +291,7 @@ contains
       end do
    end function joined
 
-   !> A text as a field of CSV, in quotes where it needs them
+   !> A text as a field of CSV, in quotes if necessary
    pure function quoted(text) result(field)
       character(len=*), intent(in) :: text  !! Any text
       character(len=:), allocatable :: field

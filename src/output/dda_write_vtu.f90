@@ -18,23 +18,23 @@ module dda_write_vtu
    public :: index_entry, write_index, write_points, write_polygons
    public :: write_cut_table, write_cut_vtu
 
-   !> VTK's numbers of the kinds of cells
+   !> VTK's numbers of cell types
    type :: cell_type_enum
       integer :: vertex = 1   !! A single point
       integer :: polygon = 7  !! Any simple polygon
    end type cell_type_enum
 
-   !> Names of the kinds of cells
+   !> Names of the cell types
    type(cell_type_enum), parameter :: cell_type = cell_type_enum()
 
-   !> An array of numbers as a file has it. Make a list of them element by element: gfortran never
-   !> frees the texts of those that stand in an array constructor
+   !> An array of numbers in a file. Lists must be filled element by element: gfortran does not free
+   !> the texts of elements in an array constructor
    type :: field_t
-      character(len=:), allocatable :: attributes  !! What the header says of it
-      character(len=:), allocatable :: bytes       !! The numbers in the machine's own form
+      character(len=:), allocatable :: attributes  !! Attributes in the header
+      character(len=:), allocatable :: bytes       !! The numbers in binary form
    end type field_t
 
-   !> Lines written at once
+   !> Number of lines per write
    integer, parameter :: batch = 100
    character(len=1), parameter :: lf = achar(10)
 
@@ -42,7 +42,7 @@ contains
 
    !> A field of real numbers
    pure type(field_t) function scalar_field(name, values) result(field)
-      character(len=*), intent(in) :: name  !! Name that ParaView shows
+      character(len=*), intent(in) :: name  !! Name in ParaView
       real(wp), intent(in) :: values(:)     !! The numbers: (n)
 
       field = new_field("Float64", name, "", real_bytes(values))
@@ -70,7 +70,7 @@ contains
          & //attribute("ComponentName2", "xy"), real_bytes(reshape(values, [size(values)])))
    end function tensor_field
 
-   !> A field of whole numbers
+   !> A field of integers
    pure type(field_t) function state_field(name, states) result(field)
       character(len=*), intent(in) :: name
       integer, intent(in) :: states(:)  !! The numbers: (n)
@@ -81,16 +81,16 @@ contains
 
    !> A field of any numbers
    pure type(field_t) function new_field(type, name, more, bytes) result(field)
-      character(len=*), intent(in) :: type   !! VTK's word for the kind of its numbers
+      character(len=*), intent(in) :: type   !! VTK's word for the type of the numbers
       character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: more   !! Further attributes, a blank before each
-      character(len=*), intent(in) :: bytes  !! The numbers
+      character(len=*), intent(in) :: more   !! Further attributes, each preceded by a blank
+      character(len=*), intent(in) :: bytes  !! The numbers in binary form
 
       field%attributes = attribute("type", type)//attribute("Name", name)//more
       field%bytes = bytes
    end function new_field
 
-   !> Real numbers in the machine's own form
+   !> Real numbers in binary form
    pure function real_bytes(values) result(bytes)
       real(wp), intent(in) :: values(:)       !! The numbers: (n)
       character(len=8*size(values)) :: bytes  !! Their bytes
@@ -98,10 +98,10 @@ contains
       bytes = transfer(values, bytes)
    end function real_bytes
 
-   !> First lines of a file for ParaView
+   !> First lines of a VTK file
    pure function file_head(kind) result(text)
-      character(len=*), intent(in) :: kind   !! What the file holds, in VTK's word
-      character(len=:), allocatable :: text  !! The lines; the element VTKFile is left open
+      character(len=*), intent(in) :: kind   !! VTK's word for the type of the file
+      character(len=:), allocatable :: text  !! The lines; the element VTKFile is still open
 
       text = "<?xml version=""1.0""?>"//lf//"<VTKFile"//attribute("type", kind) &
          & //attribute("version", "1.0")//attribute("byte_order", trim(merge("LittleEndian", &
@@ -109,10 +109,10 @@ contains
          & //attribute("header_type", "UInt64")//">"//lf
    end function file_head
 
-   !> An attribute of an element, with a blank before it
+   !> An attribute of an element, preceded by a blank
    pure function attribute(name, value) result(text)
-      character(len=*), intent(in) :: name  !! Its name
-      !> Its value; what XML reserves is written as XML wants it
+      character(len=*), intent(in) :: name  !! Name of the attribute
+      !> Value of the attribute; reserved characters are escaped
       character(len=*), intent(in) :: value
       character(len=:), allocatable :: text
       integer :: i
@@ -140,7 +140,7 @@ contains
       character(len=*), intent(in) :: file  !! Name of the file; one that exists is replaced
       !> Corners of all polygons, one polygon after the other: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
-      !> First corner of each polygon, and one beyond the last: (n_polygon + 1)
+      !> First corner of each polygon, and one past the last: (n_polygon + 1)
       integer, intent(in) :: first_vertex(:)
       type(field_t), intent(in) :: point_fields(:)  !! Fields with a value at each corner: (:)
       type(field_t), intent(in) :: cell_fields(:)   !! Fields with a value for each polygon: (:)
@@ -151,7 +151,7 @@ contains
          & cell_fields, error)
    end subroutine write_polygons
 
-   !> Write single points, such as those that contact forces act on
+   !> Write single points with their forces
    subroutine write_points(file, point, point_fields, error)
       character(len=*), intent(in) :: file
       real(wp), intent(in) :: point(:, :)           !! The points: (2, n_point) [m]
@@ -164,7 +164,7 @@ contains
          & none, error)
    end subroutine write_points
 
-   !> Write cells of one kind that own the points in their order
+   !> Write cells of one type that consist of consecutive points
    subroutine write_grid(file, kind, point, last_point, point_fields, cell_fields, error)
       character(len=*), intent(in) :: file
       integer, intent(in) :: kind           !! One of cell_type
@@ -195,9 +195,9 @@ contains
 
    contains
 
-      !> Announce fields in the header, and put their lengths and numbers behind the data
+      !> Write fields into the header, and append their lengths and data
       subroutine add_fields(element, fields)
-         character(len=*), intent(in) :: element  !! Element that they are announced in
+         character(len=*), intent(in) :: element  !! Element of the header
          type(field_t), intent(in) :: fields(:)   !! The fields: (:)
          integer :: k
 
@@ -211,12 +211,12 @@ contains
       end subroutine add_fields
    end subroutine write_grid
 
-   !> A file as an entry of an index
+   !> Entry of a file in an index
    pure function index_entry(time, part, shown) result(entry)
-      real(wp), intent(in) :: time  !! Time that the file shows, or number of the step
-      !> What it shows of that time, counted from 0: files of the same time are shown together
+      real(wp), intent(in) :: time  !! Time of the file, or number of the step
+      !> Part number from 0: all parts of the same time are shown together
       integer, intent(in) :: part
-      character(len=*), intent(in) :: shown   !! Its name, relative to the folder of the index
+      character(len=*), intent(in) :: shown   !! Name of the file, relative to the index
       character(len=:), allocatable :: entry  !! The entry with its line end
 
       entry = "    <DataSet"//attribute("timestep", to_text(time)) &
@@ -226,14 +226,14 @@ contains
    !> Write an index of files
    subroutine write_index(file, entries, error)
       character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: entries  !! Its entries
+      character(len=*), intent(in) :: entries  !! The entries
       type(error_t), allocatable, intent(out) :: error
 
       call write_file(file, file_head("Collection")//"  <Collection>"//lf//entries &
          & //"  </Collection></VTKFile>"//lf, error)
    end subroutine write_index
 
-   !> Write a row a block; lists in a field are parted by semicolons
+   !> Write one row per block; lists in a field are separated by semicolons
    subroutine write_cut_table(file, cut, error)
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
@@ -262,11 +262,11 @@ contains
       call close_table(table, error)
    end subroutine write_cut_table
 
-   !> The row of a block
+   !> Row of a block
    pure function block_line(cut, block, held) result(line)
       type(cut_model_t), intent(in) :: cut
       integer, intent(in) :: block  !! Number of the block
-      integer, intent(in) :: held(entity_role%fix:)  !! Its fixed, load and measured points: (3)
+      integer, intent(in) :: held(entity_role%fix:)  !! Its fixed, load and monitoring points: (3)
       character(len=:), allocatable :: line
       character(len=:), allocatable :: x, y, joint
       type(area_moments_t) :: moments
