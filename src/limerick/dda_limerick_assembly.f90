@@ -1,7 +1,7 @@
 !> Equations of a step: pattern, blocks, contacts, bolts (Shi: df08, df10 to df18)
 !>
-!> Bolts follow the original's rule (Shi: df17): linear springs that pull and push, whatever their
-!> strength, along the line between their ends at the beginning of each step.
+!> Bolts follow Shi's rule (Shi: df17): linear springs in tension and compression, without strength,
+!> along the line between their ends at the beginning of each step.
 module dda_limerick_assembly
    use dda_bar_place, only : bar_rows
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, new_bar_springs
@@ -20,20 +20,20 @@ module dda_limerick_assembly
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
-      !> Coupled blocks that the pattern was made for: (2, n_pair)
+      !> Coupled blocks of the present pattern: (2, n_pair)
       integer, allocatable :: pair(:, :)
       type(block_matrix_t) :: matrix          !! The matrix
       type(block_factor_t) :: factor          !! Its factor
-      real(wp), allocatable :: base(:, :, :)  !! What the blocks give to the matrix: (6, 6, n_block)
-      real(wp), allocatable :: load(:, :)     !! What they give to the right-hand side: (6, n_block)
-      type(bar_springs_t) :: bolts            !! Bolts, elastic whatever their force
+      real(wp), allocatable :: base(:, :, :)  !! Matrix of the blocks: (6, 6, n_block)
+      real(wp), allocatable :: load(:, :)     !! Right-hand side of the blocks: (6, n_block)
+      type(bar_springs_t) :: bolts            !! Bolts, always elastic
       !> Right-hand side, then the motion of the step: (6, n_block)
       real(wp), allocatable :: motion(:, :)
    end type limerick_equations_t
 
 contains
 
-   !> Bolts where their blocks are
+   !> Bolts at the present positions of their blocks
    pure type(bar_springs_t) function placed_bolts(model, blocks) result(bolts)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks  !! The blocks at the beginning of the step
@@ -50,12 +50,12 @@ contains
       end do
    end function placed_bolts
 
-   !> Place the bolts, make the pattern, if other blocks are coupled than before, and tell each
-   !> contact its entry
+   !> Place the bolts, make the pattern if the coupled blocks have changed, and set the matrix entry
+   !> of each contact
    pure subroutine couple_blocks(model, blocks, contacts, equations, spring)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Contacts, those of the same two blocks one after the other
+      !> Contacts, sorted by pairs of blocks
       type(contact_list_t), intent(in) :: contacts
       type(limerick_equations_t), intent(inout) :: equations
       !> Springs of the contacts; their entries are set: (at least contacts%n)
@@ -101,11 +101,11 @@ contains
       end do
    end subroutine couple_blocks
 
-   !> Inertia, elasticity, stress, weight, fixed and loaded points
+   !> Assemble inertia, elasticity, stress, weight, fixed and loaded points
    pure subroutine assemble_limerick(model, blocks, march, equations)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      type(limerick_march_t), intent(in) :: march  !! The march; its time step is the step's
+      type(limerick_march_t), intent(in) :: march  !! State of the run, with the time step
       !> The equations; base and load are set
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: mass(n_unknown, n_unknown), rate
@@ -128,7 +128,7 @@ contains
       call add_bars(equations%bolts, 1.0_wp, equations%base, equations%load)
    end subroutine assemble_limerick
 
-   !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
+   !> Add springs that return the fixed points to their positions, and forces at the load points
    pure subroutine add_points(model, blocks, march, equations)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
@@ -156,19 +156,19 @@ contains
       end do
    end subroutine add_points
 
-   !> Matrix and right-hand side with the springs and the friction of the contacts' states
+   !> Matrix and right-hand side with the springs and friction of the contacts, by their states
    pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
       type(contact_spring_t), intent(in) :: spring(:)
       type(limerick_march_t), intent(in) :: march
-      logical, intent(in) :: first_pass  !! Whether nothing was solved in this step yet
+      logical, intent(in) :: first_pass  !! True for the first solution of this step
       !> The equations; matrix and motion are set
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: damper
       integer :: c
 
-      ! a damper resists the mean speed of the step; static steps begin and end at rest
+      ! a damper resists the mean speed of a step; static steps have no speed at either end
       damper = 0.0_wp
       if (model%constants%dynamic) damper = model%constants%contact_damping/march%time_step
       equations%matrix%diagonal = equations%base
@@ -199,10 +199,10 @@ contains
       end do
    end subroutine add_contacts
 
-   !> One spring between two blocks, and a damper beside it (Ke 1995)
+   !> Add one spring between two blocks with a parallel damper (Ke 1995)
    pure subroutine add_spring(contact, spring, stiffness, damper, row, start, equations)
       type(limerick_contact_t), intent(in) :: contact
-      type(contact_spring_t), intent(in) :: spring  !! Where it stands in the matrix
+      type(contact_spring_t), intent(in) :: spring  !! Springs of the contact, with its matrix entry
       real(wp), intent(in) :: stiffness             !! Stiffness [N/m2]
       !> Force of the damper over its elongation in the step [N/m2]
       real(wp), intent(in) :: damper
@@ -225,12 +225,12 @@ contains
       end associate
    end subroutine add_spring
 
-   !> Add a multiple of the product of a column and a row
+   !> Add a multiple of the outer product of two vectors
    pure subroutine add_outer(factor, column, row, sum)
-      real(wp), intent(in) :: factor                        !! The multiple
-      real(wp), intent(in) :: column(n_unknown)             !! The column: (6)
-      real(wp), intent(in) :: row(n_unknown)                !! The row: (6)
-      real(wp), intent(inout) :: sum(n_unknown, n_unknown)  !! What is added to: (6, 6)
+      real(wp), intent(in) :: factor                        !! Factor
+      real(wp), intent(in) :: column(n_unknown)             !! First vector: (6)
+      real(wp), intent(in) :: row(n_unknown)                !! Second vector: (6)
+      real(wp), intent(inout) :: sum(n_unknown, n_unknown)  !! Matrix, incremented here: (6, 6)
       integer :: j
 
       do j = 1, n_unknown
@@ -238,7 +238,7 @@ contains
       end do
    end subroutine add_outer
 
-   !> Friction of a sliding contact against its last slip, from the last penetration
+   !> Friction of a sliding contact opposite to its last slip, from the last penetration
    pure subroutine add_friction(model, contact, spring, penalty, load)
       type(limerick_model_t), intent(in) :: model
       type(limerick_contact_t), intent(in) :: contact

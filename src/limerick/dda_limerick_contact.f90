@@ -12,17 +12,17 @@ module dda_limerick_contact
 
    !> One contact
    type :: limerick_contact_t
-      !> Whether two corners meet; otherwise a vertex and an edge
+      !> True for two corners; otherwise a vertex and an edge
       logical :: corner = .false.
-      !> Lines in use: two for corners, and where two edges lie together, whose second line is the
-      !> same contact seen from the other block
+      !> Number of lines: two for corners, and for two coinciding edges, where the second line is
+      !> the same contact of the other block
       integer :: n_line = 1
-      !> Vertex, and ends of the edge against its sense round the block: the edge and its law are
+      !> Vertex, and ends of the edge in reverse order along its block; the edge and its law are
       !> those of the third vertex: (3, 2)
       integer :: vertex(3, 2) = 0
-      !> Other end of the vertex's edge that lies along the contact's edge; 0 if none does
+      !> Other end of the vertex's edge along the contact's edge; 0 if there is none
       integer :: beside = 0
-      !> Block of the first line's vertex, block of its edge: (2)
+      !> Block of the first line's vertex, and block of its edge: (2)
       integer :: block(2) = 0
       !> One of limerick_state
       integer :: state = limerick_state%open
@@ -30,44 +30,44 @@ module dda_limerick_contact
       integer :: before = limerick_state%open
       !> Opening; negative is penetration [m]
       real(wp) :: gap = 0.0_wp
-      !> Motion along the edge since the shear spring was set [m]
+      !> Slip along the edge since the shear spring was set [m]
       real(wp) :: shear = 0.0_wp
-      !> Where the shear spring was set: 0 at the first end of the edge, 1 at the second
+      !> Position at which the shear spring was set: 0 at the first end of the edge, 1 at the second
       real(wp) :: place = 0.0_wp
-      !> Half the length of edges that lie together: cohesion and tension act there [m]
+      !> Half the length of two coinciding edges, for cohesion and tensile strength [m]
       real(wp) :: length = 0.0_wp
-      !> Whether cohesion and tension still hold
+      !> True if cohesion and tensile strength are intact
       logical :: bonded = .false.
    end type limerick_contact_t
 
-   !> Contacts of a step; the first n count
+   !> Contacts of a step, in the first n entries
    type :: contact_list_t
       type(limerick_contact_t), allocatable :: item(:)  !! The contacts: (at least n)
-      integer :: n = 0                                  !! How many there are
+      integer :: n = 0                                  !! Number of contacts
    end type contact_list_t
 
    !> Springs of one contact at the beginning of a step: opening and slip from the unknowns
    type :: contact_spring_t
       real(wp) :: normal(6, 2, 2)  !! Opening per unknown: (6, first and second block, line)
       real(wp) :: along(6, 2)      !! Slip per unknown: (6, first and second block)
-      real(wp) :: drag(6)          !! Friction on the edge's block per unit of force: (6)
+      real(wp) :: drag(6)          !! Friction on the edge's block per unit force: (6)
       real(wp) :: gap(2)           !! Opening at the beginning of the step: (line) [m]
       real(wp) :: shear            !! Slip at the beginning of the step [m]
       real(wp) :: edge_length      !! Length of the first line's edge [m]
       integer :: entry             !! Entry of the two blocks in the matrix
-      !> Whether the rows of that entry are those of the contact's first block
+      !> True if the rows of that entry are those of the contact's first block
       logical :: first_is_row
    end type contact_spring_t
 
 contains
 
-   !> Append a contact; the list grows by doubling
+   !> Append a contact; the capacity grows by doubling
    pure subroutine append_contact(list, contact)
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t), intent(in) :: contact
 
       if (.not. allocated(list%item)) allocate (list%item(64))
-      ! the second half is room
+      ! double the capacity
       if (list%n == size(list%item)) list%item = [list%item, list%item]
       list%n = list%n + 1
       list%item(list%n) = contact
@@ -104,12 +104,12 @@ contains
       if (.not. contact%corner) call place_shear_spring(blocks, contact, spring)
    end subroutine place_springs
 
-   !> The shear spring between the vertex and the point of the edge where it was set (Ke 1995, 56 to
-   !> 59)
+   !> Place the shear spring between the vertex and the point of the edge where it was set (Ke 1995,
+   !> 56 to 59)
    pure subroutine place_shear_spring(blocks, contact, spring)
       type(limerick_blocks_t), intent(in) :: blocks
-      type(limerick_contact_t), intent(in) :: contact  !! The contact of a vertex and an edge
-      type(contact_spring_t), intent(inout) :: spring  !! Its springs; the shear spring is set
+      type(limerick_contact_t), intent(in) :: contact  !! Contact of a vertex and an edge
+      type(contact_spring_t), intent(inout) :: spring  !! The springs; the shear spring is set
       real(wp), dimension(2) :: p1, p2, p3, set_at, away, tangent
 
       p1 = blocks%vertex(:, contact%vertex(1, 1))
@@ -127,20 +127,20 @@ contains
       end associate
    end subroutine place_shear_spring
 
-   !> Foot of a point on a line: 0 at its first end, 1 at its second
+   !> Foot of the perpendicular from a point to a line: 0 at its first end, 1 at its second
    pure real(wp) function projection(point, first, second)
       real(wp), intent(in) :: point(2)   !! The point: (2) [m]
       real(wp), intent(in) :: first(2)   !! First end of the line: (2) [m]
-      real(wp), intent(in) :: second(2)  !! Second end, not the same: (2) [m]
+      real(wp), intent(in) :: second(2)  !! Second end, distinct from the first: (2) [m]
 
       projection = dot_product(point - first, second - first) &
          & /dot_product(second - first, second - first)
    end function projection
 
-   !> Give the contacts of a step the states of the step before; a contact is known by its vertices
+   !> Transfer the states of the previous step to contacts with the same vertices
    pure subroutine transfer_contacts(blocks, before, now)
       type(limerick_blocks_t), intent(in) :: blocks
-      type(contact_list_t), intent(in) :: before  !! Contacts of the step before
+      type(contact_list_t), intent(in) :: before  !! Contacts of the previous step
       type(contact_list_t), intent(inout) :: now
       integer :: head(size(blocks%area)), following(before%n), c, b, p
       logical :: keeps_place
@@ -164,11 +164,11 @@ contains
       end do
    end subroutine transfer_contacts
 
-   !> Take over from one contact of the step before, if it is the same
+   !> Transfer the state of a previous contact, if it has the same vertices
    pure subroutine inherit(from, to, keeps_place)
-      type(limerick_contact_t), intent(in) :: from  !! The contact of the step before, closed
+      type(limerick_contact_t), intent(in) :: from  !! Closed contact of the previous step
       type(limerick_contact_t), intent(inout) :: to
-      !> Becomes true if the shear spring stays where it was set
+      !> Set if the shear spring keeps its position
       logical, intent(inout) :: keeps_place
       integer :: i, k, closed_line, state
 
@@ -186,7 +186,7 @@ contains
                   & limerick_state%second_line, i == 1)
             else
                if (k == closed_line) to%state = state
-               ! the corners' spring was normal only; on an edge the contact begins locked
+               ! the spring of the corners was normal only; on an edge the contact starts locked
                if (from%corner .and. to%state == limerick_state%open) &
                   & to%state = limerick_state%locked
                if (i == 1 .and. k == 1) keeps_place = from%state == limerick_state%locked
@@ -195,11 +195,11 @@ contains
       end do
    end subroutine inherit
 
-   !> Half the length along which two edges lie together, and where a new shear spring is set
+   !> Half the common length of two edges, and position of a new shear spring
    pure subroutine measure_line(blocks, contact, keeps_place)
       type(limerick_blocks_t), intent(in) :: blocks
       type(limerick_contact_t), intent(inout) :: contact
-      logical, intent(in) :: keeps_place  !! Whether the shear spring stays where it was set
+      logical, intent(in) :: keeps_place  !! True if the shear spring keeps its position
       real(wp), dimension(2) :: p2, p3
       real(wp) :: here, there
 
@@ -214,11 +214,12 @@ contains
          & *max(0.0_wp, min(1.0_wp, max(here, there)) - max(0.0_wp, min(here, there)))
    end subroutine measure_line
 
-   !> Contacts of the first step: all open in a static run, in a dynamic one those that touch locked
+   !> Initial states of the contacts: open in a static run; in a dynamic run touching contacts are
+   !> locked
    pure subroutine begin_contacts(blocks, dynamic, touch, list)
       type(limerick_blocks_t), intent(in) :: blocks
-      logical, intent(in) :: dynamic  !! Whether velocities are kept
-      real(wp), intent(in) :: touch   !! Distance that counts as touching [m]
+      logical, intent(in) :: dynamic  !! True for a dynamic run
+      real(wp), intent(in) :: touch   !! Distance within which contacts touch [m]
       type(contact_list_t), intent(inout) :: list
       real(wp) :: gap(2)
       integer :: c, line

@@ -4,7 +4,7 @@ submodule (dda_limerick_step) dda_limerick_detection
    use dda_limerick_contact, only : append_contact, limerick_contact_t
    implicit none
 
-   !> Angle above which corners are reentrant [deg]
+   !> Angle above which corners are reflex [deg]
    real(wp), parameter :: straight = 180.0001_wp
 
 contains
@@ -32,7 +32,7 @@ contains
       turn = modulo(to - from, 360.0_wp)
    end procedure turn
 
-   !> Whether two sectors overlap by more than is overlooked
+   !> True if two sectors overlap by more than a limit
    module procedure overlap
       real(wp) :: ray(3), wide
 
@@ -47,7 +47,7 @@ contains
       overlap = any(ray > least .and. ray < wide - least)
    end procedure overlap
 
-   !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
+   !> The two lines that a pair of corners may cross, the steeper first, which preserves symmetry
    module procedure entrance_lines
       real(wp) :: start, finish, slack, steep_i, steep_j, steep(2)
 
@@ -74,14 +74,14 @@ contains
       if (steep(1) < steep(2)) line = line(:, [2, 1])
    end procedure entrance_lines
 
-   !> How steep a direction is, from 0 to 1
+   !> Steepness of a direction: absolute value of its sine
    pure real(wp) function steepness(direction)
       real(wp), intent(in) :: direction  !! The direction [deg]
 
       steepness = abs(sin(direction*degree))
    end function steepness
 
-   !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
+   !> Find all contacts of the present blocks, open, sorted by pairs of blocks
    module procedure find_limerick_contacts
       type(corners_t) :: corners
       real(wp) :: low(2, size(order)), high(2, size(order))
@@ -108,7 +108,7 @@ contains
       end do
    end procedure find_limerick_contacts
 
-   !> Put indices in the order of their keys; quick if they nearly are
+   !> Sort indices by their keys; fast if they are nearly sorted
    pure subroutine sort_by(key, order)
       real(wp), intent(in) :: key(:)      !! Key of each index: (n)
       integer, intent(inout) :: order(:)  !! The indices: (n)
@@ -124,7 +124,7 @@ contains
       end do
    end subroutine sort_by
 
-   !> Contacts of two blocks whose boxes are near
+   !> Find the contacts of two blocks with near boxes
    pure subroutine meet_blocks(blocks, corners, a, b, reach, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
@@ -148,7 +148,7 @@ contains
       end do
    end subroutine meet_blocks
 
-   !> Whether two vertices lie near one another
+   !> True if two vertices are near each other
    pure logical function near(blocks, i, j, reach)
       type(limerick_blocks_t), intent(in) :: blocks
       integer, intent(in) :: i  !! First vertex
@@ -159,12 +159,12 @@ contains
          & + (blocks%vertex(2, i) - blocks%vertex(2, j))**2 <= reach**2
    end function near
 
-   !> Whether a vertex, not near an edge's first end, is near the edge and far from its second end
+   !> True if a vertex is near an edge and not near its second end
    pure logical function above_edge(blocks, corners, i, j, reach)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
       integer, intent(in) :: i
-      integer, intent(in) :: j  !! Where the edge starts
+      integer, intent(in) :: j  !! Start of the edge
       real(wp), intent(in) :: reach
       real(wp) :: edge(2), arm(2), square
 
@@ -177,8 +177,8 @@ contains
       if (above_edge) above_edge = .not. near(blocks, i, blocks%next(j), reach)
    end function above_edge
 
-   !> Two vertices near one another: two convex corners, or a corner in a concave one, which meets
-   !> both its edges
+   !> Add the contacts of two near vertices: two convex corners, or a corner with both edges of a
+   !> reflex corner
    pure subroutine meet_vertices(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
@@ -198,8 +198,7 @@ contains
       end if
    end subroutine meet_vertices
 
-   !> A vertex and an edge become a contact unless the corner would have to lie inside the edge's
-   !> block
+   !> Add the contact of a vertex and an edge, unless the corner would be inside the edge's block
    pure subroutine meet_edge(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
@@ -218,8 +217,8 @@ contains
       call settle(blocks, contact, list)
    end subroutine meet_edge
 
-   !> Two convex corners: where edges of theirs lie together, a vertex and an edge each; otherwise a
-   !> contact of two corners
+   !> Add the contacts of two convex corners: a vertex and an edge for each pair of parallel edges;
+   !> otherwise one contact of two corners
    pure subroutine meet_corner(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
@@ -253,7 +252,7 @@ contains
       call settle(blocks, contact, list)
    end subroutine meet_corner
 
-   !> Of two edges that lie together, the vertex whose foot lies on the other edge makes the contact
+   !> Add the contact of two parallel edges: its vertex is the one with its foot on the other edge
    pure subroutine settle_pair(blocks, contact, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(limerick_contact_t), intent(in) :: contact

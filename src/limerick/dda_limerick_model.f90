@@ -1,5 +1,5 @@
-!> A model in the terms of DDA for Windows: polygons, materials, points, constants; and its blocks
-!> in a run
+!> Model in the terms of DDA for Windows: polygons, materials, points, constants; and the state of
+!> its blocks in a run
 module dda_limerick_model
    use dda_block_system, only : n_unknown
    use dda_boundary, only : boundary_t, records_before, value_at
@@ -18,18 +18,18 @@ module dda_limerick_model
    !> Friction angle of a joint without slip [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
-   !> What a block is made of, and how it begins
+   !> Material and initial state of a block
    type, extends(material_t) :: limerick_material_t
       real(wp) :: unit_weight = 0.0_wp  !! Weight per volume [N/m3]
       real(wp) :: stress(3) = 0.0_wp    !! Stress at height 0: sx, sy, txy (3) [Pa]
       !> Growth of that stress with height: (3) [Pa/m]
       real(wp) :: stress_gradient(3) = 0.0_wp
-      real(wp) :: velocity(3) = 0.0_wp  !! Velocity u, v and of the rotation: (3) [m/s, m/s, rad/s]
+      real(wp) :: velocity(3) = 0.0_wp  !! Velocities u, v and rotation: (3) [m/s, m/s, rad/s]
    end type limerick_material_t
 
-   !> Everything that a run is told
+   !> Input of a run
    type :: limerick_model_t
-      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
       !> Corners, counter-clockwise: (2, n_vertex) [m]
       real(wp), allocatable :: vertex(:, :)
@@ -39,17 +39,17 @@ module dda_limerick_model
       integer, allocatable :: block_material(:)
       !> Materials
       type(limerick_material_t), allocatable :: material(:)
-      !> Laws of the joints, of the corners of blocks of each kind on edges of each number: (n_kind,
-      !> n_law)
+      !> Law of a corner on an edge, by the kind of the corner's block and the number of the
+      !> edge: (n_kind, n_law)
       type(joint_law_t), allocatable :: law(:, :)
       !> Kind of each block's corners: (n_block)
       integer, allocatable :: kind(:)
-      !> Direction of the weight; its length scales it: (2)
+      !> Direction of gravity; its length is a load factor: (2)
       real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
-      !> Points that are held where they are, loaded, measured; all three lists are allocated
+      !> Fixed, load and monitoring points; all three lists are allocated
       type(boundary_t) :: boundary
-      !> Whether loads go straight on before the first and beyond the last two of their records, as
-      !> the original's files want it; otherwise they stay as they are
+      !> True to extrapolate loads beyond their first and last two records, as in Shi's files;
+      !> otherwise they are constant there
       logical :: loads_go_on = .true.
       !> Constants of the scheme
       type(limerick_constants_t) :: constants
@@ -58,23 +58,23 @@ module dda_limerick_model
    !> States of a contact
    type :: limerick_state_enum
       integer :: open = 0  !! No spring
-      !> A normal spring, and friction; of two corners: a normal spring at the first line
+      !> Normal spring and friction; for two corners, a normal spring at the first line
       integer :: sliding = 1
       integer :: locked = 2       !! A normal and a shear spring
-      integer :: second_line = 3  !! Of two corners: a normal spring at the second line
+      integer :: second_line = 3  !! For two corners, a normal spring at the second line
    end type limerick_state_enum
 
    !> Names of the states
    type(limerick_state_enum), parameter :: limerick_state = limerick_state_enum()
 
-   !> The blocks where they are now
+   !> Present state of the blocks
    type :: limerick_blocks_t
-      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
       integer, allocatable :: owner(:)  !! Block of each vertex: (n_vertex)
-      !> The vertex after each one round its block: (n_vertex)
+      !> Next vertex along the block: (n_vertex)
       integer, allocatable :: next(:)
-      integer, allocatable :: previous(:)      !! The vertex before each one: (n_vertex)
+      integer, allocatable :: previous(:)      !! Previous vertex: (n_vertex)
       real(wp), allocatable :: vertex(:, :)    !! Corners: (2, n_vertex) [m]
       real(wp), allocatable :: area(:)         !! Area: (n_block) [m2]
       real(wp), allocatable :: centroid(:, :)  !! Centre of gravity: (2, n_block) [m]
@@ -84,20 +84,20 @@ module dda_limerick_model
       real(wp), allocatable :: rotation(:)        !! Rotation since the beginning: (n_block) [rad]
       real(wp), allocatable :: velocity(:, :)     !! Rates of the unknowns: (n_unknown, n_block)
       real(wp), allocatable :: fixed_point(:, :)  !! Fixed points: (2, n_fixed) [m]
-      !> How far each has drifted from where it was fixed: (2, n_fixed) [m]
+      !> Drift of each fixed point from its initial position: (2, n_fixed) [m]
       real(wp), allocatable :: fixed_drift(:, :)
       real(wp), allocatable :: load_point(:, :)     !! Load points: (2, n_load) [m]
       real(wp), allocatable :: bolt_point(:, :, :)  !! Ends of the bolts: (2, 2, n_bolt) [m]
-      !> Force of each, positive where it pulls: (n_bolt) [N]
+      !> Force of each bolt, positive in tension: (n_bolt) [N]
       real(wp), allocatable :: bolt_force(:)
-      real(wp), allocatable :: measured_point(:, :)  !! Measured points: (2, n_measured) [m]
+      real(wp), allocatable :: measured_point(:, :)  !! Monitoring points: (2, n_measured) [m]
    end type limerick_blocks_t
 
-   !> Numbers of the march of steps
+   !> Scalar state of a run
    type :: limerick_march_t
       real(wp) :: half_size = 0.0_wp        !! Half the larger side of the model (w0) [m]
-      real(wp) :: reach = 0.0_wp            !! Distance within which contacts are sought (d0) [m]
-      real(wp) :: mean_area = 0.0_wp        !! Mean area of the blocks at the beginning [m2]
+      real(wp) :: reach = 0.0_wp            !! Search distance of contacts (d0) [m]
+      real(wp) :: mean_area = 0.0_wp        !! Initial mean area of the blocks [m2]
       real(wp) :: fixed_stiffness = 0.0_wp  !! Stiffness of the springs at the fixed points [N/m2]
       real(wp) :: penalty = 0.0_wp          !! Stiffness of the contacts in the next solution [N/m2]
       real(wp) :: used_penalty = 0.0_wp     !! Stiffness of the contacts in the last solution [N/m2]
@@ -105,22 +105,22 @@ module dda_limerick_model
       real(wp) :: penetration = 0.0_wp
       real(wp) :: time_step = 0.0_wp  !! Length of the step [s]
       real(wp) :: time = 0.0_wp       !! Time at the end of the last accepted step [s]
-      !> Largest motion of a vertex in the step over what is allowed
+      !> Largest motion of a vertex in the step over the permitted one
       real(wp) :: displacement_ratio = 0.0_wp
       integer :: steps = 0   !! Accepted steps
-      integer :: passes = 0  !! Passes of the open-close loop, each of one factorisation
+      integer :: passes = 0  !! Open-close iterations, one factorisation each
    end type limerick_march_t
 
 contains
 
-   !> Half the larger side of the box around all blocks: the original's scale of length (Shi: df01)
+   !> Half the larger side of the box around all blocks: Shi's scale of length (Shi: df01)
    pure real(wp) function half_size(model)
       type(limerick_model_t), intent(in) :: model
 
       half_size = maxval(maxval(model%vertex, dim=2) - minval(model%vertex, dim=2))/2.0_wp
    end function half_size
 
-   !> The scheme knows friction alone: a joint that cannot slide has the most of it
+   !> Law with finite friction: joints without slip get the largest friction of the scheme
    elemental type(joint_law_t) function finite_law(given)
       type(joint_law_t), intent(in) :: given
 
@@ -128,11 +128,11 @@ contains
       if (finite_law%no_slip) finite_law%friction = friction_coefficient(no_slip_deg)
    end function finite_law
 
-   !> Law of a corner on an edge: that of the edge, for corners of the block's kind
+   !> Law of a corner on an edge: that of the edge, for the kind of the corner's block
    pure type(joint_law_t) function contact_law(model, block, edge) result(law)
       type(limerick_model_t), intent(in) :: model
       integer, intent(in) :: block  !! Block of the corner
-      integer, intent(in) :: edge   !! Vertex at which the edge starts
+      integer, intent(in) :: edge   !! Start of the edge
 
       law = model%law(model%kind(block), model%edge_law(edge))
    end function contact_law
@@ -158,7 +158,7 @@ contains
       end associate
    end function force_at
 
-   !> Time of the last record of all loads that change: before it nothing is at rest for good
+   !> Time of the last record of all loads that change; rest is not tested before it
    pure real(wp) function loads_end(model)
       type(limerick_model_t), intent(in) :: model
       integer :: i, n
@@ -189,7 +189,7 @@ contains
       end do
    end function next_record
 
-   !> The blocks at the beginning
+   !> Initial state of the blocks
    pure subroutine new_blocks(model, blocks)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(out) :: blocks
@@ -235,9 +235,9 @@ contains
       end do
    end subroutine new_blocks
 
-   !> Areas and moments of the blocks as they are now (Shi: area)
+   !> Areas and moments of the present blocks (Shi: area)
    pure subroutine measure_blocks(blocks)
-      type(limerick_blocks_t), intent(inout) :: blocks  !! The blocks; their vertices are set
+      type(limerick_blocks_t), intent(inout) :: blocks  !! The blocks; their vertices must be set
       type(area_moments_t) :: moments
       integer :: b
 

@@ -18,7 +18,7 @@ submodule (dda_limerick_step) dda_limerick_open_close
 
 contains
 
-   !> Solve and judge until no contact opens or closes
+   !> Solve and update states until no contact opens or closes
    module procedure open_and_close
       integer :: pass, c
 
@@ -31,7 +31,7 @@ contains
             call substitute(equations%factor, equations%motion)
             first_pass = .false.
             march%passes = march%passes + 1
-            ! the very first solution of a run never counts as settled
+            ! the first solution of a run never counts as converged
             settled = march%passes > 1
             do c = 1, contacts%n
                associate (contact => contacts%item(c))
@@ -47,7 +47,7 @@ contains
       end associate
    end procedure open_and_close
 
-   !> The state of one contact after a solution
+   !> Update the state of one contact after a solution
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
@@ -74,7 +74,7 @@ contains
       end associate
    end subroutine judge_contact
 
-   !> Open or closed; of two corners, at which line: that which is penetrated less
+   !> Set a contact open or closed; of two corners, at the line with less penetration
    pure subroutine judge_opening(constants, law, march, gap, contact)
       type(limerick_constants_t), intent(in) :: constants
       type(joint_law_t), intent(in) :: law
@@ -89,7 +89,7 @@ contains
       if (contact%before == limerick_state%open) then
          opens = contact%gap > -constants%close_ratio*march%half_size
       else
-         ! judged at the line that has the spring
+         ! a closed contact is tested at the line of its spring
          sprung = gap(merge(2, 1, contact%before == limerick_state%second_line))
          held = 0.0_wp
          if (contact%bonded .and. .not. contact%corner) &
@@ -99,14 +99,14 @@ contains
       if (opens) contact%state = limerick_state%open
    end subroutine judge_opening
 
-   !> Locked or sliding: by the strength of a contact that closes or was locked, by the direction of
-   !> slip if it was sliding
+   !> Set a closed contact locked or sliding: by its strength if it has just closed or was locked,
+   !> by the direction of slip if it was sliding
    pure subroutine judge_slip(constants, law, march, slip, contact)
       type(limerick_constants_t), intent(in) :: constants
       type(joint_law_t), intent(in) :: law
       type(limerick_march_t), intent(in) :: march
       real(wp), intent(in) :: slip  !! Slip since the shear spring was set [m]
-      !> The contact of a vertex and an edge, closed; state and slip are set
+      !> Closed contact of a vertex and an edge; state and slip are set
       type(limerick_contact_t), intent(inout) :: contact
       real(wp) :: last, strength
       logical :: locks
@@ -127,17 +127,17 @@ contains
       contact%state = merge(limerick_state%locked, limerick_state%sliding, locks)
    end subroutine judge_slip
 
-   !> A contact that closes gets its shear spring where the vertex meets the edge
+   !> Set the shear spring of a closing contact at the point where the vertex meets the edge
    pure subroutine set_shear_spring(blocks, motion, half_size, contact, spring)
       type(limerick_blocks_t), intent(in) :: blocks
       real(wp), intent(in) :: motion(:, :)
       real(wp), intent(in) :: half_size                   !! Half the larger side of the model [m]
       type(limerick_contact_t), intent(inout) :: contact  !! The contact; its place is set
-      type(contact_spring_t), intent(inout) :: spring     !! Its springs; the shear spring is set
+      type(contact_spring_t), intent(inout) :: spring     !! The springs; the shear spring is set
       real(wp) :: at(2, 3), share, closing
       integer :: k, b, v
 
-      ! part of the step after which the opening is zero
+      ! share of the step at zero opening
       closing = contact%gap - spring%gap(1)
       share = 0.0_wp
       if (spring%gap(1) >= 0.0_wp .and. &

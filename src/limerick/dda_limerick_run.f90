@@ -13,27 +13,27 @@ module dda_limerick_run
 
    public :: begin_outcome, begin_run, limerick_outcome_t, next_step, run_limerick
 
-   !> How a run ended
+   !> Outcome of a run
    type :: limerick_outcome_t
-      !> One of verdict; stable is what rests, or is still below the collapse displacement when the
-      !> steps are spent, collapsed what has moved by it
+      !> One of verdict; stable if at rest, or below the collapse displacement at the step limit;
+      !> collapsed beyond the collapse displacement
       integer :: verdict = 0
-      !> Why the verdict is undecided; unallocated otherwise
+      !> Reason of an undecided verdict; otherwise unallocated
       character(len=:), allocatable :: reason
-      !> Whether the steps were spent while something still moved
+      !> True if blocks still moved at the step limit
       logical :: still_moving = .false.
-      !> Largest distance of a vertex from where it began [m]
+      !> Largest displacement of a vertex [m]
       real(wp) :: displacement = 0.0_wp
       !> Accepted steps
       integer :: steps = 0
-      !> Passes of the open-close loop, each with one factorisation
+      !> Open-close iterations, one factorisation each
       integer :: passes = 0
-      !> Step and time at the end of each step, with the beginning, the first steps + 1 of them:
-      !> (2, :) [-, s]
+      !> Step and time after each step, from step 0 on, in the first steps + 1
+      !> columns: (2, :) [-, s]
       real(wp), allocatable :: when(:, :)
-      !> Where the first of the measured points are then: (2, n_point, :) [m]
+      !> Coordinates of the first monitoring points at these times: (2, n_point, :) [m]
       real(wp), allocatable :: track(:, :, :)
-      !> Largest displacement when rest was judged before [m]
+      !> Largest displacement at the previous test of rest [m]
       real(wp) :: displacement_before = -huge(1.0_wp)
    end type limerick_outcome_t
 
@@ -48,7 +48,7 @@ module dda_limerick_run
 
 contains
 
-   !> A run before its first step
+   !> Start a run
    pure subroutine begin_run(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(out) :: run
@@ -79,11 +79,11 @@ contains
       end do
    end subroutine run_limerick
 
-   !> What is known before the first step; gravity is turned on where the model asks for it
+   !> Start the outcome, and apply gravity in a separate phase if the model has one
    pure subroutine begin_outcome(model, run, n_track, outcome)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
-      integer, intent(in) :: n_track  !! Of how many measured points the way is kept
+      integer, intent(in) :: n_track  !! Number of monitoring points to record
       type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
 
@@ -93,13 +93,13 @@ contains
       call keep_track(run, outcome)
    end subroutine begin_outcome
 
-   !> One step of a run, or its end
+   !> Take one step of a run, or end it
    pure subroutine next_step(model, run, outcome, ended)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
-      !> What is known of it; complete at the end
+      !> The outcome; complete at the end
       type(limerick_outcome_t), intent(inout) :: outcome
-      !> Whether the run has ended: by its verdict, an error, or with its last step
+      !> True at the end: by a verdict, an error or the step limit
       logical, intent(out) :: ended
       type(error_t), allocatable :: error
       real(wp) :: end
@@ -137,8 +137,8 @@ contains
       ended = outcome%verdict /= verdict%undecided
    end subroutine next_step
 
-   !> The phase that turns gravity on: steps from rest, in joints that cannot slide, until contact
-   !> forces change no more; time begins after it (MacLaughlin 1997)
+   !> Apply gravity in steps from rest, with high joint strength, until the contact forces are
+   !> constant; time starts after this phase (MacLaughlin 1997)
    pure subroutine turn_gravity_on(model, run, error)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
@@ -173,8 +173,8 @@ contains
       end do
    end subroutine turn_gravity_on
 
-   !> Whether the last step went no farther than a small part of a free fall from rest: blocks that
-   !> have not met their neighbours yet have no forces that could change
+   !> True if the last step moved blocks by a small part of a free fall only: blocks without contact
+   !> have constant forces too
    pure logical function falls_no_more(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(in) :: run
@@ -193,7 +193,7 @@ contains
    pure function contact_forces(model, run) result(force)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(in) :: run
-      !> The forces, zero where a contact is open or slides: (2, n_contact) [N/m]
+      !> Forces of closed contacts, shear forces of locked ones: (2, n_contact) [N/m]
       real(wp), allocatable :: force(:, :)
 
       associate (contact => run%contacts%item(:run%contacts%n), penalty => run%march%used_penalty)
@@ -204,10 +204,10 @@ contains
       end associate
    end function contact_forces
 
-   !> What still moves when the steps are spent is called stable, as a user of the original would
-   !> have said; but not before all loads have come
+   !> Set the verdict at the step limit: stable, as in Shi's program, but only after the last record
+   !> of a load
    pure subroutine spend_steps(time, end, outcome)
-      real(wp), intent(in) :: time                        !! Time that the steps have reached [s]
+      real(wp), intent(in) :: time                        !! Time at the step limit [s]
       real(wp), intent(in) :: end                         !! Time of the last record of a load [s]
       type(limerick_outcome_t), intent(inout) :: outcome  !! The outcome; verdict and reason are set
 
@@ -220,7 +220,7 @@ contains
       end if
    end subroutine spend_steps
 
-   !> Keep where the measured points are at the end of a step
+   !> Record the monitoring points at the end of a step
    pure subroutine keep_track(run, outcome)
       type(limerick_run_t), intent(in) :: run
       type(limerick_outcome_t), intent(inout) :: outcome

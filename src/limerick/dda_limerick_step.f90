@@ -16,12 +16,12 @@ module dda_limerick_step
    public :: judge_limerick_step, limerick_run_t, measure_corners, move_vertices, open_and_close
    public :: overlap, turn, update
 
-   !> Everything that a run carries from step to step
+   !> State of a run from step to step
    type :: limerick_run_t
       type(limerick_blocks_t) :: blocks                 !! The blocks
       type(contact_list_t) :: contacts                  !! Contacts of the last step
-      type(limerick_march_t) :: march                   !! Numbers of the march
-      type(contact_list_t) :: before                    !! Work space: contacts of the step before
+      type(limerick_march_t) :: march                   !! Scalar state
+      type(contact_list_t) :: before                    !! Work space: contacts of the previous step
       type(contact_spring_t), allocatable :: spring(:)  !! Work space: springs of the contacts
       type(limerick_equations_t) :: equations           !! Work space: the equations
       !> Work space: corners at the end of an attempt: (2, n_vertex) [m]
@@ -39,15 +39,15 @@ module dda_limerick_step
 
    interface
 
-      !> Solve and judge until no contact opens or closes
+      !> Solve and update states until no contact opens or closes
       pure module subroutine open_and_close(model, run, first_pass, settled)
          type(limerick_model_t), intent(in) :: model
-         !> The run; states of its contacts are changed, and the motion is set; a shear spring is
-         !> set anew where a contact closes
+         !> The run; states of its contacts are changed, and the motion is set. Closing contacts get
+         !> a new shear spring
          type(limerick_run_t), intent(inout) :: run
-         !> Whether nothing was solved in this step yet; then it was
+         !> True before the first solution of this step; false after it
          logical, intent(inout) :: first_pass
-         !> Whether no contact opened or closed in the last pass
+         !> True if no contact opened or closed in the last iteration
          logical, intent(out) :: settled
       end subroutine open_and_close
 
@@ -63,31 +63,31 @@ module dda_limerick_step
          real(wp), intent(in) :: to    !! Second direction [deg]
       end function turn
 
-      !> Whether two sectors overlap by more than is overlooked
+      !> True if two sectors overlap by more than a limit
       pure logical module function overlap(start_a, angle_a, start_b, angle_b, least)
-         real(wp), intent(in) :: start_a  !! Where the first sector starts [deg]
-         real(wp), intent(in) :: angle_a  !! Its angle [deg]
-         real(wp), intent(in) :: start_b  !! Where the second sector starts [deg]
-         real(wp), intent(in) :: angle_b  !! Its angle [deg]
-         real(wp), intent(in) :: least    !! What is overlooked [deg]
+         real(wp), intent(in) :: start_a  !! Start of the first sector [deg]
+         real(wp), intent(in) :: angle_a  !! Angle of the first sector [deg]
+         real(wp), intent(in) :: start_b  !! Start of the second sector [deg]
+         real(wp), intent(in) :: angle_b  !! Angle of the second sector [deg]
+         real(wp), intent(in) :: least    !! Limit of the overlap [deg]
       end function overlap
 
-      !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
+      !> The two lines that a pair of corners may cross, the steeper first, which preserves symmetry
       pure module function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
          type(limerick_blocks_t), intent(in) :: blocks
          type(corners_t), intent(in) :: corners
          integer, intent(in) :: i             !! Vertex of the first block
          integer, intent(in) :: j             !! Vertex of the second block
-         real(wp), intent(in) :: overlap_deg  !! Overlap that is overlooked [deg]
+         real(wp), intent(in) :: overlap_deg  !! Permitted overlap [deg]
          integer :: line(3, 2)                !! Vertex and ends of the edge: (3, 2)
       end function entrance_lines
 
-      !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
+      !> Find all contacts of the present blocks, open, sorted by pairs of blocks
       pure module subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
          type(limerick_blocks_t), intent(in) :: blocks
-         real(wp), intent(in) :: reach        !! Distance within which contacts are sought [m]
-         real(wp), intent(in) :: overlap_deg  !! Overlap of two corners that is overlooked [deg]
-         !> Blocks from left to right, as near as the step before left them: (n_block)
+         real(wp), intent(in) :: reach        !! Search distance [m]
+         real(wp), intent(in) :: overlap_deg  !! Permitted overlap of two corners [deg]
+         !> Blocks from left to right, approximately on entry: (n_block)
          integer, intent(inout) :: order(:)
          type(contact_list_t), intent(inout) :: list
       end subroutine find_limerick_contacts
@@ -105,14 +105,14 @@ module dda_limerick_step
    real(wp), parameter :: too_far = 3.0_wp
    !> Penetration over its target from which a step is repeated with ten times the penalty
    real(wp), parameter :: too_deep = 2.5_wp
-   !> Distance to the time of a load within which it is reached, over the step
+   !> Distance to the time of a load record at which the step ends there, over the step
    real(wp), parameter :: short = 1.0e-6_wp
-   !> Least penalty over the previous one
+   !> Smallest penalty over the previous one
    real(wp), parameter :: relaxation = 1.0_wp/3.0_wp
 
 contains
 
-   !> One step: blocks and contacts change only when it is accepted; the penalty changes at each
+   !> Take one step: blocks and contacts change only when it is accepted, the penalty at each
    !> attempt
    pure subroutine advance_limerick(model, run, error)
       type(limerick_model_t), intent(in) :: model
@@ -141,7 +141,7 @@ contains
          & "that are allowed (Shi's program loops forever)")
    end subroutine advance_limerick
 
-   !> Whether the equations gave a motion; one that is not finite is none
+   !> True if the solution of the equations is finite
    pure logical function solved(equations)
       type(limerick_equations_t), intent(in) :: equations  !! The equations after a solution
 
@@ -149,7 +149,7 @@ contains
       if (solved) solved = sum(abs(equations%motion)) <= huge(1.0_wp)
    end function solved
 
-   !> The contacts of the step, with the states of the step before, and their springs
+   !> Find the contacts of the step with the states of the previous step, and their springs
    pure subroutine meet(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
@@ -178,11 +178,11 @@ contains
       call couple_blocks(model, run%blocks, run%contacts, run%equations, run%spring)
    end subroutine meet
 
-   !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
-   !> record of a load
+   !> Length of the next step from the largest acceleration (Shi: step); a step ends at each load
+   !> record
    pure subroutine choose_interval(model, march)
       type(limerick_model_t), intent(in) :: model
-      type(limerick_march_t), intent(inout) :: march  !! The march; its time step is set
+      type(limerick_march_t), intent(inout) :: march  !! State of the run; its time step is set
       real(wp) :: acceleration, velocity, allowed, load, mass, longest, record, stress
       integer :: i, m
 
@@ -209,7 +209,7 @@ contains
          acceleration = max(march%penetration*march%half_size*march%used_penalty, load)/mass
          if (model%constants%dynamic) velocity = march%displacement_ratio*allowed/march%time_step
       end if
-      ! the root of velocity*t + acceleration*t**2/2 = allowed in the form that loses no digits
+      ! root of velocity*t + acceleration*t**2/2 = allowed, in the form without cancellation
       velocity = velocity + sqrt(velocity**2 + 2.0_wp*acceleration*allowed)
       march%time_step = longest
       if (velocity > 0.0_wp) march%time_step = min(longest, 2.0_wp*allowed/velocity)
@@ -217,14 +217,14 @@ contains
       march%time_step = min(march%time_step, record - march%time)
    end subroutine choose_interval
 
-   !> Whether a step is accepted; if not, its length or the penalty is changed
+   !> Accept a step, or change its length or the penalty
    pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
-      logical, intent(in) :: settled  !! Whether they settled
-      !> The march; time step, penalty and penetration are set
+      logical, intent(in) :: settled  !! True if the open-close iteration converged
+      !> State of the run; time step, penalty and penetration are set
       type(limerick_march_t), intent(inout) :: march
-      logical, intent(out) :: accepted  !! Whether the step stands
+      logical, intent(out) :: accepted  !! True if the step is accepted
       real(wp) :: shortest
       logical :: moved_too_far
 
@@ -242,8 +242,7 @@ contains
       end if
    end subroutine judge_limerick_step
 
-   !> The penalty goes, down to a third at the most, to where the penetration is what is aimed at
-   !> (Shi: spri)
+   !> Scale the penalty towards the target penetration, at most down to a third (Shi: spri)
    pure subroutine adapt_penalty(model, contacts, march)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
@@ -264,7 +263,7 @@ contains
       end associate
    end subroutine adapt_penalty
 
-   !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
+   !> Corners at the end of the step, and the largest displacement ratio (Shi: df24)
    pure subroutine move_vertices(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run  !! The run; the displacement ratio is set
@@ -294,7 +293,7 @@ contains
       real(wp) :: step(2)                !! The displacement: (2) [m]
       real(wp) :: turn(2)
 
-      ! what the rotation makes of the arm along it and across it
+      ! change of the arm by the rotation, along and across it
       turn = [0.0_wp, motion(3)]
       if (model%constants%exact_rotation) turn = [cos(motion(3)) - 1.0_wp, sin(motion(3))]
       associate (x => arm(1), y => arm(2))
@@ -303,7 +302,7 @@ contains
       end associate
    end function displacement
 
-   !> What an accepted step leaves behind (Shi: df25)
+   !> Update blocks, points and contacts after an accepted step (Shi: df25)
    pure subroutine update(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
@@ -354,7 +353,7 @@ contains
       !> Displacement of a point in the step
       pure function point_step(point, block) result(step)
          real(wp), intent(in) :: point(2)  !! The point at the beginning of the step: (2) [m]
-         integer, intent(in) :: block      !! Its block
+         integer, intent(in) :: block      !! Number of the block
          real(wp) :: step(2)
 
          step = displacement(model, run%equations%motion(:, block), &
