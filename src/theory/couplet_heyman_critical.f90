@@ -1,19 +1,19 @@
 !> Critical solutions of the Couplet-Heyman problem: hinge, thickness and thrust at a half angle
 !>
-!> The least thickness is the top of the equilibrium curve eta(beta), eqs. (14) and (18). In the
-!> symbols of couplet_heyman_curves the two are
+!> The smallest thickness is the maximum of the equilibrium curve eta(beta), eqs. (14) and (18). In
+!> the symbols of couplet_heyman_curves the two are
 !>
 !>     E(eta, beta) = 0   and   a - k(beta)/S = 4 eta m/(4 - eta^2)
 !>
-!> with a = 2 - A and k(x) = sin x - x cos x. With eta on the curve the second is solved for beta by
-!> Newton's method. As eta is stationary there, the derivative of k/S alone makes it quadratic.
-!> Where A comes near its limit, eta and A are counted from their limits instead, so that the
-!> thrust, which vanishes there with the square of the distance, keeps its digits.
+!> with a = 2 - A and k(x) = sin x - x cos x. The second is solved for beta by Newton's method, with
+!> eta on the curve. Because eta is stationary there, the derivative of k/S suffices for quadratic
+!> convergence. Near the limit of A, the unknowns are the distances of eta and A from their limits.
+!> The thrust, which vanishes there with the square of the distance, then keeps its digits.
 !>
-!> At small half angles, and next to the limit of each theory, they are power series too: exact
-!> rationals, found by eliminating order by order. The small-angle series hold beta to alpha^6 and
-!> eta and h to alpha^8 relative to their leading terms (Heyman's eta to alpha^6); the limit series
-!> are leading terms.
+!> At small half angles, and next to the limit of each theory, power series exist too. Their
+!> coefficients are exact rationals, found order by order. The small-angle series have beta to
+!> alpha^6, eta and h to alpha^8 relative to their leading terms (Heyman's eta to alpha^6). The
+!> limit series are leading terms.
 module couplet_heyman_critical
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -118,7 +118,7 @@ contains
       end do
    end function power_sum
 
-   !> Whether a theory has a critical solution at a half angle: 0 < alpha <= alpha_limit; false for
+   !> True if a theory has a critical solution at a half angle: 0 < alpha <= alpha_limit; false for
    !> a NaN
    elemental logical function is_embraced(alpha, which)
       real(wp), intent(in) :: alpha  !! Half angle of embrace [rad]

@@ -22,7 +22,7 @@ contains
    elemental real(wp) function embrace_difference(beta, alpha, alpha_tail) result(difference)
       real(wp), intent(in) :: beta   !! One angle, (0, pi) [rad]
       real(wp), intent(in) :: alpha  !! The other, (0, pi) [rad]
-      !> What alpha is short of the meant angle by; 0 where it is meant as it is [rad]
+      !> True half angle minus alpha; 0 if alpha is exact [rad]
       real(wp), intent(in) :: alpha_tail
       real(wp) :: s, d
 
@@ -35,7 +35,7 @@ contains
       end if
    end function embrace_difference
 
-   !> Eqs. (14) and (16): thickness ratio that equilibrium needs with the inner hinge at beta
+   !> Eqs. (14) and (16): thickness ratio required for equilibrium with the inner hinge at beta
    !>
    !> Heyman and CCR: the positive root of the quadratic, rationalised. Milankovitch: Newton's
    !> method on the cubic from there. At beta = 0 it is eq. (26).
@@ -64,7 +64,7 @@ contains
       if (abs(cubic) > 0.0_wp) call settle_cubic(excess, d, 0.25_wp*p, cubic, eta)
    end function equilibrium_thickness
 
-   !> Smallest positive root of excess + d eta - p eta^2 + c eta^3, close to a first guess
+   !> Smallest positive root of excess + d eta - p eta^2 + c eta^3, near a first guess
    elemental subroutine settle_cubic(excess, d, p, c, eta)
       real(wp), intent(in) :: excess  !! Coefficient of 1, not negative
       real(wp), intent(in) :: d       !! Coefficient of eta
@@ -135,7 +135,7 @@ contains
       slope = -stationary/growth
    end function curve_slope
 
-   !> Eq. (11): the line of thrust through the extrados of crown and springing
+   !> Eq. (11): thrust line through the extrados of crown and springing
    !>
    !> 1 + e = (2 + eta) Q/(eta (beta S + h2 C)) with h2 of eq. (8): 2e/t, -1 at the extrados, 1 at
    !> the intrados

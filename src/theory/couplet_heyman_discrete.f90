@@ -2,18 +2,18 @@
 !>
 !> One half of a symmetric arch under its own weight has two unknowns, the thrust H at the crown and
 !> the moment Q of that thrust about the centre. At a joint of angle t, with W the weight and S the
-!> moment of all that lies above,
+!> moment of the part above it,
 !>     N = H cos t + W sin t,   (1 - eta/2) N <= Q + S <= (1 + eta/2) N
 !>     T = W cos t - H sin t,   |T| <= tan(phi) N
 !> (radius 1, forces in gamma r^2 eta, so that W does not depend on eta and S = (1 + eta^2/12) M
-!> with M independent). Divided by 1 + eta^2/12 the two bounds widen with eta for all eta < 2: who
-!> stands at eta stands at every greater one. With H = 1 - d, v = 1 - cos t and the shape
-!> z = W sin t - M - v, the ring is wide enough when the gap
+!> with M independent). Divided by 1 + eta^2/12 the two bounds widen with eta for all eta < 2: an
+!> arch that is stable at eta is stable at every greater one. With H = 1 - d, v = 1 - cos t and the
+!> shape z = W sin t - M - v, the ring is thick enough if the gap
 !>     min_j (d v + z + eta/2 N - eta^2/12 M)_j - max_k (d v + z - eta/2 N - eta^2/12 M)_k
-!> is nowhere negative for some d that no joint's friction forbids. All terms are as small as eta
+!> is not negative for some d that friction admits at all joints. All terms are as small as eta
 !> itself, so a shallow arch keeps its digits. The gap is concave and piecewise linear in d; its
-!> largest value over d is zero at the critical eta. Two or three joints pinch it there. Solved for
-!> eta they never lie above the truth, hence a few rounds suffice.
+!> largest value over d is zero at the critical eta. Two or three joints are active there. Their
+!> solution for eta is never too large, hence a few iterations suffice.
 module couplet_heyman_discrete
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_ring, only : limit_thrust, make_ring, pinch_t, ring_t, solve_pinch, widest_gap
@@ -26,16 +26,16 @@ module couplet_heyman_discrete
    !> Outcome of a critical thickness
    type :: discrete_status_enum
       integer :: found = 0            !! The critical thickness ratio lies in (0, 2)
-      integer :: stands_always = 1    !! The arch stands at every thickness, however small: eta is 0
+      integer :: stands_always = 1    !! The arch is stable at every thickness: eta is 0
       integer :: none_admissible = 2  !! No thickness ratio below 2 admits equilibrium: eta is 0
-      integer :: bad_input = 3        !! An argument makes no sense: nothing was computed, eta is 0
-      integer :: unsettled = 4        !! The rounds ran out (never seen): eta is the last proposal
+      integer :: bad_input = 3        !! An argument is invalid: nothing was computed, eta is 0
+      integer :: unsettled = 4        !! No convergence (never observed): eta is the last estimate
    end type discrete_status_enum
 
    !> The names of the outcomes
    type(discrete_status_enum), parameter :: discrete_status = discrete_status_enum()
 
-   !> What a joint does at the critical thickness
+   !> State of a joint at the critical thickness
    type :: joint_role_enum
       integer :: intrados_hinge = 1  !! The thrust passes through its intrados corner
       integer :: extrados_hinge = 2  !! The thrust passes through its extrados corner
@@ -51,13 +51,13 @@ module couplet_heyman_discrete
       real(wp) :: eta = 0.0_wp     !! Critical thickness ratio t/r [-]
       real(wp) :: thrust = 0.0_wp  !! Horizontal thrust there, over gamma r^2 eta [-]
       integer :: active = 0        !! Number of entries of `joint` and `role` that are used
-      integer :: joint(5) = 0      !! Joints that bind, as indices of joint_angle: (5)
-      integer :: role(5) = 0       !! What each of them does, one of `joint_role`: (5)
+      integer :: joint(5) = 0      !! Active joints, as indices of joint_angle: (5)
+      integer :: role(5) = 0       !! State of each of them, one of `joint_role`: (5)
    end type discrete_solution_t
 
 contains
 
-   !> Critical thickness ratio of an arch given by the joints of one half
+   !> Critical thickness ratio of an arch from the joints of one half
    !>
    !> Above solution%eta the arch has an admissible system of forces, below it none.
    pure subroutine discrete_critical(joint_angle, facets, friction, springing_no_slip, solution)
@@ -71,7 +71,7 @@ contains
       integer, intent(in) :: facets(:)
       !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
       real(wp), intent(in) :: friction
-      !> Whether the two springing joints cannot slide
+      !> True if the two springing joints cannot slide
       logical, intent(in) :: springing_no_slip
       type(discrete_solution_t), intent(out) :: solution
       type(ring_t) :: ring
@@ -124,12 +124,12 @@ contains
       end do
    end function equal_voussoir_joints
 
-   !> Number of equal chords of each voussoir when none may span more than a given angle
+   !> Number of equal chords of each voussoir, with a limit on the span of a chord
    pure function chords(joint_angle, longest) result(facets)
       real(wp), intent(in) :: joint_angle(:)
-      !> Greatest span of a chord; 0 or less: one chord a voussoir [rad]
+      !> Largest span of a chord; 0 or less: one chord per voussoir [rad]
       real(wp), intent(in) :: longest
-      !> As discrete_critical wants them: (n - 1) with a joint at the crown, (n) without
+      !> Argument of discrete_critical: (n - 1) with a joint at the crown, (n) without
       integer :: facets(merge(size(joint_angle), size(joint_angle) - 1, joint_angle(1) > 0.0_wp))
       real(wp) :: span
       integer :: j, above
@@ -143,12 +143,12 @@ contains
       end do
    end function chords
 
-   !> Whether the arguments describe an arch: finite, in range, increasing, and of matching sizes
+   !> True if the arguments describe an arch: finite, in range, increasing, and of matching sizes
    pure logical function makes_sense(joint_angle, facets, friction)
       real(wp), intent(in) :: joint_angle(:)     !! Joints of one half: (:) [rad]
       integer, intent(in) :: facets(:)           !! Chords of each voussoir: (:)
       real(wp), intent(in) :: friction
-      real(wp), parameter :: pi = acos(-1.0_wp)  !! Half a turn [rad]
+      real(wp), parameter :: pi = acos(-1.0_wp)  !! 180 degrees [rad]
       integer :: n
 
       n = size(joint_angle)
@@ -160,8 +160,8 @@ contains
       makes_sense = makes_sense .and. size(facets) == merge(n, n - 1, joint_angle(1) > 0.0_wp)
    end function makes_sense
 
-   !> Whether two joints alone let a thrust pass along the centre line: then no thickness is needed;
-   !> the straight thrust between the joints' centres presses on both and slides on neither
+   !> True if a ring of two joints needs no thickness: the straight thrust line between the centres
+   !> of the joints causes compression at both and slip at neither
    pure logical function stands_as_a_line(ring)
       type(ring_t), intent(in) :: ring  !! A ring of two joints
       real(wp) :: deficit
@@ -171,12 +171,11 @@ contains
       stands_as_a_line = stands_as_a_line .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
    end function stands_as_a_line
 
-   !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals
-   !> honest
+   !> Root in eta of the widest gap: the active joints give an estimate, which a bracket safeguards
    pure subroutine search_eta(ring, solution)
       type(ring_t), intent(in) :: ring         !! Ring of two joints or more
       type(discrete_solution_t), intent(out) :: solution
-      integer, parameter :: most_rounds = 200  !! More than ever needed: bisection alone takes 60
+      integer, parameter :: most_rounds = 200  !! More than bisection alone takes (60)
       real(wp) :: eta, low, high, root
       logical :: high_stands, solved, stands, unchanged
       type(pinch_t) :: pinch, proposer
@@ -210,14 +209,14 @@ contains
       solution%status = discrete_status%unsettled
    end subroutine search_eta
 
-   !> Whether two states are pinched by the same joints: equal pairs and the same exhausted friction
+   !> True if two states have the same active joints: equal pairs and the same sliding joint
    pure logical function same_joints(a, b)
       type(pinch_t), intent(in) :: a, b
 
       same_joints = a%sliding == b%sliding .and. all(a%left == b%left) .and. all(a%right == b%right)
    end function same_joints
 
-   !> Critical state of a ring that has one: status found, with the thrust and the joints that bind
+   !> Critical state of a ring that has one: status found, with the thrust and the active joints
    pure type(discrete_solution_t) function critical_state(eta, pinch) result(solution)
       real(wp), intent(in) :: eta  !! Critical thickness ratio [-]
       type(pinch_t), intent(in) :: pinch

@@ -8,16 +8,16 @@ module couplet_heyman_domain
 
    !> Shortest chord; shorter ones change no digit [rad]
    real(wp), parameter :: shortest_chord = 1.0e-7_wp
-   !> Half a turn [rad]
+   !> 180 degrees [rad]
    real(wp), parameter :: pi = acos(-1.0_wp)
 
 contains
 
-   !> Name the first element that is not valid, unless another argument has been blamed already
+   !> Record the first invalid element, unless a fault is recorded already
    pure subroutine blame(argument, valid, fault)
       integer, intent(in) :: argument  !! Place of the argument in the call, from 1
-      logical, intent(in) :: valid(:)  !! Whether each of its elements is valid: (:)
-      !> Argument and element, 0 and 0 where all is well so far: (2)
+      logical, intent(in) :: valid(:)  !! True for valid elements: (:)
+      !> Argument and element, 0 and 0 if there is no fault: (2)
       integer, intent(inout) :: fault(2)
 
       if (fault(1) > 0 .or. all(valid)) return
@@ -25,22 +25,21 @@ contains
       fault(2) = findloc(valid, .false., dim=1)
    end subroutine blame
 
-   !> Whether an angle can be the half angle of embrace of an arch at all: 0 < alpha < pi; false for
-   !> a NaN
+   !> True if an angle can be a half angle of embrace: 0 < alpha < pi; false for a NaN
    elemental logical function is_half_angle(alpha)
       real(wp), intent(in) :: alpha  !! Angle [rad]
 
       is_half_angle = alpha > 0.0_wp .and. alpha < pi
    end function is_half_angle
 
-   !> Whether a number can be a thickness ratio: 0 < eta < 2; false for a NaN
+   !> True if a number can be a thickness ratio: 0 < eta < 2; false for a NaN
    elemental logical function is_thickness(eta)
       real(wp), intent(in) :: eta  !! Number
 
       is_thickness = eta > 0.0_wp .and. eta < 2.0_wp
    end function is_thickness
 
-   !> Whether an angle is that of a joint of one half of an arch: 0 <= beta <= alpha; false for a
+   !> True if an angle is that of a joint of one half of an arch: 0 <= beta <= alpha; false for a
    !> NaN
    elemental logical function is_joint(beta, alpha)
       real(wp), intent(in) :: beta   !! Angle [rad]
@@ -49,14 +48,14 @@ contains
       is_joint = beta >= 0.0_wp .and. beta <= alpha
    end function is_joint
 
-   !> Whether a number is neither infinite nor a NaN: |x| <= huge
+   !> True if a number is neither infinite nor a NaN: |x| <= huge
    elemental logical function is_finite(x)
       real(wp), intent(in) :: x  !! Number
 
       is_finite = abs(x) <= huge(x)
    end function is_finite
 
-   !> Whether a number can limit the span of a chord: 0, or finite and not too short; false for a
+   !> True if a number can limit the span of a chord: 0, or finite and not too short; false for a
    !> NaN
    elemental logical function is_facet(facet)
       real(wp), intent(in) :: facet  !! Number; 0 stands for no limit [rad]

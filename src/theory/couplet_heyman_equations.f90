@@ -4,18 +4,17 @@
 !> Lengths are over the mean radius r, forces over w r with w the weight per length of the centre
 !> line; beta is the angle from the crown, S = sin beta, C = cos beta, m = 1 + delta_M eta^2/12.
 !> With q = 1 - C, beta S = q A(beta) and a = 2 - A every difference of the printed forms becomes a
-!> sum of terms that are as small as the result. No range is checked here; outside 0 < eta < 2, 0 <=
-!> beta < pi, h >= 0 the results mean nothing.
+!> sum of terms that are as small as the result. Ranges are not checked here; results are undefined
+!> outside 0 < eta < 2, 0 <= beta < pi, h >= 0.
 !>
-!> All theories of the circular arch are written with differences such as x - sin x, 1 - cos x and 2
-!> - x cot(x/2). Taken literally they lose two digits with every digit by which the angle gets
-!> smaller. Here each is summed or factored so that its relative error stays at a few units in the
-!> last place from 0 to pi.
+!> All theories of the circular arch contain differences such as x - sin x, 1 - cos x and
+!> 2 - x cot(x/2). Evaluated directly they lose two digits per digit of a smaller angle. Here each
+!> is summed or factored, so that its relative error is a few units in the last place from 0 to pi.
 !>
-!> The three theories of the circular arch differ in two flags of the equations: delta_M = 1 where
-!> the weight of a chunk acts in its true centre of gravity, at the radius r (1 + eta^2/12), and
-!> delta_CCR = 1 where the line of thrust, not the resultant, touches the intrados. Heyman is
-!> (delta_CCR, delta_M) = (0, 0), CCR (1, 0), Milankovitch (1, 1).
+!> The three theories of the circular arch differ in two flags of the equations. delta_M = 1 if the
+!> weight of a part acts in its true centre of gravity, at the radius r (1 + eta^2/12). delta_CCR =
+!> 1 if the thrust line, not the resultant, touches the intrados. Heyman is (delta_CCR, delta_M) =
+!> (0, 0), CCR (1, 0), Milankovitch (1, 1).
 module couplet_heyman_equations
    use, intrinsic :: iso_fortran_env, only : wp => real64
    implicit none
@@ -30,25 +29,25 @@ module couplet_heyman_equations
    !> Names of the theories
    type :: theory_enum
       integer :: heyman = 1  !! Resultant tangent to the intrados, weight along the centre line
-      !> Line of thrust tangent to the intrados, weight along the centre line (Cocchetti, Colasante,
+      !> Thrust line tangent to the intrados, weight along the centre line (Cocchetti, Colasante,
       !> Rizzi)
       integer :: ccr = 2
-      integer :: milankovitch = 3  !! Line of thrust tangent to the intrados, weight where it is
+      integer :: milankovitch = 3  !! Thrust line tangent to the intrados, weight where it is
    end type theory_enum
 
    !> The names in use
    type(theory_enum), parameter :: theory = theory_enum()
 
-   !> Where a theory ends, and where its hinge is farthest from the crown
+   !> Limit of a theory, and its largest inner hinge
    type :: limits_t
-      !> Greatest half angle of embrace; the thrust vanishes there [rad]
+      !> Largest half angle of embrace; the thrust vanishes there [rad]
       real(wp) :: alpha_limit
-      real(wp) :: alpha_limit_tail  !! What alpha_limit is short of the true angle by [rad]
+      real(wp) :: alpha_limit_tail  !! True angle minus alpha_limit [rad]
       real(wp) :: embrace_limit     !! A there, eq. (9)
       real(wp) :: eta_limit         !! Thickness ratio there
       real(wp) :: beta_limit        !! Inner hinge there [rad]
-      real(wp) :: beta_max          !! Farthest inner hinge of all half angles [rad]
-      real(wp) :: alpha_beta_max    !! Half angle that has it [rad]
+      real(wp) :: beta_max          !! Largest inner hinge of all half angles [rad]
+      real(wp) :: alpha_beta_max    !! Half angle of the largest inner hinge [rad]
       real(wp) :: embrace_beta_max  !! A there
       real(wp) :: eta_beta_max      !! Thickness ratio there
       real(wp) :: h_beta_max        !! Thrust there
@@ -57,9 +56,9 @@ module couplet_heyman_equations
    !> Half angle at which A = 1: eta(beta) starts from 0 up to here, from eta_0 > 0 beyond, eq. (26)
    !> [rad]
    real(wp), parameter :: unit_angle = 2.331122370414422613667835955917121338269_wp
-   !> What unit_angle is short of the true angle by [rad]
+   !> True angle minus unit_angle [rad]
    real(wp), parameter :: unit_angle_tail = -2.1492054957191997e-16_wp
-   !> Half a turn [rad]
+   !> 180 degrees [rad]
    real(wp), parameter :: pi = acos(-1.0_wp)
    !> Root of A(alpha) = 1/(2 - 2/pi) [rad]
    real(wp), parameter :: heyman_limit = 2.589570610685359957177303898711322916197_wp
@@ -92,21 +91,21 @@ module couplet_heyman_equations
 
 contains
 
-   !> delta_M: 1 where the weight acts in the true centre of gravity
+   !> delta_M: 1 if the weight acts in the true centre of gravity
    elemental real(wp) function weight_flag(which)
       integer, intent(in) :: which  !! One of `theory`
 
       weight_flag = merge(1.0_wp, 0.0_wp, which == theory%milankovitch)
    end function weight_flag
 
-   !> delta_CCR: 1 where the line of thrust touches the intrados, 0 where the resultant does
+   !> delta_CCR: 1 if the thrust line touches the intrados, 0 if the resultant does
    elemental real(wp) function tangency_flag(which)
       integer, intent(in) :: which
 
       tangency_flag = merge(0.0_wp, 1.0_wp, which == theory%heyman)
    end function tangency_flag
 
-   !> Radius at which the weight acts, over r: 1 + delta_M eta^2/12
+   !> Radius of the line of action of the weight, over r: 1 + delta_M eta^2/12
    elemental real(wp) function weight_arm(eta, which)
       real(wp), intent(in) :: eta  !! Thickness ratio [-]
       integer, intent(in) :: which
@@ -123,7 +122,7 @@ contains
       if (which == theory%milankovitch) limits_of = limits_milankovitch
    end function limits_of
 
-   !> p(x) = x - sin x: what an arc of the unit circle is longer than its half chord
+   !> p(x) = x - sin x: length of an arc of the unit circle minus its half chord
    elemental real(wp) function arc_excess(x)
       real(wp), intent(in) :: x  !! Angle [rad]
       !> Ratios of the series, 1/(2i (2i + 1))
@@ -183,7 +182,7 @@ contains
    !> 1 - y r(1) (1 - y r(2) (1 - ...)): an alternating series from its last term
    pure real(wp) function nested_series(y, ratio)
       real(wp), intent(in) :: y             !! Square of the argument
-      real(wp), intent(in) :: ratio(terms)  !! Each term over the one before it and over -y: (terms)
+      real(wp), intent(in) :: ratio(terms)  !! Ratios of terms over -y: (terms)
       integer :: i
 
       nested_series = 1.0_wp
@@ -209,8 +208,7 @@ contains
       if (beta > 0.0_wp) h = beta*cos(beta)/sin(beta)
    end function heyman_thrust
 
-   !> Eq. (6): thrust that makes the line of thrust pass through the crown's extrados and a given
-   !> point of a joint
+   !> Eq. (6): thrust of the thrust line through the crown's extrados and a given point of a joint
    elemental function thrust_through(beta, eccentricity_ratio, eta, which) result(h)
       real(wp), intent(in) :: beta                !! Angle of the joint, (0, pi) [rad]
       real(wp), intent(in) :: eccentricity_ratio  !! 2e/t, -1 at the extrados, 1 at the intrados
@@ -236,7 +234,7 @@ contains
       h = 1.0_wp - embrace_deficit(alpha) + h
    end function springing_thrust
 
-   !> Eq. (12): h_e, the thrust at which the line of thrust touches the intrados at beta; for Heyman
+   !> Eq. (12): h_e, the thrust at which the thrust line touches the intrados at beta; for Heyman
    !> eq. (3)
    elemental function tangent_thrust(beta, eta, which) result(h)
       real(wp), intent(in) :: beta  !! Inner hinge, [0, pi) [rad]
@@ -249,7 +247,7 @@ contains
       h = h - tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
    end function tangent_thrust
 
-   !> Eq. (10): where the line of thrust through the crown's extrados cuts the joint at beta
+   !> Eq. (10): position in the joint at beta of the thrust line through the crown's extrados
    !>
    !> 1 + e = q ((2 + eta)(A(beta) - h) - 2 m)/(eta (beta S + h C)): the crown keeps all its digits;
    !> 2e/t, -1 at the extrados, 1 at the intrados

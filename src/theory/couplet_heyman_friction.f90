@@ -1,15 +1,15 @@
 !> Joints of finite friction: the limit of collapse by rotation alone, and the required thickness
 !> below it
 !>
-!> The thrust at the joint beta leans by |atan(beta/h) - beta| from the joint's normal, at the
-!> springing by alpha - atan2(alpha, h), and most of all in between at beta_s = sqrt(h (1 - h)) by
-!> acos(sqrt h) - beta_s. With 1 - h = sin^2 x that is beta_s = sin(2x)/2 and x - sin(2x)/2, without
-!> a difference of nearly equal numbers. A smaller thrust spares the springing, a greater one the
-!> haunch: where both slide at one thrust, friction has its least value, mu_mixed, below which no
-!> thickness stands. Between it and mu_rotational the sliding joint dictates the thrust, and the
-!> thickness follows from the line of thrust that touches the intrados and passes the extrados at
-!> the crown (when the springing slides) or at the springing (when the haunch does). Above mu_mixed
-!> the thickness is the least that the static theorem allows.
+!> The thrust at the joint beta is inclined by |atan(beta/h) - beta| to the joint's normal, at the
+!> springing by alpha - atan2(alpha, h). The largest inclination in between is acos(sqrt h) - beta_s
+!> at beta_s = sqrt(h (1 - h)). With 1 - h = sin^2 x these are x - sin(2x)/2 and beta_s = sin(2x)/2,
+!> without cancellation. A smaller thrust reduces the inclination at the springing, a greater one
+!> that at the haunch. If both slide at the same thrust, the friction is mu_mixed, below which no
+!> thickness is stable. Between mu_mixed and mu_rotational the sliding joint determines the thrust.
+!> The thickness follows from the thrust line that touches the intrados and passes through the
+!> extrados at the crown (if the springing slides) or at the springing (if the haunch slides). It
+!> is the smallest that the static theorem admits.
 module couplet_heyman_friction
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -26,21 +26,21 @@ module couplet_heyman_friction
    !> Relative step at which only round-off remains
    real(wp), parameter :: short_step = 1.0e-9_wp
 
-   !> Least friction coefficients of an arch
+   !> Smallest friction coefficients of an arch
    type :: friction_limits_t
-      real(wp) :: mu_rotational  !! From here on the arch collapses by rotation alone
-      real(wp) :: mu_mixed       !! Below here no thickness admits equilibrium
+      real(wp) :: mu_rotational  !! Above this the arch collapses by rotation alone
+      real(wp) :: mu_mixed       !! Below this no thickness admits equilibrium
       real(wp) :: h_mixed        !! Thrust at mu_mixed [w r]
       !> Joint of the haunch that slides at mu_mixed, from the crown [rad]
       real(wp) :: beta_slip
       real(wp) :: beta_mixed, eta_mixed  !! Inner hinge there [rad], and thickness ratio
-      !> Whether at mu_rotational the springing slides first, rather than the haunch
+      !> True if at mu_rotational the springing slides first, not the haunch
       logical :: springing_slides
    end type friction_limits_t
 
 contains
 
-   !> Friction coefficients at which the mode of collapse changes: NaN outside the range of validity
+   !> Friction coefficients at which the collapse mode changes; NaN outside the range of validity
    pure type(friction_limits_t) function friction_limits(alpha, which) result(limits)
       real(wp), intent(in) :: alpha  !! Half angle of embrace, (0, alpha_limit] [rad]
       integer, intent(in) :: which   !! One of `theory`
@@ -65,7 +65,7 @@ contains
          & limits%eta_mixed)
    end function friction_limits
 
-   !> Least thickness, with its hinge and thrust, at a friction coefficient; NaN below mu_mixed
+   !> Smallest thickness, with its hinge and thrust, at a friction coefficient; NaN below mu_mixed
    elemental subroutine friction_solution(mu, alpha, which, beta, eta, h)
       real(wp), intent(in) :: mu     !! Friction coefficient of the joints
       real(wp), intent(in) :: alpha
@@ -96,14 +96,14 @@ contains
       call mixed_hinge(alpha, deficit, springing_slides, which, beta, eta)
    end subroutine friction_solution
 
-   !> From which friction coefficient on the arch collapses by rotation alone
+   !> Friction coefficient above which the arch collapses by rotation alone
    elemental subroutine limit_rotation(alpha, which, beta, eta, h, x, mu, springing_slides)
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
       real(wp), intent(in) :: beta, eta, h      !! Critical hinge, thickness and thrust
       real(wp), intent(out) :: x                !! That thrust, as asin(sqrt(1 - h)) [rad]
       real(wp), intent(out) :: mu               !! The coefficient
-      logical, intent(out) :: springing_slides  !! Whether there the springing slides first
+      logical, intent(out) :: springing_slides  !! True if the springing slides first there
       real(wp) :: springing, haunch
 
       x = asin(sqrt(rotational_deficit(alpha, which, beta, eta, h)))
@@ -113,7 +113,7 @@ contains
       mu = tan(max(springing, haunch))
    end subroutine limit_rotation
 
-   !> Least friction coefficient at which the haunch does not slide
+   !> Smallest friction coefficient at which the haunch does not slide
    elemental real(wp) function mixed_friction(x)
       real(wp), intent(in) :: x  !! The thrust, as asin(sqrt(1 - h)) [rad]
 
@@ -136,20 +136,20 @@ contains
       end if
    end function rotational_deficit
 
-   !> Lean of the thrust at the springing: alpha - atan2(alpha, h)
+   !> Inclination of the thrust to the normal at the springing: alpha - atan2(alpha, h)
    elemental function springing_lean(alpha, x) result(lean)
       real(wp), intent(in) :: alpha
       real(wp), intent(in) :: x  !! asin(sqrt(1 - h)) [rad]
-      real(wp) :: lean           !! Towards the outside of the arch positive [rad]
+      real(wp) :: lean           !! Positive towards the outside of the arch [rad]
 
       lean = atan2(arm_excess(alpha) - sin(x)**2*sin(alpha), &
                    cos(x)**2*cos(alpha) + alpha*sin(alpha))
    end function springing_lean
 
-   !> The thrust at which springing and haunch lean alike
+   !> Thrust with equal inclinations at springing and haunch
    elemental function double_slip(alpha, guess) result(x)
       real(wp), intent(in) :: alpha
-      real(wp), intent(in) :: guess  !! Any thrust to start from, as asin(sqrt(1 - h)) [rad]
+      real(wp), intent(in) :: guess  !! Any initial thrust, as asin(sqrt(1 - h)) [rad]
       real(wp) :: x
       real(wp) :: change
       integer :: step
@@ -179,14 +179,14 @@ contains
       deficit = sin(x)**2
    end function haunch_deficit
 
-   !> Hinge and thickness of the line of thrust that a sliding joint dictates
+   !> Hinge and thickness of the thrust line at the thrust given by a sliding joint
    !>
-   !> Eq. (12) with eq. (7) or its like. Where no line touches the intrados below the crown, the
-   !> hinge has reached the crown and opens there outwards: beta is 0.
+   !> Eq. (12) with eq. (7) or its equivalent. If no line touches the intrados below the crown, the
+   !> hinge is at the crown and opens outwards: beta is 0.
    elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
       real(wp), intent(in) :: alpha
       real(wp), intent(in) :: deficit  !! 1 - h
-      !> Whether the line passes the extrados at the crown, rather than at the springing
+      !> True if the line passes through the extrados at the crown, false at the springing
       logical, intent(in) :: through_crown
       integer, intent(in) :: which
       real(wp), intent(inout) :: beta  !! A first guess of the inner hinge; then the hinge [rad]
@@ -218,7 +218,8 @@ contains
       excess = tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
    end function tangency_excess
 
-   !> Thickness ratio at which the line of thrust passes the intrados at beta and one extrados point
+   !> Thickness ratio at which the thrust line passes through the intrados at beta and one extrados
+   !> point
    !>
    !> Twice the moment of the forces between the two points: with v(x) = 1 - h - a(x), N(x) = h +
    !> q(x)(1 + v(x)), 2 q v(beta) = eta (2 h + q (1 + v)) + delta_M q eta^2/6 from the crown, and 2
@@ -226,7 +227,7 @@ contains
    !> from the springing.
    elemental function thickness_at(beta, alpha, deficit, through_crown, which) result(eta)
       real(wp), intent(in) :: beta, alpha, deficit
-      !> Whether the other point is the crown's, rather than the springing's
+      !> True if the other point is at the crown, false at the springing
       logical, intent(in) :: through_crown
       integer, intent(in) :: which
       real(wp) :: eta

@@ -1,8 +1,8 @@
 !> Eqs. (14) to (27) term by term as printed in the paper, and their critical solutions
 !>
-!> For comparison and for checks: shallow arches lose their digits here (docs/theory.md has the
-!> table), which couplet_heyman_curves and couplet_heyman_critical avoid. A is eq. (9), S = sin
-!> beta, C = cos beta.
+!> For comparison and checks: these forms lose digits for shallow arches
+!> (docs/theory.md has the table), unlike couplet_heyman_curves and couplet_heyman_critical. A is
+!> eq. (9), S = sin beta, C = cos beta.
 module couplet_heyman_printed
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -121,7 +121,7 @@ contains
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp) :: beta
-      !> There is one root below a quarter of a turn [rad]
+      !> The only root below 90 degrees [rad]
       real(wp), parameter :: farthest = 0.5_wp*acos(-1.0_wp)
       real(wp) :: low, high, value
 
@@ -148,7 +148,7 @@ contains
       real(wp), intent(in) :: start     !! Root of eq. (16) [-]
       real(wp), intent(in) :: beta, a
       real(wp) :: eta
-      integer, parameter :: steps = 12  !! Twice what full convergence takes
+      integer, parameter :: steps = 12  !! Twice the number for full convergence
       integer :: i
 
       eta = start

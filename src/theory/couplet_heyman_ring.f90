@@ -3,9 +3,9 @@
 !>
 !> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n
 !> - d cos t with n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only
-!> differences of z and M between joints matter, so both are counted from the first joint. The gap
-!> of a pair of joints (j, k) is the room between the extrados of j and the intrados of k; the gap
-!> of the ring is that of its narrowest pair.
+!> differences of z and M between joints matter, so both are relative to the first joint. The gap
+!> of a pair of joints (j, k) is the distance of the extrados of j from the intrados of k; the gap
+!> of the ring is the smallest of all pairs.
 module couplet_heyman_ring
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_equations, only : arc_excess, arm_excess, versine
@@ -14,7 +14,7 @@ module couplet_heyman_ring
 
    public :: ring_t, pinch_t, make_ring, limit_thrust, widest_gap, solve_pinch
 
-   !> One half of an arch, joint by joint; nothing here depends on eta
+   !> One half of an arch per joint, independent of eta
    type :: ring_t
       real(wp), allocatable :: cosine(:)   !! Cosine of the joint's angle: (:)
       real(wp), allocatable :: versine(:)  !! 1 - cosine: (:)
@@ -22,33 +22,34 @@ module couplet_heyman_ring
       real(wp), allocatable :: form(:)
       real(wp), allocatable :: moment(:)     !! M, moment of the weights above the joint: (:)
       real(wp), allocatable :: normal(:)     !! n, normal force at the joint for H = 1: (:)
-      real(wp), allocatable :: lightness(:)  !! Angle less weight above the joint, t - W: (:)
-      real(wp) :: lowest = -huge(1.0_wp)     !! Deficits that friction allows: from lowest
-      real(wp) :: highest = huge(1.0_wp)     !! ... to highest
-      integer :: lowest_joint = 0            !! Joint whose friction sets lowest; 0 if none
-      integer :: highest_joint = 0           !! Joint whose friction sets highest; 0 if none
+      real(wp), allocatable :: lightness(:)  !! Angle minus weight above the joint, t - W: (:)
+      real(wp) :: lowest = -huge(1.0_wp)     !! Lower bound of the deficit by friction
+      real(wp) :: highest = huge(1.0_wp)     !! Upper bound of the deficit by friction
+      integer :: lowest_joint = 0            !! Joint whose friction gives lowest; 0 if none
+      integer :: highest_joint = 0           !! Joint whose friction gives highest; 0 if none
    end type ring_t
 
-   !> Where the gap is widest at one eta, and the joints that keep it from being wider
+   !> Position of the widest gap at one eta, and its active joints
    type :: pinch_t
       real(wp) :: deficit = 0.0_wp  !! Deficit of the thrust there
       real(wp) :: gap = 0.0_wp      !! The gap there
-      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
+      !> True if the gap grows without bound with the thrust: a straight thrust line fits in the
+      !> ring
       logical :: unbounded = .false.
-      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
+      !> Extrados and intrados joint that limit the gap at smaller deficits: (2)
       integer :: left(2) = 0
-      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
-      !> sliding joint: (2)
+      !> Extrados and intrados joint that limit it at greater deficits; equal to left at a sliding
+      !> joint: (2)
       integer :: right(2) = 0
-      integer :: sliding = 0  !! Joint whose friction holds the deficit; 0 if none
+      integer :: sliding = 0  !! Joint whose friction limits the deficit; 0 if none
    end type pinch_t
 
 contains
 
-   !> Shape of the ring from its joints; docs/theory.md has the identity behind the steps of form
+   !> Shape of the ring from its joints; docs/theory.md has the identity for the increments of form
    pure subroutine make_ring(joint_angle, facets, ring)
       real(wp), intent(in) :: joint_angle(:)  !! Joints of one half, from the crown: (n) [rad]
-      !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
+      !> Equal chords of each voussoir: (n - 1), or (n) if the first is at the crown
       integer, intent(in) :: facets(:)
       type(ring_t), intent(out) :: ring
       real(wp) :: span, chord, middle, half_sine, chord_loss
@@ -85,11 +86,11 @@ contains
       ring%normal = ring%cosine + (joint_angle - ring%lightness)*sin(joint_angle)
    end subroutine make_ring
 
-   !> One step of a compensated sum: ten thousand voussoirs lose no digit
+   !> One step of a compensated sum, so that ten thousand voussoirs lose no digit
    pure subroutine add_exactly(term, before, carry, after)
-      real(wp), intent(in) :: term      !! What is added
+      real(wp), intent(in) :: term      !! Term to add
       real(wp), intent(in) :: before    !! Sum before
-      real(wp), intent(inout) :: carry  !! What rounding has left out so far
+      real(wp), intent(inout) :: carry  !! Accumulated round-off
       real(wp), intent(out) :: after    !! Sum after
       real(wp) :: corrected
 
@@ -98,14 +99,14 @@ contains
       carry = corrected - (after - before)
    end subroutine add_exactly
 
-   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t -
-   !> phi) at each joint; one at the crown carries no shear, by symmetry
+   !> Set the limits of the thrust by friction: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi)
+   !> <= W cos(t - phi) at each joint; a joint at the crown has no shear, by symmetry
    pure subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
       real(wp), intent(in) :: joint_angle(:)
-      real(wp), intent(in) :: friction          !! Friction angle, pi/2 or more: none slides [rad]
-      logical, intent(in) :: springing_no_slip  !! Whether the last joint cannot slide
-      type(ring_t), intent(inout) :: ring       !! The ring: its limits of the deficit are set
-      !> A quarter of a turn [rad]
+      real(wp), intent(in) :: friction          !! Friction angle; from pi/2 on no slip [rad]
+      logical, intent(in) :: springing_no_slip  !! True if the last joint cannot slide
+      type(ring_t), intent(inout) :: ring       !! The ring; its limits of the deficit are set
+      !> 90 degrees [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
       integer :: j, last
 
@@ -119,7 +120,7 @@ contains
       end do
    end subroutine limit_thrust
 
-   !> Keep the deficit where side (H sin x - W cos x) >= 0
+   !> Limit the deficit to side (H sin x - W cos x) >= 0
    !>
    !> The deficit at equality is 1 - W cot x = (k(x) + (x - W) cos x)/sin x, a sum of small terms
    pure subroutine limit_deficit(x, excess, side, joint, ring)
@@ -127,7 +128,7 @@ contains
       real(wp), intent(in) :: excess  !! x - W
       integer, intent(in) :: side     !! +1 or -1: the sense of the inequality
       integer, intent(in) :: joint    !! Index of the joint
-      !> The ring: its limits of the deficit are narrowed
+      !> The ring; its limits of the deficit are narrowed
       type(ring_t), intent(inout) :: ring
       real(wp) :: bound
       logical :: caps_deficit
@@ -144,11 +145,11 @@ contains
       end if
    end subroutine limit_deficit
 
-   !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
+   !> Largest gap over all deficits: the maximum of a concave polygon, by tangents from both sides
    pure subroutine widest_gap(ring, eta, pinch)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta          !! Thickness ratio [-]
-      type(pinch_t), intent(out) :: pinch  !! Where it is widest, and the joints that make it so
+      type(pinch_t), intent(out) :: pinch  !! Widest gap and its active joints
       integer :: pair(2), last
       real(wp) :: peak, previous_peak, slope
       logical :: too_low, too_high, rises_for_ever, falls_for_ever
@@ -186,13 +187,13 @@ contains
       end do
    end subroutine widest_gap
 
-   !> The joints that leave the least room for the thrust at one deficit
+   !> Pair of joints with the smallest gap at one deficit
    pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
       real(wp), intent(in) :: deficit  !! 1 - H
       integer, intent(out) :: pair(2)  !! Lowest extrados and highest intrados joint: (2)
-      real(wp), intent(out) :: gap     !! Room between them
+      real(wp), intent(out) :: gap     !! Gap between them
       real(wp) :: roof, floor, centre, reach
       integer :: j
 
@@ -251,31 +252,31 @@ contains
       end associate
    end function gap_growth
 
-   !> Where the gaps of two pairs are equal
+   !> Deficit at which the gaps of two pairs are equal
    pure subroutine meet(ring, eta, left, right, deficit, gap)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
-      integer, intent(in) :: left(2)    !! Pair whose gap grows with the deficit: (2)
-      integer, intent(in) :: right(2)   !! Pair whose gap shrinks with it: (2)
-      real(wp), intent(out) :: deficit  !! 1 - H at the meeting
-      real(wp), intent(out) :: gap      !! Both gaps there
+      integer, intent(in) :: left(2)    !! Pair with a gap that increases with the deficit: (2)
+      integer, intent(in) :: right(2)   !! Pair with a gap that decreases with the deficit: (2)
+      real(wp), intent(out) :: deficit  !! 1 - H at equal gaps
+      real(wp), intent(out) :: gap      !! Gap of both pairs there
 
       deficit = (pair_gap(ring, eta, 0.0_wp, right) - pair_gap(ring, eta, 0.0_wp, left)) &
               /(gap_slope(ring, eta, left) - gap_slope(ring, eta, right))
       gap = pair_gap(ring, eta, deficit, left)
    end subroutine meet
 
-   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
-   !> eta and deficit
+   !> Thickness ratio at which the gaps of the active joints vanish: Newton's method in eta and
+   !> deficit
    pure subroutine solve_pinch(ring, start, pinch, eta, solved)
       type(ring_t), intent(in) :: ring
-      real(wp), intent(in) :: start          !! Thickness ratio at which the pinch was found [-]
-      type(pinch_t), intent(inout) :: pinch  !! The joints; its deficit is carried along
-      real(wp), intent(out) :: eta           !! Thickness ratio at which their gaps vanish [-]
-      logical, intent(out) :: solved         !! Whether the iteration has come to rest
+      real(wp), intent(in) :: start          !! Thickness ratio of this pinch [-]
+      type(pinch_t), intent(inout) :: pinch  !! The active joints; its deficit is updated
+      real(wp), intent(out) :: eta           !! Thickness ratio at which the gaps vanish [-]
+      logical, intent(out) :: solved         !! True if the iteration has converged
       !> Quadratic convergence takes 3 to 8
       integer, parameter :: most_steps = 60
-      !> A relative step this short leaves rounding alone to the next one
+      !> Relative step after which the next one is round-off
       real(wp), parameter :: last_but_one = 1.0e-8_wp
       real(wp) :: eta_step, deficit_step
       integer :: step
@@ -293,12 +294,12 @@ contains
       solved = .false.
    end subroutine solve_pinch
 
-   !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
+   !> Newton step towards zero gaps, or towards one zero gap at a deficit limited by friction
    pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta
       type(pinch_t), intent(in) :: pinch
-      real(wp), intent(out) :: eta_step      !! Change of eta; huge where there is none
+      real(wp), intent(out) :: eta_step      !! Change of eta; huge if there is none
       real(wp), intent(out) :: deficit_step  !! Change of the deficit
       real(wp) :: gap(2), growth(2), slope(2), determinant, size_of_terms
 

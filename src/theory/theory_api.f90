@@ -1,8 +1,8 @@
 !> Interface of the three theories for f2py
 !>
-!> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants
-!> them. Each takes n elements at once. `fault` tells the first value outside the range of validity:
-!> the place of its argument in the call, from 1, and its element, from 1; both 0 when all is well,
+!> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as required by
+!> f2py. Each processes n elements. `fault` has the first value outside the range of validity: the
+!> position of its argument in the call, from 1, and its element, from 1. Both are 0 without fault,
 !> and only then are the results set. `which` is one of `theory` in couplet_heyman_equations.
 module theory_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -126,7 +126,7 @@ contains
       if (all(fault == 0)) rate = curve_slope(beta, alpha, which)
    end subroutine slope
 
-   !> Eq. (11): the line of thrust through the extrados of crown and springing
+   !> Eq. (11): thrust line through the extrados of crown and springing
    subroutine line(n, beta, alpha, eta, which, ratio, fault)
       !f2py threadsafe
       integer, intent(in) :: n

@@ -20,14 +20,14 @@ contains
       integer, intent(in) :: n          !! Number of elements
       real(wp), intent(in) :: alpha(n)  !! Half angle of embrace, (0, alpha_limit]: (n) [rad]
       integer, intent(in) :: which      !! Theory
-      !> Least coefficient for a collapse by rotation alone: (n)
+      !> Smallest coefficient for a collapse by rotation alone: (n)
       real(wp), intent(out) :: rotational(n)
-      real(wp), intent(out) :: mixed(n)  !! Least coefficient for any equilibrium: (n)
+      real(wp), intent(out) :: mixed(n)  !! Smallest coefficient for any equilibrium: (n)
       real(wp), intent(out) :: h(n)      !! Thrust at the latter: (n) [w r]
       real(wp), intent(out) :: slip(n)   !! Joint of the haunch that slides there: (n) [rad]
-      !> 1 where the springing slides first, 0 where the haunch does: (n)
+      !> 1 if the springing slides first, 0 if the haunch does: (n)
       integer, intent(out) :: springing(n)
-      !> Inner hinge at the least coefficient for any equilibrium: (n) [rad]
+      !> Inner hinge at the smallest coefficient for any equilibrium: (n) [rad]
       real(wp), intent(out) :: beta(n)
       real(wp), intent(out) :: eta(n)   !! Thickness ratio there: (n) [-]
       integer, intent(out) :: fault(2)  !! First fault: (2)
@@ -49,7 +49,7 @@ contains
       end do
    end subroutine friction_range
 
-   !> Least thickness at a friction coefficient, with its hinge and thrust
+   !> Smallest thickness at a friction coefficient, with its hinge and thrust
    subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
@@ -76,16 +76,16 @@ contains
       !> Number of voussoirs of the whole arch, 1 to 10 000 000: (n)
       integer, intent(in) :: voussoirs(n)
       real(wp), intent(in) :: alpha(n)  !! Half angle of embrace, (0, pi): (n) [rad]
-      !> Greatest span of a chord, 0 for one chord a voussoir: (n) [rad]
+      !> Largest span of a chord, 0 for one chord per voussoir: (n) [rad]
       real(wp), intent(in) :: facet(n)
       !> Friction angle, pi/2 or more for joints that cannot slide: (n) [rad]
       real(wp), intent(in) :: friction(n)
-      integer, intent(in) :: no_slip        !! Not 0: the springings cannot slide
+      integer, intent(in) :: no_slip        !! Nonzero if the springings cannot slide
       integer, intent(out) :: status(n)     !! Outcome, one of discrete_status: (n)
       real(wp), intent(out) :: eta(n)       !! Critical thickness ratio, 0 unless found: (n) [-]
       real(wp), intent(out) :: h(n)         !! Thrust there: (n) [gamma r^2 eta]
-      real(wp), intent(out) :: joint(5, n)  !! Angles of the joints that bind: (5, n) [rad]
-      integer, intent(out) :: role(5, n)    !! What each does, one of joint_role, 0 for none: (5, n)
+      real(wp), intent(out) :: joint(5, n)  !! Angles of the active joints: (5, n) [rad]
+      integer, intent(out) :: role(5, n)    !! State of each, one of joint_role, 0 for none: (5, n)
       integer, intent(out) :: fault(2)
       integer, parameter :: most_voussoirs = 10000000
       integer :: i, no_fault(2)
@@ -105,22 +105,22 @@ contains
       end do
    end subroutine discrete_equal
 
-   !> Exact critical thickness of one arch of polygon voussoirs, given by the joints of one half
+   !> Exact critical thickness of one arch of polygon voussoirs, from the joints of one half
    subroutine discrete_joints(n, joints, facet, friction, no_slip, &
                               status, eta, h, joint, role, fault)
       !f2py threadsafe
       integer, intent(in) :: n  !! Number of joints
       !> Joints from the crown, strictly increasing, in [0, pi): (n) [rad]
       real(wp), intent(in) :: joints(n)
-      real(wp), intent(in) :: facet  !! Greatest span of a chord, 0 for one chord a voussoir [rad]
+      real(wp), intent(in) :: facet  !! Largest span of a chord, 0 for one chord per voussoir [rad]
       !> Friction angle, pi/2 or more for joints that cannot slide [rad]
       real(wp), intent(in) :: friction
       integer, intent(in) :: no_slip
       integer, intent(out) :: status     !! Outcome, one of discrete_status
       real(wp), intent(out) :: eta       !! Critical thickness ratio, 0 unless found [-]
       real(wp), intent(out) :: h         !! Thrust there [gamma r^2 eta]
-      real(wp), intent(out) :: joint(5)  !! Angles of the joints that bind: (5) [rad]
-      integer, intent(out) :: role(5)    !! What each does, one of joint_role, 0 for none: (5)
+      real(wp), intent(out) :: joint(5)  !! Angles of the active joints: (5) [rad]
+      integer, intent(out) :: role(5)    !! State of each, one of joint_role, 0 for none: (5)
       integer, intent(out) :: fault(2)
       type(discrete_solution_t) :: solution
       integer :: i

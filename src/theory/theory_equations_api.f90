@@ -68,7 +68,7 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: alpha(n), eta(n)
       integer, intent(in) :: which
-      real(wp), intent(out) :: h(n)  !! Thrust, negative where none can: (n) [w r]
+      real(wp), intent(out) :: h(n)  !! Thrust, negative if there is none: (n) [w r]
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -77,7 +77,7 @@ contains
       if (all(fault == 0)) h = springing_thrust(alpha, eta, which)
    end subroutine thrust_at_springing
 
-   !> Eqs. (12) and (3): thrust that touches the intrados at a joint
+   !> Eqs. (12) and (3): thrust at which the thrust line touches the intrados at a joint
    subroutine thrust_at_tangent(n, beta, eta, which, h, fault)
       !f2py threadsafe
       integer, intent(in) :: n
