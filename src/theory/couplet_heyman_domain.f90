@@ -4,7 +4,7 @@ module couplet_heyman_domain
    implicit none
    private
 
-   public :: blame, is_half_angle, is_thickness, is_joint, is_finite, is_facet
+   public :: is_half_angle, is_thickness, is_joint, is_finite, is_facet, set_fault
 
    !> Shortest chord; shorter ones change no digit [rad]
    real(wp), parameter :: shortest_chord = 1.0e-7_wp
@@ -14,7 +14,7 @@ module couplet_heyman_domain
 contains
 
    !> Record the first invalid element, unless a fault is recorded already
-   pure subroutine blame(argument, valid, fault)
+   pure subroutine set_fault(argument, valid, fault)
       integer, intent(in) :: argument  !! Place of the argument in the call, from 1
       logical, intent(in) :: valid(:)  !! True for valid elements: (:)
       !> Argument and element, 0 and 0 if there is no fault: (2)
@@ -23,7 +23,7 @@ contains
       if (fault(1) > 0 .or. all(valid)) return
       fault(1) = argument
       fault(2) = findloc(valid, .false., dim=1)
-   end subroutine blame
+   end subroutine set_fault
 
    !> True if an angle can be a half angle of embrace: 0 < alpha < pi; false for a NaN
    elemental logical function is_half_angle(alpha)

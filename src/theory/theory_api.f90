@@ -10,7 +10,7 @@ module theory_api
       small_angle_solution
    use couplet_heyman_curves, only : curve_slope, equilibrium_thickness, initial_thickness, &
       thrust_line
-   use couplet_heyman_domain, only : blame, is_half_angle, is_joint, is_thickness
+   use couplet_heyman_domain, only : is_half_angle, is_joint, is_thickness, set_fault
    use couplet_heyman_equations, only : limits_of, limits_t, springing_thrust, unit_angle
    use couplet_heyman_printed, only : printed_critical
    implicit none
@@ -34,7 +34,7 @@ contains
 
       call critical_solution(alpha, which, beta, eta, h)
       fault = 0
-      call blame(1, is_embraced(alpha, which), fault)
+      call set_fault(1, is_embraced(alpha, which), fault)
    end subroutine critical
 
    !> Critical solution by eqs. (1), (23), (24) and (16) or (14) as printed
@@ -48,7 +48,7 @@ contains
 
       call printed_critical(alpha, which, beta, eta, h)
       fault = 0
-      call blame(1, is_embraced(alpha, which), fault)
+      call set_fault(1, is_embraced(alpha, which), fault)
    end subroutine critical_as_printed
 
    !> Critical solution by its power series at small half angles
@@ -62,7 +62,7 @@ contains
 
       call small_angle_solution(alpha, which, beta, eta, h)
       fault = 0
-      call blame(1, is_embraced(alpha, which), fault)
+      call set_fault(1, is_embraced(alpha, which), fault)
    end subroutine critical_small
 
    !> Leading terms of the critical solution next to the limit of validity
@@ -77,7 +77,7 @@ contains
 
       limits = limits_of(which)
       fault = 0
-      call blame(1, distance >= 0.0_wp .and. distance < limits%alpha_limit, fault)
+      call set_fault(1, distance >= 0.0_wp .and. distance < limits%alpha_limit, fault)
       if (all(fault == 0)) call near_limit_solution(distance, which, beta, eta, h)
    end subroutine critical_near_limit
 
@@ -92,8 +92,8 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(2, is_embraced(alpha, which), fault)
-      call blame(1, is_joint(beta, alpha), fault)
+      call set_fault(2, is_embraced(alpha, which), fault)
+      call set_fault(1, is_joint(beta, alpha), fault)
       if (all(fault == 0)) eta = equilibrium_thickness(beta, alpha, which)
    end subroutine curve
 
@@ -107,7 +107,7 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(1, is_embraced(alpha, which), fault)
+      call set_fault(1, is_embraced(alpha, which), fault)
       if (all(fault == 0)) eta = initial_thickness(alpha, which)
    end subroutine curve_start
 
@@ -121,8 +121,8 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(2, is_embraced(alpha, which), fault)
-      call blame(1, is_joint(beta, alpha), fault)
+      call set_fault(2, is_embraced(alpha, which), fault)
+      call set_fault(1, is_joint(beta, alpha), fault)
       if (all(fault == 0)) rate = curve_slope(beta, alpha, which)
    end subroutine slope
 
@@ -138,11 +138,11 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(2, is_half_angle(alpha), fault)
-      call blame(1, is_joint(beta, alpha), fault)
-      call blame(3, is_thickness(eta), fault)
+      call set_fault(2, is_half_angle(alpha), fault)
+      call set_fault(1, is_joint(beta, alpha), fault)
+      call set_fault(3, is_thickness(eta), fault)
       if (any(fault > 0)) return
-      call blame(3, springing_thrust(alpha, eta, which) > 0.0_wp, fault)
+      call set_fault(3, springing_thrust(alpha, eta, which) > 0.0_wp, fault)
       if (all(fault == 0)) ratio = thrust_line(beta, alpha, eta, which)
    end subroutine line
 

@@ -4,7 +4,7 @@ module theory_discrete_api
    use couplet_heyman_critical, only : is_embraced
    use couplet_heyman_discrete, only : chords, discrete_critical, discrete_solution_t, &
       discrete_status, equal_voussoir_joints
-   use couplet_heyman_domain, only : blame, is_facet, is_half_angle
+   use couplet_heyman_domain, only : is_facet, is_half_angle, set_fault
    use couplet_heyman_friction, only : friction_limits, friction_limits_t, friction_solution
    implicit none
    private
@@ -35,7 +35,7 @@ contains
       integer :: i
 
       fault = 0
-      call blame(1, is_embraced(alpha, which), fault)
+      call set_fault(1, is_embraced(alpha, which), fault)
       if (any(fault > 0)) return
       do i = 1, n
          limits = friction_limits(alpha(i), which)
@@ -62,10 +62,10 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(2, is_embraced(alpha, which), fault)
+      call set_fault(2, is_embraced(alpha, which), fault)
       if (any(fault > 0)) return
       call friction_solution(mu, alpha, which, beta, eta, h)
-      call blame(1, eta > 0.0_wp, fault)
+      call set_fault(1, eta > 0.0_wp, fault)
    end subroutine friction_states
 
    !> Exact critical thickness of arches of equal polygon voussoirs
@@ -91,11 +91,11 @@ contains
       integer :: i, no_fault(2)
 
       fault = 0
-      call blame(1, voussoirs >= 1 .and. voussoirs <= most_voussoirs, fault)
-      call blame(2, is_half_angle(alpha), fault)
+      call set_fault(1, voussoirs >= 1 .and. voussoirs <= most_voussoirs, fault)
+      call set_fault(2, is_half_angle(alpha), fault)
       if (any(fault > 0)) return
-      call blame(3, is_facet(facet), fault)
-      call blame(4, friction >= 0.0_wp, fault)
+      call set_fault(3, is_facet(facet), fault)
+      call set_fault(4, friction >= 0.0_wp, fault)
       if (any(fault > 0)) return
       do i = 1, n
          associate (joints => equal_voussoir_joints(voussoirs(i), alpha(i)))
@@ -131,12 +131,12 @@ contains
       joint = 0.0_wp
       role = 0
       fault = 0
-      call blame(1, [n > 0], fault)
+      call set_fault(1, [n > 0], fault)
       if (any(fault > 0)) return
-      call blame(1, [is_half_angle(joints(1)) .or. (n > 1 .and. abs(joints(1)) <= 0.0_wp), &
+      call set_fault(1, [is_half_angle(joints(1)) .or. (n > 1 .and. abs(joints(1)) <= 0.0_wp), &
                      is_half_angle(joints(2:)) .and. joints(2:) > joints(:n - 1)], fault)
-      call blame(2, [is_facet(facet)], fault)
-      call blame(3, [friction >= 0.0_wp], fault)
+      call set_fault(2, [is_facet(facet)], fault)
+      call set_fault(3, [friction >= 0.0_wp], fault)
       if (any(fault > 0)) return
       call discrete_critical(joints, chords(joints, facet), friction, no_slip /= 0, solution)
       status = solution%status

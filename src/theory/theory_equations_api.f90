@@ -1,7 +1,7 @@
 !> Interface of eqs. (6) to (12) for f2py; conventions as in theory_api
 module theory_equations_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_domain, only : blame, is_finite, is_half_angle, is_joint, is_thickness
+   use couplet_heyman_domain, only : is_finite, is_half_angle, is_joint, is_thickness, set_fault
    use couplet_heyman_equations, only : eccentricity, embrace, springing_thrust, tangent_thrust, &
       & thrust_through
    implicit none
@@ -24,10 +24,10 @@ contains
       integer, intent(out) :: fault(2)   !! First fault: (2)
 
       fault = 0
-      call blame(2, is_half_angle(alpha), fault)
-      call blame(1, is_joint(beta, alpha), fault)
-      call blame(3, is_thickness(eta), fault)
-      call blame(4, h > 0.0_wp .and. is_finite(h), fault)
+      call set_fault(2, is_half_angle(alpha), fault)
+      call set_fault(1, is_joint(beta, alpha), fault)
+      call set_fault(3, is_thickness(eta), fault)
+      call set_fault(4, h > 0.0_wp .and. is_finite(h), fault)
       if (all(fault == 0)) ratio = eccentricity(beta, eta, h, which)
    end subroutine joint_eccentricity
 
@@ -40,7 +40,7 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(1, is_half_angle(alpha), fault)
+      call set_fault(1, is_half_angle(alpha), fault)
       if (all(fault == 0)) a = embrace(alpha)
    end subroutine group_a
 
@@ -56,9 +56,9 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(1, is_half_angle(beta), fault)
-      call blame(2, abs(ratio) <= 1.0_wp, fault)
-      call blame(3, is_thickness(eta), fault)
+      call set_fault(1, is_half_angle(beta), fault)
+      call set_fault(2, abs(ratio) <= 1.0_wp, fault)
+      call set_fault(3, is_thickness(eta), fault)
       if (all(fault == 0)) h = thrust_through(beta, ratio, eta, which)
    end subroutine thrust_at_joint
 
@@ -72,8 +72,8 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(1, is_half_angle(alpha), fault)
-      call blame(2, is_thickness(eta), fault)
+      call set_fault(1, is_half_angle(alpha), fault)
+      call set_fault(2, is_thickness(eta), fault)
       if (all(fault == 0)) h = springing_thrust(alpha, eta, which)
    end subroutine thrust_at_springing
 
@@ -87,8 +87,8 @@ contains
       integer, intent(out) :: fault(2)
 
       fault = 0
-      call blame(1, is_half_angle(beta), fault)
-      call blame(2, is_thickness(eta), fault)
+      call set_fault(1, is_half_angle(beta), fault)
+      call set_fault(2, is_thickness(eta), fault)
       if (all(fault == 0)) h = tangent_thrust(beta, eta, which)
    end subroutine thrust_at_tangent
 
