@@ -51,7 +51,7 @@ program dda
 
 contains
 
-   !> Do with a file what the command asks for
+   !> Run the command for one file
    subroutine take_file(name, status, error)
       character(len=*), intent(in) :: name  !! Name of the file
       integer, intent(out) :: status        !! Exit status of this file

@@ -1,4 +1,4 @@
-!> Number of BLAS threads: one, so that concurrent cases keep their digits
+!> Number of BLAS threads: one, so that the digits do not depend on concurrent cases
 module dda_blas_threads
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -7,11 +7,11 @@ module dda_blas_threads
    public :: set_one_blas_thread, blas_has_locks
 
    interface
-      !> C: let BLAS use one thread
+      !> C: restrict BLAS to one thread
       subroutine set_one_blas_thread() bind(c, name="voussoir_set_one_blas_thread")
       end subroutine set_one_blas_thread
 
-      !> C: whether threads may call BLAS at the same time, 0 if not
+      !> C: 1 if threads may call BLAS at the same time, otherwise 0
       function c_blas_has_locks() bind(c, name="voussoir_blas_has_locks") result(has)
          import :: c_int
          integer(c_int) :: has
@@ -20,7 +20,7 @@ module dda_blas_threads
 
 contains
 
-   !> Whether threads may call BLAS at the same time
+   !> True if threads may call BLAS at the same time
    logical function blas_has_locks()
 
       blas_has_locks = c_blas_has_locks() /= 0

@@ -13,49 +13,48 @@ module dda_case_table
 
    public :: case_table_t, new_case_table, add_case, end_case_table
 
-   !> Lines of a case, parted by line ends; unallocated where nothing of it is to be printed
+   !> Lines of a case, separated by line ends; unallocated if nothing is to be printed
    type :: lines_t
       character(len=:), allocatable :: text  !! The lines
    end type lines_t
 
-   !> What a column shows; of two that do not fit beside one another the one with the smaller number
-   !> stays
+   !> Contents of columns; if two do not fit side by side, the one with the smaller number is kept
    type :: source_enum
       integer :: case = 1      !! Number of the case
       integer :: verdict = 2   !! Its verdict
-      integer :: searched = 3  !! What the search has found
+      integer :: searched = 3  !! Critical value of the search
       integer :: swept = 4     !! Value of a swept parameter
-      integer :: error = 5     !! Error of what was found
-      integer :: mode = 6      !! How the blocks collapse
+      integer :: error = 5     !! Relative error of the critical value
+      integer :: mode = 6      !! Collapse mode
       integer :: exact = 7     !! The exact critical value
       integer :: hinges = 8    !! Hinges at the intrados of an arch
    end type source_enum
 
-   !> The sources by name
+   !> Names of the contents
    type(source_enum), parameter :: source = source_enum()
 
    !> One column
    type :: column_t
-      character(len=64) :: title = ""  !! Its head
+      character(len=64) :: title = ""  !! Header
       integer :: source = 0            !! One of source
-      integer :: width = 0             !! Widest value, then width of the column
+      integer :: width = 0             !! Width of the widest value, later of the column
       integer :: sweep = 0             !! Number of the swept parameter
-      logical :: left = .false.        !! Whether its values are words
+      logical :: left = .false.        !! True for left-aligned words
    end type column_t
 
    !> The table of a deck
    type :: case_table_t
       private
-      type(screen_t) :: screen                  !! Where it goes
-      type(progress_t) :: progress              !! How far the cases are
-      integer :: width = 0                      !! Widest line that it may have
+      type(screen_t) :: screen                  !! Screen for the table
+      type(progress_t) :: progress              !! Progress of the cases
+      integer :: width = 0                      !! Largest width of a line
       type(column_t), allocatable :: column(:)  !! Its columns
-      logical :: begun = .false.                !! Whether its head is printed
-      !> Whether all cases are printed, or of many only those that are undecided
+      logical :: begun = .false.                !! True if the header is printed
+      !> True to print all cases; otherwise only the undecided ones
       logical :: all_cases = .true.
-      logical, allocatable :: awaited(:)  !! Cases that are not computed yet: (n)
-      integer :: next = 1                 !! The first case that is not printed yet
-      !> What waits for the lines of an earlier case, by the number of the case: (n)
+      logical, allocatable :: awaited(:)  !! Cases not yet computed: (n)
+      integer :: next = 1                 !! Next case to print
+      !> Lines that must follow those of earlier cases, by the number of the case: (n)
       type(lines_t), allocatable :: waiting(:)
    end type case_table_t
 
@@ -63,9 +62,9 @@ module dda_case_table
    integer, parameter :: max_rows = 100
    !> Largest width of a number and of a word
    integer, parameter :: number_width = 12, word_width = 20
-   !> Blanks before a column
+   !> Blanks between columns
    integer, parameter :: gap = 2
-   !> Least width of the name of a swept parameter
+   !> Smallest width of the name of a swept parameter
    integer, parameter :: short_title = 10
    !> Maximum number of digits of a number
    integer, parameter :: most_digits = 10
@@ -74,11 +73,11 @@ module dda_case_table
 
 contains
 
-   !> Begin the table of a deck; nothing is printed before its first row
+   !> Start the table of a deck; nothing is printed before the first row
    subroutine new_case_table(screen, deck, chosen, table)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
-      logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
+      logical, intent(in) :: chosen(:)  !! Cases to compute: (n)
       type(case_table_t), intent(out) :: table
 
       table%screen = screen
@@ -96,10 +95,10 @@ contains
       call fit_columns(table%width, table%column)
    end subroutine new_case_table
 
-   !> The columns that the scenes of a deck have
+   !> Choose the columns for the scenes of a deck
    pure subroutine choose_columns(deck, column)
       type(deck_t), intent(in) :: deck
-      type(column_t), allocatable, intent(inout) :: column(:)  !! Receives the columns
+      type(column_t), allocatable, intent(inout) :: column(:)  !! The columns
       character(len=:), allocatable :: searched
       logical :: arch, falls
       integer :: s
@@ -107,7 +106,7 @@ contains
       searched = searched_name(deck)
       arch = source_of(deck) == "arch"
       associate (swept => deck%sweeps%name)
-         ! a run in time ends when it is over, not with a collapse
+         ! a dynamic run ends at its last time, not with a collapse
          falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")
          column = [column_t("case", source%case, len(to_text(n_cases(deck))))]
          do s = 1, size(swept)
@@ -128,7 +127,7 @@ contains
          & column_t("intrados hinge", source%hinges, 10, left=.true.)]
    end subroutine choose_columns
 
-   !> Width of the longest value of a sweep, as far as it is shown
+   !> Width of the longest value of a sweep, up to a limit
    pure integer function longest(sweep)
       type(deck_sweep_t), intent(in) :: sweep
       integer :: i
@@ -141,12 +140,12 @@ contains
       end do
    end function longest
 
-   !> Take a computed case; its lines are printed when all before it are computed
+   !> Add a computed case; its lines are printed after those of all cases before it
    subroutine add_case(table, deck, row, remark)
       type(case_table_t), intent(inout) :: table
       type(deck_t), intent(in) :: deck
       type(result_row_t), intent(in) :: row
-      character(len=*), intent(in) :: remark  !! What the user should know beside the row
+      character(len=*), intent(in) :: remark  !! Additional information for the user
 
       table%awaited(row%number) = .false.
       if (table%all_cases .or. row%verdict == "undecided") &
@@ -158,7 +157,7 @@ contains
       call report_progress(table%progress)
    end subroutine add_case
 
-   !> Print what still waits, if the run ends before its cases
+   !> Print the remaining lines at the end of the run
    subroutine end_case_table(table)
       type(case_table_t), intent(inout) :: table
 
@@ -168,7 +167,7 @@ contains
       end do
    end subroutine end_case_table
 
-   !> Lines of a case, parted by line ends
+   !> Lines of a case, separated by line ends
    pure function row_lines(table, deck, row, remark) result(lines)
       type(case_table_t), intent(in) :: table
       type(deck_t), intent(in) :: deck
@@ -187,7 +186,7 @@ contains
       if (remark /= "") lines = lines//new_line("a")//wrapped(remark, table%width)
    end function row_lines
 
-   !> Print the next case, below the head of the table, and go on to the one after it
+   !> Print the next case, after the header if it is the first, and advance
    subroutine print_next(table)
       type(case_table_t), intent(inout) :: table
       character(len=:), allocatable :: head
@@ -210,7 +209,7 @@ contains
       end associate
    end subroutine print_next
 
-   !> Let columns fit into a width: names of swept parameters are cut, then columns left out
+   !> Fit columns into a width: shorten names of swept parameters, then omit columns
    pure subroutine fit_columns(width, column)
       integer, intent(in) :: width                             !! Width of the screen
       type(column_t), allocatable, intent(inout) :: column(:)  !! The columns; their widths are set
@@ -229,18 +228,18 @@ contains
          last = maxloc(column%source, dim=1, back=.true.)
          column = [column(:last - 1), column(last + 1:)]
       end do
-      ! hinges have all that is left
+      ! hinges get the remaining width
       c = size(column)
       if (column(c)%source == source%hinges) &
          & column(c)%width = width - sum(column(:c - 1)%width + gap)
    end subroutine fit_columns
 
-   !> What a case has in a column
+   !> Text of a case in a column
    pure function field_of(column, row, swept) result(text)
       type(column_t), intent(in) :: column
       type(result_row_t), intent(in) :: row
       character(len=*), intent(in) :: swept(:)  !! Values of the swept parameters: (n)
-      character(len=:), allocatable :: text     !! The text; empty where the case has nothing
+      character(len=:), allocatable :: text     !! The text; empty if the case has no value
       character(len=8) :: small
 
       text = ""
@@ -268,7 +267,7 @@ contains
       end select
    end function field_of
 
-   !> A number, if it is known
+   !> Text of a number, empty if unknown
    pure function shown_number(number, width) result(text)
       type(number_t), intent(in) :: number
       integer, intent(in) :: width  !! Width of its column
@@ -278,7 +277,7 @@ contains
       if (number%known) text = rounded(number%value, width)
    end function shown_number
 
-   !> A number with as many digits as fit
+   !> Text of a number with as many digits as fit
    pure function rounded(value, width) result(text)
       real(wp), intent(in) :: value  !! The number
       integer, intent(in) :: width
@@ -298,9 +297,9 @@ contains
       end do
    end function rounded
 
-   !> A value of a swept parameter
+   !> Text of a value of a swept parameter
    pure function shown_value(value, column) result(text)
-      character(len=*), intent(in) :: value  !! The value as the tables have it
+      character(len=*), intent(in) :: value  !! The value as in the result tables
       type(column_t), intent(in) :: column
       character(len=:), allocatable :: text
       real(wp) :: number
@@ -317,7 +316,7 @@ contains
       end if
    end function shown_value
 
-   !> Angles, parted by blanks, as many as fit
+   !> As many angles as fit, separated by blanks
    pure function shown_angles(angle, width) result(text)
       real(wp), intent(in) :: angle(:)  !! The angles: (n) [deg]
       integer, intent(in) :: width
@@ -338,7 +337,7 @@ contains
       text = text(2:)
    end function shown_angles
 
-   !> A field in its column, with the gap behind it
+   !> A field padded to the width of its column, followed by the gap
    pure function padded(column, text) result(field)
       type(column_t), intent(in) :: column
       character(len=*), intent(in) :: text  !! The text
@@ -353,7 +352,7 @@ contains
       end if
    end function padded
 
-   !> A remark in lines that are not wider than the screen, parted by line ends
+   !> A remark in lines no wider than the screen, separated by line ends
    pure function wrapped(text, width) result(lines)
       character(len=*), intent(in) :: text  !! The remark
       integer, intent(in) :: width

@@ -12,12 +12,12 @@ submodule (dda_verbs) dda_check
 
    interface
 
-      !> Print what a deck's cases are made of
+      !> Print the plan of a deck
       module subroutine print_plan(screen, name, deck, scene)
          type(screen_t), intent(in) :: screen
          character(len=*), intent(in) :: name  !! Name of the deck
          type(deck_t), intent(inout) :: deck
-         !> The scene of its first case, if its blocks are from a file
+         !> Scene of the first case, if the blocks are from a file
          type(scene_t), intent(inout) :: scene
       end subroutine print_plan
 
@@ -46,10 +46,10 @@ contains
       if (command%record) call print_line(command%screen, record)
    end procedure check_file
 
-   !> The tables that a run would write, each with its first line, and its deck.record
+   !> Names and headers of the tables of a run, and its deck.record
    function record_text(deck, stem) result(text)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: stem   !! Its name without folder and ending
+      character(len=*), intent(in) :: stem   !! Name of the deck without folder and extension
       character(len=:), allocatable :: text  !! Lines separated by line ends
       type(result_tables_t) :: tables
       integer :: i

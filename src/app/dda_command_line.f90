@@ -16,7 +16,7 @@ module dda_command_line
    !> Verbs that take files
    character(len=*), parameter :: verbs(*) = [character(len=9) :: "run", "check", "cut", "lines", &
       & "export"]
-   !> What the first argument may be
+   !> Valid first arguments
    character(len=*), parameter :: subcommands(*) = [character(len=9) :: verbs, "help", "--help", &
       & "--version"]
    !> Commands of voussoir that dda does not have
@@ -26,9 +26,9 @@ module dda_command_line
 
    !> An option of verbs that take files
    type :: option_t
-      character(len=8) :: name    !! Its name
-      character(len=26) :: verbs  !! Verbs that take it, parted by blanks
-      logical :: has_value        !! Whether a value follows
+      character(len=8) :: name    !! Name of the option
+      character(len=26) :: verbs  !! Verbs that accept it, separated by blanks
+      logical :: has_value        !! True if a value follows
    end type option_t
 
    character(len=*), parameter :: all_verbs = "run check cut lines export"
@@ -40,27 +40,27 @@ module dda_command_line
       & option_t("--record", "check", .false.), &
       & option_t("--quiet", all_verbs, .false.), option_t("--help", all_verbs, .false.)]
 
-   !> An argument as it was given, blanks at its end included
+   !> An argument including trailing blanks
    type :: argument_t
       character(len=:), allocatable :: text  !! The argument
    end type argument_t
 
-   !> What the user asked for
+   !> The parsed command line
    type :: command_t
       character(len=16) :: verb = "help"  !! One of verbs, help or version
-      !> Decks to run, check or export, files to cut, maps to draw, or the topic of help: (n)
+      !> Decks to run, check or export, files to cut, maps to draw, or a help topic: (n)
       type(argument_t), allocatable :: name(:)
       character(len=longest), allocatable :: setting(:)  !! --set values: (n)
-      !> Output folder, or the file of cut or lines; unallocated if none is named
+      !> Output folder, or output file of cut or lines; unallocated if not given
       character(len=:), allocatable :: out
       character(len=:), allocatable :: cases  !! Numbers of the cases to compute; empty for all
-      integer :: jobs = 1                     !! Cases computed at the same time
-      logical :: quiet = .false.              !! Print nothing but errors
-      logical :: resume = .false.             !! Skip cases that an earlier run has finished
-      logical :: force = .false.              !! Overwrite tables that others have written
-      logical :: tight = .false.              !! Bounds of searches as near as rounding lets them be
-      logical :: record = .false.             !! Print what deck.record would hold
-      type(screen_t) :: screen                !! Where lines for the user go
+      integer :: jobs = 1                     !! Number of concurrent cases
+      logical :: quiet = .false.              !! True to print errors only
+      logical :: resume = .false.             !! True to skip cases finished by an earlier run
+      logical :: force = .false.              !! True to overwrite tables of other programs
+      logical :: tight = .false.              !! True for search bounds at the limit of round-off
+      logical :: record = .false.             !! True to print the contents of deck.record
+      type(screen_t) :: screen                !! Standard output
    end type command_t
 
 contains
@@ -68,7 +68,7 @@ contains
    !> Read the arguments of the program
    subroutine read_command(command, error)
       type(command_t), intent(out) :: command
-      !> Allocated if an argument is not understood
+      !> Allocated for an invalid argument
       type(error_t), allocatable, intent(out) :: error
       type(argument_t), allocatable :: argument(:)
       integer :: bad, i, length
@@ -91,7 +91,7 @@ contains
       if (allocated(error)) error%file = "dda"
    end subroutine read_command
 
-   !> Understand the arguments
+   !> Parse the arguments
    pure subroutine parse_command(argument, command, error)
       type(argument_t), intent(in) :: argument(:)  !! The arguments: (n)
       type(command_t), intent(out) :: command
@@ -131,10 +131,10 @@ contains
       if (.not. allocated(error)) call check_command(command, takes_files, error)
    end subroutine parse_command
 
-   !> Whether there is anything to read, and what cut or lines write is one file of theirs
+   !> Check that there is an input file, and at most one output file of cut or lines
    pure subroutine check_command(command, takes_files, error)
       type(command_t), intent(in) :: command
-      logical, intent(in) :: takes_files  !! Whether the command reads files
+      logical, intent(in) :: takes_files  !! True if the command reads files
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: ending
 
@@ -157,11 +157,11 @@ contains
       end if
    end subroutine check_command
 
-   !> Understand the first argument
+   !> Parse the first argument
    pure subroutine take_subcommand(word, command, takes_files, error)
       character(len=*), intent(in) :: word  !! The argument
       type(command_t), intent(inout) :: command
-      logical, intent(out) :: takes_files   !! Whether files and options follow
+      logical, intent(out) :: takes_files   !! True if files and options follow
       type(error_t), allocatable, intent(out) :: error
 
       takes_files = any(verbs == word)
@@ -178,17 +178,17 @@ contains
       end if
    end subroutine take_subcommand
 
-   !> True for a command that voussoir has and dda has not
+   !> True for a command of voussoir that dda does not have
    pure logical function is_of_voussoir(word)
       character(len=*), intent(in) :: word
 
       is_of_voussoir = any(of_voussoir == word)
    end function is_of_voussoir
 
-   !> Understand one option and its value
+   !> Parse one option and its value
    pure subroutine take_option(argument, i, command, error)
       type(argument_t), intent(in) :: argument(:)
-      integer, intent(inout) :: i  !! Place of the option in, of its last part out
+      integer, intent(inout) :: i  !! Index of the option on entry, of its last part on return
       type(command_t), intent(inout) :: command
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name, value

@@ -43,7 +43,7 @@ contains
       end if
    end procedure cut_file
 
-   !> Print counts, areas, and what was dropped
+   !> Print counts, areas and dropped parts
    subroutine print_cut(screen, model, cut)
       type(screen_t), intent(in) :: screen
       type(line_model_t), intent(in) :: model
@@ -81,7 +81,7 @@ contains
       call print_dropped(screen, model, cut)
    end subroutine print_cut
 
-   !> Print how many blocks a single fixed point lets turn
+   !> Print the number of blocks that a single fixed point leaves free to rotate
    subroutine print_hinged(screen, cut)
       type(screen_t), intent(in) :: screen
       type(cut_model_t), intent(in) :: cut
@@ -118,7 +118,7 @@ contains
          & //to_text(size(cut%area) - most_rows)//" more: --out FILE.csv lists all of them")
    end subroutine print_blocks
 
-   !> Print what was dropped, and why
+   !> Print the dropped parts with the reasons
    subroutine print_dropped(screen, model, cut)
       type(screen_t), intent(in) :: screen
       type(line_model_t), intent(in) :: model
@@ -178,10 +178,10 @@ contains
       end select
    end function remark_text
 
-   !> A point in the file's coordinates
+   !> Text of a point in the file's coordinates
    pure function point_text(cut, point) result(text)
       type(cut_model_t), intent(in) :: cut
-      real(wp), intent(in) :: point(2)       !! The point, from the origin of the cut: (2) [m]
+      real(wp), intent(in) :: point(2)       !! The point relative to the origin of the cut: (2) [m]
       character(len=:), allocatable :: text  !! Its coordinates in parentheses
 
       text = place_text(point + cut%scale%origin)
@@ -190,8 +190,8 @@ contains
    !> Print one line of the summary
    subroutine tell(screen, what, how)
       type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: what  !! What is told
-      character(len=*), intent(in) :: how   !! Its value
+      character(len=*), intent(in) :: what  !! Label
+      character(len=*), intent(in) :: how   !! Value
       character(len=12) :: label
 
       label = what

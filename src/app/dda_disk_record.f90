@@ -1,9 +1,9 @@
 !> disk.record: length of results.csv that is safe on disk
 !>
-!> A row that the system has been given survives the end of the program, but not that of the system.
-!> So the tables are brought to the disk now and then, results.csv last, and its length is written
-!> down beside the name that the system gives to the time since its start. As long as that is the
-!> same, all rows count; afterwards those up to that length.
+!> A row passed to the system survives the end of the program, but not a power failure. Therefore
+!> the tables are synced at intervals, results.csv last. Its length is recorded together with the
+!> boot identifier of the system. While this identifier is the same, all rows are valid; after a
+!> restart, those up to the recorded length.
 module dda_disk_record
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_error, only : error_t
@@ -16,15 +16,15 @@ module dda_disk_record
 
    public :: write_disk_record, trusted_length
 
-   !> Where Linux tells a word that is another one after each start
+   !> Linux: file with an identifier that changes at each start
    character(len=*), parameter :: start_file = "/proc/sys/kernel/random/boot_id"
 
 contains
 
-   !> Write down how much is on the disk
+   !> Record the length that is on the disk
    subroutine write_disk_record(file, length, error)
       character(len=*), intent(in) :: file  !! Name of the record
-      integer(int64), intent(in) :: length  !! Length of results.csv that is on the disk [bytes]
+      integer(int64), intent(in) :: length  !! Length of results.csv on the disk [bytes]
       type(error_t), allocatable, intent(inout) :: error
       type(table_file_t) :: record
 
@@ -34,8 +34,7 @@ contains
       if (.not. allocated(error)) call rename_part(file, error)
    end subroutine write_disk_record
 
-   !> Length of results.csv up to which rows count [bytes]; a folder without a record was written as
-   !> a whole
+   !> Length of valid rows in results.csv [bytes]; the whole file in a folder without a record
    integer(int64) function trusted_length(file)
       character(len=*), intent(in) :: file
       character(len=:), allocatable :: text
@@ -52,7 +51,7 @@ contains
       if (stat /= 0) trusted_length = 0
    end function trusted_length
 
-   !> What the system calls the time since its start; a dash where it has no name for it
+   !> Boot identifier of the system; a dash if there is none
    function start_name() result(name)
       character(len=36) :: name
       integer :: unit, stat

@@ -69,10 +69,10 @@ contains
       end do
    end subroutine export_cases
 
-   !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
+   !> Export a shaped arch, or blocks cut from lines, as a file of blocks
    subroutine export_blocks(command, stem, deck, status, error)
       type(command_t), intent(in) :: command
-      character(len=*), intent(in) :: stem  !! Name of the file without its ending
+      character(len=*), intent(in) :: stem  !! Name of the file without its extension
       type(deck_t), intent(in) :: deck
       integer, intent(out) :: status        !! Exit status of the deck
       type(error_t), allocatable, intent(out) :: error
@@ -105,7 +105,7 @@ contains
       end if
    end subroutine export_blocks
 
-   !> Write geometry and analysis in both forms
+   !> Write geometry and analysis in both formats
    subroutine write_pair(stem, model, analysis, error)
       character(len=*), intent(in) :: stem
       type(line_model_t), intent(in) :: model
@@ -120,7 +120,7 @@ contains
          & call write_file(stem//"_plain.ana", plain_analysis(analysis)//lf, error)
    end subroutine write_pair
 
-   !> Say what was written, and what was lost
+   !> Print the names of the written files, and the keys that were lost
    subroutine tell(screen, stem, deck)
       type(screen_t), intent(in) :: screen
       character(len=*), intent(in) :: stem

@@ -60,7 +60,7 @@ contains
       name = name//"_lines.csv"
    end function table_name
 
-   !> Write what each line and point is for
+   !> Write a table of lines and points with their roles
    subroutine write_table(file, model, error)
       character(len=*), intent(in) :: file
       type(line_model_t), intent(in) :: model
@@ -80,9 +80,9 @@ contains
    !> Write rows of one role
    subroutine write_rows(table, role, entities, first, last, error)
       type(table_file_t), intent(inout) :: table
-      character(len=*), intent(in) :: role  !! Their role
+      character(len=*), intent(in) :: role  !! Role of the entities
       type(entities_t), intent(in) :: entities
-      integer, intent(in) :: first, last    !! The first of them and the last
+      integer, intent(in) :: first, last    !! First and last entity
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 

@@ -14,7 +14,7 @@ submodule (dda_verbs:dda_run_cases) dda_picture_files
 
 contains
 
-   !> Write what is seen of a case on its way
+   !> Write the frames, bars, monitoring points, energies and reactions of a case
    module procedure write_pictures
       associate (at => tables%at, origin => this%scene%origin, album => this%album)
          if (at(table%frames)%wanted) call write_album(tables, number, this%scene%system, origin, &
@@ -30,12 +30,12 @@ contains
       end associate
    end procedure write_pictures
 
-   !> Write all pictures of a case
+   !> Write all frames of a case
    subroutine write_album(tables, number, system, origin, album, error)
       type(result_tables_t), intent(inout) :: tables
       integer, intent(in) :: number
       type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: origin(2)  !! Where the origin of their coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)  !! Origin of the coordinates: (2) [m]
       type(album_t), intent(in) :: album
       type(error_t), allocatable, intent(inout) :: error
       type(frame_joint_row_t), allocatable :: row(:)
@@ -54,7 +54,7 @@ contains
          if (allocated(error)) return
          associate (frame => album%frame(i))
             case_and_frame = to_text(number)//","//to_text(i - 1)
-            ! the steps of a static run have lengths, but no time passes in them
+            ! steps of a static run have lengths, but no time
             moment = merge(real(i - 1, wp), frame%time, album%spacing > 0.0_wp)
             row = frame_joint_rows(frame)
             do j = 1, size(row)
@@ -76,7 +76,7 @@ contains
          & call write_index(folder//stem//".pvd", index, error)
    end subroutine write_album
 
-   !> Write the ways of the measured points of a case
+   !> Write the trajectories of the monitoring points of a case
    subroutine write_track(number, origin, album, points, error)
       integer, intent(in) :: number
       real(wp), intent(in) :: origin(2)
@@ -114,13 +114,13 @@ contains
       call append_line(table, energy_lines(number, value), error)
    end subroutine write_energies
 
-   !> Write the blocks and the joint forces of one picture
+   !> Write the blocks and joint forces of one frame
    subroutine write_picture(stem, system, origin, frame, row, error)
-      character(len=*), intent(in) :: stem  !! Name of the picture without ending
+      character(len=*), intent(in) :: stem  !! Name of the file without its extension
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: origin(2)
       type(frame_t), intent(in) :: frame
-      !> Its joints: (n_joint)
+      !> Joints of the frame: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)

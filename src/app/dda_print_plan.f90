@@ -19,7 +19,7 @@ submodule (dda_verbs:dda_check) dda_print_plan
 
 contains
 
-   !> Print what a deck's cases are made of
+   !> Print the plan of a deck
    module procedure print_plan
       type(deck_t) :: first
       type(scene_plan_t) :: plan
@@ -66,7 +66,8 @@ contains
       if (.not. arch) call print_blocks(screen, scene)
    end procedure print_plan
 
-   !> Whether a joint holds by more than friction; tension needs cohesion where friction is
+   !> True if a joint has strength other than friction; tensile strength needs cohesion if there is
+   !> friction
    pure logical function has_strength(scene)
       type(scene_t), intent(in) :: scene
 
@@ -94,7 +95,7 @@ contains
       end associate
    end subroutine print_blocks
 
-   !> Print which model it is, which others there are, and what can be searched in it
+   !> Print the model, the other models, and the parameters that can be searched
    subroutine print_model(screen, deck)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
@@ -108,7 +109,7 @@ contains
       call tell(screen, "searchable", searches_of(kind, mode))
    end subroutine print_model
 
-   !> The points that are held, loaded and measured
+   !> Numbers of restrained, loaded and monitoring points
    pure function points_text(boundary) result(text)
       type(boundary_t), intent(in) :: boundary
       character(len=:), allocatable :: text
@@ -123,7 +124,7 @@ contains
          & //" loaded, "//to_text(n(3))//" monitoring"
    end function points_text
 
-   !> What is written besides results.csv and joints.csv
+   !> Names of tables in addition to results.csv and joints.csv
    pure function tables_text(deck) result(text)
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: text
@@ -140,7 +141,7 @@ contains
       end if
    end function tables_text
 
-   !> Print what a case of Shi's scheme is made of
+   !> Print the plan of a case of Shi's scheme
    subroutine print_limerick_plan(screen, deck, scene)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
@@ -166,7 +167,7 @@ contains
          & "none: every step starts at rest ", model%constants%dynamic))
    end subroutine print_limerick_plan
 
-   !> The joints and how long they last
+   !> Number of joints, and their lifetime
    pure function joints_text(scene) result(text)
       type(scene_t), intent(in) :: scene
       character(len=:), allocatable :: text
@@ -185,12 +186,12 @@ contains
       end if
    end function joints_text
 
-   !> Print which parts of the method a case needs, and why
+   !> Print the parts of the method for a case, with reasons
    subroutine print_parts(screen, deck, plan, blocks)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
       type(scene_plan_t), intent(in) :: plan
-      integer, intent(in) :: blocks  !! Blocks that move
+      integer, intent(in) :: blocks  !! Number of movable blocks
 
       call tell(screen, "unknowns", &
          & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
@@ -217,7 +218,7 @@ contains
       end if
    end subroutine print_parts
 
-   !> Why a block has as many unknowns
+   !> Reason for the number of unknowns of a block
    pure function why(reason) result(words)
       integer, intent(in) :: reason  !! One of strain_reason
       character(len=100) :: words
@@ -238,8 +239,8 @@ contains
    !> Print one line of the plan
    subroutine tell(screen, what, how)
       type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: what  !! Part of the scene
-      character(len=*), intent(in) :: how   !! What it is, and why
+      character(len=*), intent(in) :: what  !! Label
+      character(len=*), intent(in) :: how   !! Value and reason
       character(len=14) :: label
 
       label = what

@@ -20,36 +20,36 @@ module dda_process
    !> Names of the exit statuses
    type(exit_status_enum), parameter :: exit_status = exit_status_enum()
 
-   !> Number of the signal that a file grown too large sends: the same on Linux, BSD and macOS
+   !> Signal of a file that exceeds its size limit: the same number on Linux, BSD and macOS
    integer(c_int), parameter :: file_limit_signal = 25
-   !> What C calls SIG_IGN: the address that means that a signal is ignored
+   !> C's SIG_IGN: the address for an ignored signal
    integer(c_intptr_t), parameter :: ignored = 1
 
-   !> What ioctl calls TIOCGWINSZ, on Linux
+   !> C's TIOCGWINSZ of ioctl, on Linux
    integer(c_long), parameter :: ask_for_size = int(z'5413', c_long)
 
-   !> What a terminal tells of its size, C's struct winsize
+   !> C's struct winsize: the size of a terminal
    type, bind(c) :: terminal_size_t
-      integer(c_short) :: lines = 0, columns = 0  !! Lines and columns; 0 where it does not know
-      integer(c_short) :: dots(2) = 0             !! Dots across and upright
+      integer(c_short) :: lines = 0, columns = 0  !! Lines and columns; 0 if not known
+      integer(c_short) :: dots(2) = 0             !! Width and height in pixels
    end type terminal_size_t
 
    interface
-      !> C: ask a terminal; after the first two arguments it takes what the request wants
+      !> C: request to a terminal; the third argument depends on the request
       function c_ioctl(descriptor, request, answer) bind(c, name="ioctl") result(failed)
          import :: c_int, c_long, terminal_size_t
-         integer(c_int), intent(in), value :: descriptor  !! The terminal
-         integer(c_long), intent(in), value :: request    !! What is asked
+         integer(c_int), intent(in), value :: descriptor  !! File descriptor of the terminal
+         integer(c_long), intent(in), value :: request    !! Number of the request
          type(terminal_size_t), intent(inout) :: answer
-         integer(c_int) :: failed                         !! 0 if there is one
+         integer(c_int) :: failed                         !! 0 on success
       end function c_ioctl
 
-      !> C: what to do about a signal
+      !> C: set the handler of a signal
       function c_signal(number, handler) bind(c, name="signal") result(before)
          import :: c_funptr, c_int
          integer(c_int), intent(in), value :: number  !! Number of the signal
          type(c_funptr), intent(in), value :: handler
-         type(c_funptr) :: before                     !! What handled it before
+         type(c_funptr) :: before                     !! The previous handler
       end function c_signal
 
       !> C: end the program
@@ -58,7 +58,7 @@ module dda_process
          integer(c_int), intent(in), value :: status  !! Exit status
       end subroutine c_exit
 
-      !> C: whether a file descriptor is a terminal
+      !> C: 1 if a file descriptor is a terminal
       function c_isatty(descriptor) bind(c, name="isatty") result(yes)
          import :: c_int
          !> 1 for standard output, 2 for standard error
@@ -71,8 +71,8 @@ module dda_process
       function c_mkdir(path, mode) bind(c, name="mkdir") result(failed)
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)  !! Its name, ended by a null character
-         integer(c_int), intent(in), value :: mode      !! Its permissions
-         integer(c_int) :: failed                       !! 0 if it was made
+         integer(c_int), intent(in), value :: mode      !! Permissions of the folder
+         integer(c_int) :: failed                       !! 0 on success
       end function c_mkdir
    end interface
 
@@ -86,15 +86,14 @@ contains
       call c_exit(int(status, c_int))
    end subroutine leave
 
-   !> Let a file that may not grow any more (ulimit -f) be a failure to write, not a signal that
-   !> ends the program
+   !> Ignore the signal of the file size limit (ulimit -f), so that exceeding it is a write error
    subroutine survive_file_limit()
       type(c_funptr) :: before
 
       before = c_signal(file_limit_signal, transfer(ignored, c_null_funptr))
    end subroutine survive_file_limit
 
-   !> Of two statuses the one that the user must know first: 4, then 2, then 3
+   !> The more important of two statuses: 4 before 2 before 3
    pure integer function worst_status(a, b)
       integer, intent(in) :: a  !! One status
       integer, intent(in) :: b  !! The other
@@ -108,21 +107,20 @@ contains
       end do
    end function worst_status
 
-   !> Make a folder and those above it; one that exists is left as it is
+   !> Make a folder and its parents; an existing one is unchanged
    subroutine make_folder(path)
-      character(len=*), intent(in) :: path  !! Its name
+      character(len=*), intent(in) :: path  !! Name of the folder
       integer(c_int) :: failed
       integer :: i
 
       do i = 2, len(path)
          if (path(i:i) == "/") failed = c_mkdir(path(:i - 1)//c_null_char, int(o'777', c_int))
       end do
-      ! whether the folder can be used shows when a file in it is opened
+      ! an unusable folder is reported when a file in it is opened
       failed = c_mkdir(path//c_null_char, int(o'777', c_int))
    end subroutine make_folder
 
-   !> Columns of the terminal that a descriptor leads to: 0 where it is none, -1 where the terminal
-   !> does not know
+   !> Number of columns of a terminal: 0 if the descriptor is none, -1 if its size is not known
    integer function terminal_width(descriptor)
       integer, intent(in) :: descriptor  !! The descriptor
       type(terminal_size_t) :: size
@@ -134,13 +132,13 @@ contains
       if (size%columns > 0) terminal_width = int(size%columns)
    end function terminal_width
 
-   !> Whether standard error is a terminal
+   !> True if standard error is a terminal
    logical function error_is_terminal()
       error_is_terminal = c_isatty(2_c_int) == 1
    end function error_is_terminal
 
-   !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
-   !> that exists already, gets an ending
+   !> Name of a deck without folder and extension; an extension is added if the name would be that
+   !> of the deck or of an existing file
    pure function deck_stem(name) result(stem)
       character(len=*), intent(in) :: name  !! Name of the file
       character(len=:), allocatable :: stem

@@ -26,26 +26,26 @@ module dda_result_tables
    public :: name_tables, check_origin, open_tables, close_tables, write_case, write_waiting
    public :: swept_fields, left_out, common_total, sync_tables
 
-   !> Places of the tables in result_tables_t
+   !> Numbers of the tables in result_tables_t
    type :: table_enum
-      integer :: results = 1       !! A row a case
-      integer :: joints = 2        !! A row a joint
-      integer :: log = 3           !! A line a case
-      integer :: frames = 4        !! A row a corner of a picture
-      integer :: frame_joints = 5  !! A row a joint of a picture
-      integer :: points = 6        !! A row a measured point and step
-      integer :: energy = 7        !! A row a step
-      integer :: blocks = 8        !! A row a corner of a block
-      !> A row a case: its bytes in all tables but this one and results.csv, and the check sum of
-      !> its lines there
+      integer :: results = 1       !! One row per case
+      integer :: joints = 2        !! One row per joint
+      integer :: log = 3           !! One line per case
+      integer :: frames = 4        !! One row per corner of a frame
+      integer :: frame_joints = 5  !! One row per joint of a frame
+      integer :: points = 6        !! One row per monitoring point and step
+      integer :: energy = 7        !! One row per step
+      integer :: blocks = 8        !! One row per corner of a block
+      !> One row per case: its bytes in all tables except this one and results.csv, and the checksum
+      !> of its lines there
       integer :: sizes = 9
-      integer :: proof_forces = 10  !! A row a joint: forces of the proof
-      integer :: proof_motion = 11  !! A row a block: velocities of the proof
-      integer :: bars = 12          !! A row a bar and time
-      integer :: reactions = 13     !! A row a support, of dynamic runs for each step
+      integer :: proof_forces = 10  !! One row per joint: forces of the certificate
+      integer :: proof_motion = 11  !! One row per block: velocities of the certificate
+      integer :: bars = 12          !! One row per bar and time
+      integer :: reactions = 13     !! One row per support, in dynamic runs per support and step
    end type table_enum
 
-   !> The places by name
+   !> Names of the tables
    type(table_enum), parameter :: table = table_enum()
 
    !> Size of the buffer for joint rows [bytes]
@@ -55,42 +55,42 @@ module dda_result_tables
    type :: result_table_t
       character(len=:), allocatable :: file    !! Name of the file with its folder
       character(len=:), allocatable :: header  !! First line
-      logical :: wanted = .true.               !! Whether the deck wants it
+      logical :: wanted = .true.               !! True if the table is written
       type(table_file_t) :: open               !! The open file
    end type result_table_t
 
-   !> Where the results of one deck go
+   !> Result tables of one deck
    type :: result_tables_t
       character(len=:), allocatable :: folder  !! Name of the folder
-      type(result_table_t) :: at(13)           !! The tables, by their places
-      !> Number of the column of results.csv that no two runs agree in
+      type(result_table_t) :: at(13)           !! The tables, by their numbers
+      !> Column of results.csv that differs in every run
       integer :: seconds = 0
-      !> Bytes of all tables but results.csv and the sizes after the last case, and the check sum of
-      !> their lines: (2)
+      !> Bytes of all tables except results.csv and sizes.record after the last case, and the
+      !> checksum of their lines: (2)
       integer(int64) :: total(2) = 0
-      !> Lines of the log, the sizes and results.csv that are not written yet
+      !> Unwritten lines of the log, sizes.record and results.csv
       type(growing_text_t) :: waiting(3)
-      integer(int64) :: waiting_sum = 0             !! Check sum of those of the log
-      character(len=:), allocatable :: record_file  !! File that holds what was asked for
-      !> File that holds how much of results.csv is on the disk
+      integer(int64) :: waiting_sum = 0             !! Checksum of the unwritten lines of the log
+      character(len=:), allocatable :: record_file  !! File with the record of deck and program
+      !> File with the length of results.csv on the disk
       character(len=:), allocatable :: disk_file
-      integer(int64) :: due = 0     !! Clock at which the tables are brought to the disk again
-      logical :: has_vtu = .false.  !! Whether pictures are wanted as VTU too
+      integer(int64) :: due = 0     !! Clock time of the next sync
+      logical :: has_vtu = .false.  !! True to write frames as VTU too
    end type result_tables_t
 
-   !> Least time between two synchronisations, and its ratio to their duration
+   !> Smallest time between two syncs [s], and its ratio to their duration
    integer, parameter :: sync_seconds = 1, sync_ratio = 20
 
    !> Characters of a header that identify a table
    integer, parameter :: origin_length = 9
 
-   !> Columns of results.csv that a swept parameter shares
+   !> Columns of results.csv that are also swept parameters
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
 
 contains
 
-   !> Name the tables that a deck wants; no file is touched
+   !> Set names and headers of the tables of a deck, without access to files
    subroutine name_tables(deck, folder, tables)
       type(deck_t), intent(in) :: deck
       character(len=*), intent(in) :: folder  !! Name of the folder
@@ -137,12 +137,12 @@ contains
 
    contains
 
-      !> Name one table
+      !> Set name and header of one table
       subroutine name_table(place, name, header, wanted)
-         integer, intent(in) :: place            !! One of table
-         character(len=*), intent(in) :: name    !! Name of its file in the folder
+         integer, intent(in) :: place            !! Number of the table
+         character(len=*), intent(in) :: name    !! Name of the file in the folder
          character(len=*), intent(in) :: header  !! First line
-         logical, intent(in) :: wanted           !! Whether the deck wants it
+         logical, intent(in) :: wanted           !! True if the table is written
 
          tables%at(place)%file = folder//name
          tables%at(place)%header = header
@@ -150,8 +150,8 @@ contains
       end subroutine name_table
    end subroutine name_tables
 
-   !> Which tables are not written because there are many cases, and what writes them; empty if all
-   !> are
+   !> Sentence on tables that are not written because there are many cases, and the keys that write
+   !> them; empty if there are none
    pure function left_out(deck) result(text)
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: text
@@ -173,8 +173,8 @@ contains
          & //" cases without "//keys(3:)
    end function left_out
 
-   !> Refuse to overwrite or remove what another program has written under the name of a table: its
-   !> first line begins otherwise. A link is replaced alone, not where it leads
+   !> Report an error if a file with the name of a table has another header, because another program
+   !> has written it. Symbolic links are replaced and their targets kept
    subroutine check_origin(tables, error)
       type(result_tables_t), intent(in) :: tables
       type(error_t), allocatable, intent(inout) :: error
@@ -186,7 +186,7 @@ contains
          if (is_link(tables%at(i)%file)) cycle
          found = first_line(tables%at(i)%file)
          own = tables%at(i)%header(:origin_length)
-         ! a run that a full disk has ended may have left part of it
+         ! a full disk may have ended an earlier run within the header
          if (index(found, own) == 1 .or. index(own, found) == 1) cycle
          call fatal_error(error, "expected a table that begins with "//own//", got a file that " &
             & //"dda has not written; choose another folder with --out, or overwrite it with " &
@@ -194,16 +194,16 @@ contains
       end do
    end subroutine check_origin
 
-   !> Begin all tables; those of an earlier run are replaced or removed
+   !> Start all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)
       type(result_tables_t), intent(inout) :: tables
-      character(len=*), intent(in) :: record  !! What was asked for
+      character(len=*), intent(in) :: record  !! Record of deck and program
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: file
       integer(int64) :: now, rate
       integer :: i
 
-      ! killed on the way, old rows must not pass for those of this deck
+      ! remove the record first: if the run is killed here, old rows must not be taken for new ones
       call remove_file(tables%record_file)
       call remove_file(tables%disk_file)
       do i = 1, size(tables%at)
@@ -224,7 +224,7 @@ contains
       tables%due = now + sync_seconds*rate
    end subroutine open_tables
 
-   !> Bring all tables to the disk, results.csv last, and write down how long it is
+   !> Sync all tables to disk, results.csv last, and record its length
    subroutine sync_tables(tables, error)
       type(result_tables_t), intent(inout) :: tables
       type(error_t), allocatable, intent(inout) :: error
@@ -242,7 +242,7 @@ contains
       tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
    end subroutine sync_tables
 
-   !> Bring all tables to the disk and close them
+   !> Sync all tables to disk and close them
    subroutine close_tables(tables, error)
       type(result_tables_t), intent(inout) :: tables
       type(error_t), allocatable, intent(inout) :: error
@@ -254,7 +254,7 @@ contains
       end do
    end subroutine close_tables
 
-   !> Values of the swept parameters that have no column of their own, each with a comma behind it
+   !> Values of the swept parameters without their own column, each followed by a comma
    function swept_fields(deck, number) result(fields)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: number  !! Number of the case
@@ -269,11 +269,11 @@ contains
       end associate
    end function swept_fields
 
-   !> Bytes of all tables but results.csv and the sizes, and the check sum of the lines that were
-   !> appended to them
+   !> Bytes of all tables except results.csv and sizes.record, and the checksum of their appended
+   !> lines
    pure function common_total(tables) result(total)
       type(result_tables_t), intent(in) :: tables
-      integer(int64) :: total(2)  !! Bytes and check sum: (2)
+      integer(int64) :: total(2)  !! Bytes and checksum: (2)
       integer :: i
 
       total = 0
@@ -285,14 +285,14 @@ contains
       end do
    end function common_total
 
-   !> Write the rows of one case, of which pictures, points and proofs are written already. Those of
-   !> the log, of how many bytes they are, and of results.csv wait for write_waiting
+   !> Write the rows of one case; its frames, points and certificate are already written. The rows
+   !> of the log, sizes.record and results.csv are kept for write_waiting
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       type(result_tables_t), intent(inout) :: tables
       type(result_row_t), intent(in) :: row
       type(joint_row_t), intent(in) :: joint_row(:)  !! Rows of its joints
       type(told_blocks_t), intent(in) :: blocks
-      character(len=*), intent(in) :: remark         !! What goes to the log
+      character(len=*), intent(in) :: remark         !! Remark for the log
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
       character(len=:), allocatable :: log, results
@@ -324,10 +324,10 @@ contains
       call add_line(tables%waiting(3), results)
    end subroutine write_case
 
-   !> Write the rows that wait, last those of results.csv, so that a case with a row is whole
+   !> Write the kept rows, those of results.csv last, so that a case with a row there is complete
    subroutine write_waiting(tables, error)
       type(result_tables_t), intent(inout) :: tables
-      type(error_t), allocatable, intent(inout) :: error  !! An earlier failure, or that of writing
+      type(error_t), allocatable, intent(inout) :: error  !! An earlier error or a failure to write
       type(error_t), allocatable :: late
       integer(int64) :: now
       integer :: i, place(3)

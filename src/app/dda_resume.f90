@@ -1,8 +1,8 @@
 !> dda run --resume: finished cases of an earlier run of the same deck
 !>
-!> A case is finished where its row in results.csv is whole, for that row is written last, and where
-!> its rows have the bytes and the check sum that sizes.record tells. Everything else of that run,
-!> rows cut off by a kill among them, is left out of the tables.
+!> A case is finished if its row in results.csv is complete, because that row is written last, and
+!> if its rows have the bytes and checksum in sizes.record. All other rows of that run are removed
+!> from the tables, including incomplete ones.
 submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : sync_binary
@@ -18,7 +18,7 @@ submodule (dda_verbs:dda_run) dda_resume
 
 contains
 
-   !> Find the cases that are finished
+   !> Find the finished cases
    module procedure find_finished
       character(len=:), allocatable :: earlier
       type(error_t), allocatable :: none_left
@@ -33,10 +33,10 @@ contains
       call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, finished)
    end procedure find_finished
 
-   !> Whether each case has the bytes and the check sum that were written down of it
+   !> Compare bytes and checksum of each case with its record
    subroutine compare_sizes(tables, whole)
       type(result_tables_t), intent(in) :: tables
-      logical, intent(out) :: whole(:)  !! Whether it has: (n)
+      logical, intent(out) :: whole(:)  !! True for equal values: (n)
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
       integer(int64) :: bytes(2, size(whole))
@@ -62,8 +62,8 @@ contains
       call close_lines(lines)
    end subroutine compare_sizes
 
-   !> Add the bytes that each case has in a table, and the check sums of its lines; of results.csv
-   !> these sums without the seconds
+   !> Add bytes and checksums of the lines of each case in a table; for results.csv only checksums,
+   !> without the seconds
    subroutine add_bytes(this, bytes)
       type(result_table_t), intent(in) :: this
       integer(int64), intent(inout) :: bytes(:, :)  !! Bytes and sum: (2, n)
@@ -84,11 +84,11 @@ contains
       call close_lines(lines)
    end subroutine add_bytes
 
-   !> Read which cases have a whole row in results.csv
+   !> Find the cases with a valid row in results.csv
    subroutine read_results(this, length, whole, finished)
       type(result_table_t), intent(in) :: this
-      integer(int64), intent(in) :: length  !! Length up to which its rows count [bytes]
-      logical, intent(in) :: whole(:)       !! Whether a case is whole in the other tables: (n)
+      integer(int64), intent(in) :: length  !! Length of valid rows [bytes]
+      logical, intent(in) :: whole(:)       !! True for cases complete in other tables: (n)
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
@@ -103,7 +103,7 @@ contains
          call next_row(column, size(whole), lines, line, number)
          if (number == 0) exit
          if (finished%case(number) .or. .not. whole(number)) cycle
-         ! what the check sum leaves out
+         ! the checksum excludes this field
          call read_number(field(line, field_number(this%header, "seconds")), seconds, ok)
          if (.not. ok) cycle
          finished%case(number) = .true.
@@ -113,7 +113,7 @@ contains
       call close_lines(lines)
    end subroutine read_results
 
-   !> Begin all tables with what they hold of finished cases, in place of what they hold now
+   !> Reopen all tables with the rows of finished cases only
    module procedure reopen_tables
       integer :: i
 
@@ -126,11 +126,11 @@ contains
       call sync_tables(tables, error)
    end procedure reopen_tables
 
-   !> Write a table anew with the rows of finished cases alone
+   !> Rewrite a table with the rows of finished cases only
    subroutine keep_rows(this, once, finished, error)
-      type(result_table_t), intent(inout) :: this  !! The table; is open afterwards
-      logical, intent(in) :: once                  !! Whether a case has no more than one row
-      logical, intent(in) :: finished(:)           !! Whether a case is finished: (n)
+      type(result_table_t), intent(inout) :: this  !! The table, opened here
+      logical, intent(in) :: once                  !! True if a case has at most one row
+      logical, intent(in) :: finished(:)           !! True for finished cases: (n)
       type(error_t), allocatable, intent(out) :: error
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
@@ -149,12 +149,12 @@ contains
          if (once) wanted(number) = .false.
       end do
       call close_lines(lines)
-      ! on the disk first: its name must not outlive its lines
+      ! sync first: the file must not be renamed before its lines are on the disk
       call sync_binary(this%open%file, error)
       if (.not. allocated(error)) call rename_part(this%file, error)
    end subroutine keep_rows
 
-   !> Column of the case in a table; 0 in the log, which has blanks in place of commas
+   !> Column with the case number; 0 in the log, which is separated by blanks
    pure integer function case_column(header)
       character(len=*), intent(in) :: header  !! First line of the table
 
@@ -162,13 +162,13 @@ contains
       if (index(header, " ") > 0) case_column = 0
    end function case_column
 
-   !> The next row of a table that names a case; 0 at the end of the table
+   !> Return the next row with a case number; 0 at the end of the table
    subroutine next_row(column, total, lines, line, number)
-      integer, intent(in) :: column                       !! Column of the case
+      integer, intent(in) :: column                       !! Column with the case number
       integer, intent(in) :: total                        !! Number of cases
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable, intent(out) :: line  !! The row
-      integer, intent(out) :: number                      !! Its case
+      integer, intent(out) :: number                      !! Case of the row
       logical :: found
 
       do
@@ -179,8 +179,8 @@ contains
       end do
    end subroutine next_row
 
-   !> Case that a line belongs to; 0 for one that names none. Whether the line is whole shows in the
-   !> check sum of the case
+   !> Case of a line; 0 without a valid number. Incomplete lines are detected by the checksum of the
+   !> case
    pure integer function case_of(column, line, total)
       integer, intent(in) :: column
       character(len=*), intent(in) :: line  !! The line

@@ -24,70 +24,70 @@ submodule (dda_verbs) dda_run
    integer, parameter :: max_jobs = 256
 
    interface
-      !> C: lock an open file; whoever opens it anew has no part in the lock
+      !> C: lock an open file; other file descriptors of the file do not share the lock
       function c_flock(descriptor, operation) bind(c, name="flock") result(failed)
          import :: c_int
-         integer(c_int), intent(in), value :: descriptor  !! The system's number of the file
-         integer(c_int), intent(in), value :: operation   !! How to lock it
-         integer(c_int) :: failed                         !! 0 if it is locked
+         integer(c_int), intent(in), value :: descriptor  !! File descriptor
+         integer(c_int), intent(in), value :: operation   !! Kind of lock
+         integer(c_int) :: failed                         !! 0 if the file is locked
       end function c_flock
 
-      !> C: number of this process
+      !> C: identifier of this process
       function c_getpid() bind(c, name="getpid") result(number)
          import :: c_int
          integer(c_int) :: number
       end function c_getpid
    end interface
 
-   !> What an earlier run has left
+   !> Cases finished by an earlier run
    type :: finished_t
-      logical :: same_deck = .false.   !! Whether it ran the same deck with the same settings
-      logical, allocatable :: case(:)  !! Whether a case is finished: (n)
-      integer :: count(2) = 0          !! How many ended with a verdict, and undecided: (2)
+      logical :: same_deck = .false.   !! True if it had the same deck, settings and program
+      logical, allocatable :: case(:)  !! True for finished cases: (n)
+      integer :: count(2) = 0          !! Number of cases with a verdict, and of undecided ones: (2)
    end type finished_t
 
    interface
 
-      !> Find the cases that are finished
+      !> Find the finished cases
       module subroutine find_finished(tables, record, total, finished)
          type(result_tables_t), intent(in) :: tables
-         character(len=*), intent(in) :: record  !! What is asked for
+         character(len=*), intent(in) :: record  !! Record of deck and program
          integer, intent(in) :: total            !! Number of cases
          type(finished_t), intent(out) :: finished
       end subroutine find_finished
 
-      !> Begin all tables with what they hold of finished cases, in place of what they hold now
+      !> Reopen all tables with the rows of finished cases only
       module subroutine reopen_tables(tables, finished, error)
          type(result_tables_t), intent(inout) :: tables
          type(finished_t), intent(in) :: finished
          type(error_t), allocatable, intent(out) :: error
       end subroutine reopen_tables
 
-      !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
-      !> written down in the same turn in which the next ones are prepared: one wait for other
-      !> threads
+      !> Compute cases until none is left or writing fails; runs in each thread. Finished cases are
+      !> written in the same critical section in which the next ones are prepared, so that threads
+      !> wait once
       module subroutine run_cases(command, name, deck, chosen, next, tables, shown, count, error)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: name  !! Name of the deck
-         !> The deck; where it has one case, that takes the corners of its blocks
+         !> The deck; of a single case the corners of the blocks are moved out of it
          type(deck_t), intent(inout) :: deck
          logical, intent(in) :: chosen(:)    !! Cases to be computed
-         integer, intent(inout) :: next      !! The last case that was begun by any thread
+         integer, intent(inout) :: next      !! Last case taken by any thread
          type(result_tables_t), intent(inout) :: tables
          type(case_table_t), intent(inout) :: shown
-         integer, intent(inout) :: count(3)  !! Cases decided, undecided, written: (3)
-         !> Failure to write
+         integer, intent(inout) :: count(3)  !! Number of cases decided, undecided, written: (3)
+         !> Allocated if writing fails
          type(error_t), allocatable, intent(inout) :: error
       end subroutine run_cases
 
    end interface
 
-   !> C's LOCK_EX and LOCK_NB: alone, and without waiting
+   !> C's LOCK_EX and LOCK_NB: exclusive, without waiting
    integer(c_int), parameter :: alone = 2, at_once = 4
 
 contains
 
-   !> Run all decks of the command line; a bad deck does not keep the others from running
+   !> Run all decks of the command line; an invalid deck does not stop the others
    module procedure run_decks
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
@@ -159,7 +159,7 @@ contains
       end if
    end subroutine run_deck
 
-   !> Begin the tables, or go on with those of an earlier run of the same deck
+   !> Start the tables, or continue those of an earlier run of the same deck
    subroutine begin_tables(command, name, deck, total, tables, finished, error)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
@@ -207,11 +207,11 @@ contains
       call end_watch(watch)
    end subroutine read_and_check
 
-   !> No two decks may write into the same folder
+   !> Check that no two decks write into the same folder
    subroutine check_folder(command, number, good, error)
       type(command_t), intent(in) :: command
       integer, intent(in) :: number
-      logical, intent(in) :: good(:)  !! Which of the decks before it will run: (number - 1)
+      logical, intent(in) :: good(:)  !! True for earlier decks that will run: (number - 1)
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
@@ -225,10 +225,10 @@ contains
       end do
    end subroutine check_folder
 
-   !> Take a folder for the rest of the program; nothing of it is touched before
+   !> Lock a folder until the end of the program, before changing anything in it
    subroutine lock_folder(folder, quiet, error)
-      character(len=*), intent(in) :: folder  !! Name of the folder, which exists
-      logical, intent(in) :: quiet            !! Whether no warning is printed
+      character(len=*), intent(in) :: folder  !! Name of the existing folder
+      logical, intent(in) :: quiet            !! True to suppress the warning
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: file
       type(binary_file_t) :: held
@@ -247,9 +247,9 @@ contains
       end if
    end subroutine lock_folder
 
-   !> Lock an open file, if nobody else has
+   !> Lock an open file; true on success
    logical function is_locked(file)
-      !> The file; stays locked until it is closed, at the end of the program
+      !> The file; it stays locked until the end of the program
       type(binary_file_t), intent(in) :: file
       integer(c_int) :: failed
 
@@ -257,7 +257,7 @@ contains
       is_locked = failed == 0
    end function is_locked
 
-   !> Whether files of a folder can be locked at all: one that nobody else knows of must
+   !> True if the file system supports locks, tested with a new file
    logical function has_locks(file)
       character(len=*), intent(in) :: file  !! Name of the file that could not be locked
       character(len=:), allocatable :: name
@@ -273,7 +273,7 @@ contains
       call remove_file(name)
    end function has_locks
 
-   !> Folder that a deck's results go to
+   !> Folder of the results of a deck
    pure function folder_of(command, name) result(folder)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name

@@ -21,8 +21,7 @@ submodule (dda_verbs:dda_run) dda_run_cases
 
    interface
 
-      !> Write what is seen of a case on its way: pictures, bars, measured points, energies and
-      !> reactions
+      !> Write the frames, bars, monitoring points, energies and reactions of a case
       module subroutine write_pictures(tables, number, this, error)
          type(result_tables_t), intent(inout) :: tables
          integer, intent(in) :: number  !! Number of the case
@@ -34,7 +33,7 @@ submodule (dda_verbs:dda_run) dda_run_cases
 
 contains
 
-   !> Compute cases until none is left, or none can be written
+   !> Compute cases until none is left or writing fails
    module procedure run_cases
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n
@@ -66,10 +65,10 @@ contains
       end do
    end procedure run_cases
 
-   !> How many cases to take after so many that took so long
+   !> Number of cases of the next batch, from the time of the last one
    pure integer function next_batch(n, seconds)
-      integer, intent(in) :: n         !! Cases taken
-      real(wp), intent(in) :: seconds  !! Time of all of them [s]
+      integer, intent(in) :: n         !! Cases of the last batch
+      real(wp), intent(in) :: seconds  !! Time of the last batch [s]
 
       next_batch = max(1, n/2)
       if (seconds < short_batch) next_batch = n
@@ -79,10 +78,10 @@ contains
    !> Take the next chosen cases
    pure subroutine take_cases(chosen, most, next, number, n)
       logical, intent(in) :: chosen(:)
-      integer, intent(in) :: most          !! How many to take at most
+      integer, intent(in) :: most          !! Maximum number of cases to take
       integer, intent(inout) :: next
-      integer, intent(inout) :: number(:)  !! Their numbers: (max_batch), n of them set
-      integer, intent(out) :: n            !! How many were taken
+      integer, intent(inout) :: number(:)  !! Numbers of the first n cases: (max_batch)
+      integer, intent(out) :: n            !! Number of cases taken
 
       n = 0
       do while (n < most .and. next < size(chosen))
@@ -93,18 +92,18 @@ contains
       end do
    end subroutine take_cases
 
-   !> Make one case ready to be computed
+   !> Prepare one case for its computation
    subroutine prepare(deck, number, tables, this)
       type(deck_t), intent(inout) :: deck
       integer, intent(in) :: number
       type(result_tables_t), intent(in) :: tables
-      !> An earlier case of the deck in, if there was one: of its deck only what is swept changes
+      !> An earlier case of the deck, if any: only the swept values of its deck change
       type(case_t), intent(inout) :: this
       type(deck_t), allocatable :: turned
       type(error_t), allocatable :: problem
       real(wp), allocatable :: vertex(:, :)
 
-      ! a vehicle that was put elsewhere is not the deck's
+      ! the deck of a search for the worst vehicle position was changed and cannot be reused
       if (.not. this%has_worst) call move_alloc(this%family%deck, turned)
       if (.not. allocated(turned)) allocate (turned)
       if (n_cases(deck) == 1) call move_alloc(deck%plan%vertex, vertex)
@@ -115,7 +114,7 @@ contains
       this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare
 
-   !> Write a computed case down
+   !> Write a computed case
    subroutine write_down(command, name, deck, number, this, tables, shown, count, error)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
@@ -150,7 +149,7 @@ contains
       if (.not. command%quiet) call add_case(shown, deck, row, remark)
    end subroutine write_down
 
-   !> Write what proves the verdict of a case
+   !> Write the certificate of the verdict of a case
    subroutine write_proof(tables, number, this, error)
       type(result_tables_t), intent(inout) :: tables
       integer, intent(in) :: number

@@ -14,13 +14,13 @@ module dda_run_record
 
 contains
 
-   !> The text of deck.record: who computes it, then groups, given keys with their values, sweeps;
-   !> comments, blanks and the order of keys leave no trace in it, a --set leaves the one that a key
-   !> in the deck would leave; files that the deck names leave their checksums
+   !> Text of deck.record: program, then groups, given keys with their values, and sweeps. Comments,
+   !> blanks and the order of keys have no effect; a --set has that of the key in the deck; files
+   !> named in the deck are represented by their checksums
    pure function run_record(deck, stem) result(record)
       type(deck_t), intent(in) :: deck
-      character(len=*), intent(in) :: stem     !! Its name without folder and ending
-      character(len=:), allocatable :: record  !! Lines parted by line ends
+      character(len=*), intent(in) :: stem     !! Name of the deck without folder and extension
+      character(len=:), allocatable :: record  !! Lines separated by line ends
       type(growing_text_t) :: lines
       integer :: i
 

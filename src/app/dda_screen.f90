@@ -15,10 +15,10 @@ module dda_screen
       & close_screen, screen_width
    public :: progress_t, report_progress, terminal_watch_t, end_watch
 
-   !> Where lines for the user go
+   !> Standard output of the program
    type :: screen_t
       private
-      type(binary_file_t) :: file  !! Its file
+      type(binary_file_t) :: file  !! The file of standard output
    end type screen_t
 
    !> Unit numbers of standard output and standard error
@@ -28,28 +28,28 @@ module dda_screen
 
    !> Width of a line
    integer, parameter :: width = 60
-   !> Tells of tasks on a terminal
+   !> Progress line of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t
-      logical :: shown = .false.  !! Whether anything is told
-      logical :: told = .false.   !! Whether a line stands on the screen
-      !> Clock at the beginning, and when the line was written
+      logical :: shown = .false.  !! True if progress is shown
+      logical :: told = .false.   !! True if a line is on the screen
+      !> Clock at the start, and at the last line
       integer(int64) :: start = 0, last = 0
-      !> A task is reported once it has taken so long, then in intervals [s]
+      !> Delay of the first report of a task, and interval of further ones [s]
       real(wp) :: patience = 0.5_wp, interval = 0.2_wp
    contains
-      !> Tell of a task
+      !> Report the progress of a task
       procedure :: tell => tell_of_task
    end type terminal_watch_t
 
-   !> Tells how many cases of a deck are done
+   !> Progress of the cases of a deck
    type, extends(terminal_watch_t) :: progress_t
-      integer :: total = 0  !! Number of cases
-      integer :: done = 0   !! Cases done
+      integer :: total = 0  !! Total number of cases
+      integer :: done = 0   !! Number of finished cases
    end type progress_t
 
 contains
 
-   !> Take over standard output; one that is closed is no failure: nobody wants to read it
+   !> Open standard output; a closed one is replaced by the null device
    subroutine open_screen(screen)
       type(screen_t), intent(out) :: screen
       type(error_t), allocatable :: error
@@ -60,8 +60,7 @@ contains
       call fill_gaps()
    end subroutine open_screen
 
-   !> Occupy closed descriptors, lest a table gets one of them, and with it what is meant for the
-   !> user
+   !> Occupy closed standard descriptors, so that no table gets one of them and receives messages
    subroutine fill_gaps()
       type(binary_file_t) :: filler
       type(error_t), allocatable :: error
@@ -82,7 +81,7 @@ contains
       call print_text(screen, line//new_line("a"))
    end subroutine print_line
 
-   !> Print text as it is; whatever fails is reported when the screen is closed
+   !> Print text unchanged; a failure is reported when the screen is closed
    subroutine print_text(screen, text)
       type(screen_t), intent(in) :: screen
       character(len=*), intent(in) :: text  !! The text
@@ -92,7 +91,7 @@ contains
       call flush_binary(screen%file, late)
    end subroutine print_text
 
-   !> Print what a reader warns of
+   !> Print warnings
    subroutine print_warnings(warnings)
       type(warnings_t), intent(in) :: warnings
       integer :: i
@@ -105,8 +104,8 @@ contains
          & write (error_unit, "(a)") "and "//counted(warnings%left_out, "more warning")
    end subroutine print_warnings
 
-   !> Columns that a line of a table may have: those of the terminal, or where it does not know,
-   !> what the environment says
+   !> Largest width of a table line: that of the terminal, otherwise that of the environment
+   !> variable COLUMNS
    integer function screen_width(screen)
       type(screen_t), intent(in) :: screen
       character(len=12) :: text
@@ -131,11 +130,11 @@ contains
       call close_binary(screen%file, error)
    end subroutine close_screen
 
-   !> Tell how far a task is: not at once, and not too often
+   !> Report the progress of a task, after a delay and at intervals
    subroutine tell_of_task(watch, task, share)
       class(terminal_watch_t), intent(inout) :: watch
-      character(len=*), intent(in) :: task  !! What is done
-      !> How much of it is done, from 0 to 1; below 0 if that is not known
+      character(len=*), intent(in) :: task  !! Name of the task
+      !> Completed share from 0 to 1; negative if not known
       real(wp), intent(in) :: share
       integer(int64) :: now, rate
       character(len=width) :: line
@@ -153,7 +152,7 @@ contains
       flush (error_unit)
    end subroutine tell_of_task
 
-   !> Wipe the line of a task
+   !> Erase the progress line
    subroutine end_watch(watch)
       class(terminal_watch_t), intent(inout) :: watch
 
@@ -163,7 +162,7 @@ contains
       watch%told = .false.
    end subroutine end_watch
 
-   !> Count one case and tell how many are done and how long the others will take
+   !> Count one case, and report the number of finished cases and the time left
    subroutine report_progress(progress)
       type(progress_t), intent(inout) :: progress
       integer(int64) :: now, rate

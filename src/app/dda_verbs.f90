@@ -15,7 +15,7 @@ module dda_verbs
          integer, intent(out) :: status  !! Exit status
       end subroutine run_decks
 
-      !> Read and check a deck, say what would be computed
+      !> Read and check a deck, and print its plan
       module subroutine check_file(command, name, status, error)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: name  !! Name of the deck
@@ -39,7 +39,7 @@ module dda_verbs
          type(error_t), allocatable, intent(out) :: error
       end subroutine draw_map
 
-      !> Export the arch or the blocks of a deck as files of other forms
+      !> Export the arch or the blocks of a deck in other formats
       module subroutine export_deck(command, name, status, error)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: name  !! Name of the deck
