@@ -86,7 +86,7 @@ contains
       call system_clock(table%progress%start)
       table%width = screen_width(screen)
       table%all_cases = n_cases(deck) <= max_rows
-      table%progress%patience = 0.0_wp
+      table%progress%delay = 0.0_wp
       if (table%all_cases) table%progress%interval = 0.0_wp
       allocate (table%awaited, source=chosen)
       allocate (table%waiting(size(chosen)))
@@ -100,14 +100,15 @@ contains
       type(deck_t), intent(in) :: deck
       type(column_t), allocatable, intent(inout) :: column(:)  !! The columns
       character(len=:), allocatable :: searched
-      logical :: arch, falls
+      logical :: arch, can_collapse
       integer :: s
 
       searched = searched_name(deck)
       arch = source_of(deck) == "arch"
       associate (swept => deck%sweeps%name)
          ! a dynamic run ends at its last time, not with a collapse
-         falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")
+         can_collapse = .not. keeps_velocities(deck) &
+            & .or. any(swept == "mode" .or. swept == "dynamic")
          column = [column_t("case", source%case, len(to_text(n_cases(deck))))]
          do s = 1, size(swept)
             column = [column, column_t(swept(s), source%swept, longest(deck%sweeps(s)), s, &
@@ -122,8 +123,8 @@ contains
       else if (arch .and. searched == "") then
          column = [column, column_t("exact critical", source%exact, number_width)]
       end if
-      if (falls) column = [column, column_t("mode", source%mode, 10, left=.true.)]
-      if (falls .and. arch) column = [column, &
+      if (can_collapse) column = [column, column_t("mode", source%mode, 10, left=.true.)]
+      if (can_collapse .and. arch) column = [column, &
          & column_t("intrados hinge", source%hinges, 10, left=.true.)]
    end subroutine choose_columns
 

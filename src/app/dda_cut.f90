@@ -55,25 +55,25 @@ contains
       call print_line(screen, model%file//": "//counted(model%line%n, "line")//", " &
          & //counted(size(cut%area), "block"))
       if (size(cut%area) > 0) then
-         call tell(screen, "area", short_text(sum(cut%area))//" in all")
-         call tell(screen, "smallest", short_text(cut%area(smallest)) &
+         call report(screen, "area", short_text(sum(cut%area))//" in all")
+         call report(screen, "smallest", short_text(cut%area(smallest)) &
             & //", block "//to_text(smallest))
-         call tell(screen, "largest", short_text(cut%area(largest))//", block "//to_text(largest))
+         call report(screen, "largest", short_text(cut%area(largest))//", block "//to_text(largest))
       end if
-      call tell(screen, "joints", counted(size(cut%pair), "pair")//" of coincident edges")
-      call tell(screen, "points", to_text(count(cut%point%kind == entity_role%fix))//" fixed, " &
+      call report(screen, "joints", counted(size(cut%pair), "pair")//" of coincident edges")
+      call report(screen, "points", to_text(count(cut%point%kind == entity_role%fix))//" fixed, " &
          & //to_text(count(cut%point%kind == entity_role%load))//" load, " &
          & //to_text(count(cut%point%kind == entity_role%measure))//" monitoring")
       call print_hinged(screen, cut)
-      if (model%of(entity_role%bolt)%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
+      if (model%of(entity_role%bolt)%n > 0) call report(screen, "bolts", to_text(size(cut%bolt)) &
          & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
-      if (any(cut%pair%joint == bond_joint)) call tell(screen, "islands", &
+      if (any(cut%pair%joint == bond_joint)) call report(screen, "islands", &
          & counted(count([(count(cut%whole == i) > 1, i=1, size(cut%whole))]), "block") &
          & //" around others, cut into pieces with " &
          & //counted(count(cut%pair%joint == bond_joint), "bond")//" between them")
-      if (cut%n_removed > 0) call tell(screen, "removed", counted(cut%n_removed, "block") &
+      if (cut%n_removed > 0) call report(screen, "removed", counted(cut%n_removed, "block") &
          & //" with hole points")
-      if (cut%n_merged > 0) call tell(screen, "merged", &
+      if (cut%n_merged > 0) call report(screen, "merged", &
          & counted(cut%n_merged, "crossing")//" with a node " &
          & //"nearer than "//short_text(cut%scale%merge)//" (1.25 e00 w0, w0 = " &
          & //short_text(cut%scale%size)//")")
@@ -93,7 +93,7 @@ contains
             if (point%kind == entity_role%fix) n_fixed(point%block) = n_fixed(point%block) + 1
          end associate
       end do
-      if (any(n_fixed == 1)) call tell(screen, "hinged", counted(count(n_fixed == 1), "block") &
+      if (any(n_fixed == 1)) call report(screen, "hinged", counted(count(n_fixed == 1), "block") &
          & //" with a single fixed point can turn, such as block " &
          & //to_text(findloc(n_fixed, 1, 1))//"; a second point fixes a block")
    end subroutine print_hinged
@@ -128,13 +128,13 @@ contains
 
       associate (remarks => cut%remarks)
          if (remarks%n == 0) then
-            call tell(screen, "dropped", "nothing")
+            call report(screen, "dropped", "nothing")
             return
          end if
          allocate (unused(model%line%n), source=.false.)
          unused(remarks%item(:remarks%n)%line) = remarks%item(:remarks%n)%reason &
             & <= cut_reason%loose_line
-         call tell(screen, "dropped", &
+         call report(screen, "dropped", &
             & to_text(remarks%n)//" parts of lines; "//to_text(count(unused)) &
             & //" lines meet fewer than two others and are unused")
          do i = 1, min(remarks%n, most_rows)
@@ -188,13 +188,13 @@ contains
    end function point_text
 
    !> Print one line of the summary
-   subroutine tell(screen, what, how)
+   subroutine report(screen, label, value)
       type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: what  !! Label
-      character(len=*), intent(in) :: how   !! Value
-      character(len=12) :: label
+      character(len=*), intent(in) :: label  !! Label of the line
+      character(len=*), intent(in) :: value  !! Value
+      character(len=12) :: padded
 
-      label = what
-      call print_line(screen, "   "//label//how)
-   end subroutine tell
+      padded = label
+      call print_line(screen, "   "//padded//value)
+   end subroutine report
 end submodule dda_cut

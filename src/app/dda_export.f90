@@ -64,7 +64,7 @@ contains
          status = exit_status%not_written
          call write_pair(stem, model, arch_analysis(case_of_deck), error)
          if (allocated(error)) return
-         if (.not. command%quiet) call tell(command%screen, stem, case_of_deck)
+         if (.not. command%quiet) call report_files(command%screen, stem, case_of_deck)
          status = exit_status%success
       end do
    end subroutine export_cases
@@ -121,7 +121,7 @@ contains
    end subroutine write_pair
 
    !> Print the names of the written files, and the keys that were lost
-   subroutine tell(screen, stem, deck)
+   subroutine report_files(screen, stem, deck)
       type(screen_t), intent(in) :: screen
       character(len=*), intent(in) :: stem
       type(deck_t), intent(in) :: deck
@@ -134,5 +134,5 @@ contains
          & "   neither form has a place for "//what_is_lost(deck))
       if (has_group(deck, search_group)) call print_line(screen, &
          & "   the search is not written: the files hold the deck's own value of its parameter")
-   end subroutine tell
+   end subroutine report_files
 end submodule dda_export

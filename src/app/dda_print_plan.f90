@@ -237,14 +237,14 @@ contains
    end function why
 
    !> Print one line of the plan
-   subroutine tell(screen, what, how)
+   subroutine tell(screen, label, value)
       type(screen_t), intent(in) :: screen
-      character(len=*), intent(in) :: what  !! Label
-      character(len=*), intent(in) :: how   !! Value and reason
-      character(len=14) :: label
+      character(len=*), intent(in) :: label  !! Label of the line
+      character(len=*), intent(in) :: value  !! Value and reason
+      character(len=14) :: padded
 
-      label = what
-      call print_line(screen, "   "//label//trim(how))
+      padded = label
+      call print_line(screen, "   "//padded//trim(value))
    end subroutine tell
 
 end submodule dda_print_plan

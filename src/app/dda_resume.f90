@@ -40,7 +40,7 @@ contains
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
       integer(int64) :: bytes(2, size(whole))
-      real(wp) :: told(2)
+      real(wp) :: saved(2)
       integer :: column, i, number
       logical :: ok(2)
 
@@ -55,9 +55,9 @@ contains
          call next_row(column, size(whole), lines, line, number)
          if (number == 0) exit
          do i = 1, 2
-            call read_number(field(line, i + 1), told(i), ok(i))
+            call read_number(field(line, i + 1), saved(i), ok(i))
          end do
-         whole(number) = all(ok) .and. .not. any(abs(told - real(bytes(:, number), wp)) > 0.0_wp)
+         whole(number) = all(ok) .and. .not. any(abs(saved - real(bytes(:, number), wp)) > 0.0_wp)
       end do
       call close_lines(lines)
    end subroutine compare_sizes

@@ -30,15 +30,15 @@ module dda_screen
    integer, parameter :: width = 60
    !> Progress line of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t
-      logical :: shown = .false.  !! True if progress is shown
-      logical :: told = .false.   !! True if a line is on the screen
+      logical :: shown = .false.    !! True if progress is shown
+      logical :: visible = .false.  !! True if a line is on the screen
       !> Clock at the start, and at the last line
       integer(int64) :: start = 0, last = 0
       !> Delay of the first report of a task, and interval of further ones [s]
-      real(wp) :: patience = 0.5_wp, interval = 0.2_wp
+      real(wp) :: delay = 0.5_wp, interval = 0.2_wp
    contains
       !> Report the progress of a task
-      procedure :: tell => tell_of_task
+      procedure :: tell => show_task
    end type terminal_watch_t
 
    !> Progress of the cases of a deck
@@ -131,7 +131,7 @@ contains
    end subroutine close_screen
 
    !> Report the progress of a task, after a delay and at intervals
-   subroutine tell_of_task(watch, task, share)
+   subroutine show_task(watch, task, share)
       class(terminal_watch_t), intent(inout) :: watch
       character(len=*), intent(in) :: task  !! Name of the task
       !> Completed share from 0 to 1; negative if not known
@@ -142,24 +142,24 @@ contains
       if (.not. watch%shown) return
       call system_clock(now, rate)
       if (watch%start == 0) watch%start = now
-      if (real(now - watch%start, wp) < watch%patience*real(rate, wp)) return
+      if (real(now - watch%start, wp) < watch%delay*real(rate, wp)) return
       if (real(now - watch%last, wp) < watch%interval*real(rate, wp)) return
       watch%last = now
-      watch%told = .true.
+      watch%visible = .true.
       line = task
       if (share >= 0.0_wp) line = task//": "//to_text(int(100.0_wp*share))//" %"
       write (error_unit, "(a)", advance="no") achar(13)//line
       flush (error_unit)
-   end subroutine tell_of_task
+   end subroutine show_task
 
    !> Erase the progress line
    subroutine end_watch(watch)
       class(terminal_watch_t), intent(inout) :: watch
 
-      if (.not. watch%told) return
+      if (.not. watch%visible) return
       write (error_unit, "(a)", advance="no") achar(13)//repeat(" ", width)//achar(13)
       flush (error_unit)
-      watch%told = .false.
+      watch%visible = .false.
    end subroutine end_watch
 
    !> Count one case, and report the number of finished cases and the time left

@@ -9,17 +9,17 @@ module dda_watch
    !> Receiver of progress reports
    type, abstract :: watch_t
    contains
-      procedure(tell_of_task), deferred :: tell  !! Report the progress of a task
+      procedure(report_task), deferred :: tell  !! Report the progress of a task
    end type watch_t
 
    abstract interface
       !> Report the progress of a task
-      subroutine tell_of_task(watch, task, share)
+      subroutine report_task(watch, task, share)
          import :: watch_t, wp
          class(watch_t), intent(inout) :: watch
          character(len=*), intent(in) :: task  !! Name of the task
          !> Completed share from 0 to 1; negative if not known
          real(wp), intent(in) :: share
-      end subroutine tell_of_task
+      end subroutine report_task
    end interface
 end module dda_watch
