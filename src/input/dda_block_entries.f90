@@ -15,7 +15,7 @@ submodule (dda_read_blocks:dda_block_points) dda_block_entries
 
 contains
 
-   !> Take in a bar
+   !> Read a bar
    module procedure take_bar
       type(bar_t) :: bar
       real(wp) :: ends(4)
@@ -47,10 +47,10 @@ contains
       plan%boundary%bar = [plan%boundary%bar, bar]
    end procedure take_bar
 
-   !> What a bar is like
+   !> Read the properties of a bar
    pure subroutine take_properties(line, first, length, bar, error)
       type(line_t), intent(in) :: line
-      integer, intent(in) :: first    !! Place of the first word
+      integer, intent(in) :: first    !! Index of the first word
       real(wp), intent(in) :: length  !! Length of the bar [m]
       type(bar_t), intent(inout) :: bar
       type(error_t), allocatable, intent(out) :: error
@@ -79,7 +79,7 @@ contains
       end if
    end subroutine take_properties
 
-   !> Take in water
+   !> Read a piezometric line
    module procedure take_water
       type(key_t), parameter :: key(2) = [key_t(name="unit_weight", within=from_zero), &
          & key_t(name="factor", within=[0.0_wp, 1.0_wp])]
@@ -118,14 +118,14 @@ contains
       if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) &
          & call fatal_error(error, "expected increasing times from 0 [s]")
       if (allocated(error)) return
-      ! an array constructor would lose the memory of their points
+      ! gfortran loses the memory of points in an array constructor
       allocate (longer(size(plan%water) + 1))
       longer(:size(plan%water)) = plan%water
       longer(size(longer)) = water
       call move_alloc(longer, plan%water)
    end procedure take_water
 
-   !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]
+   !> Read absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]
    module procedure take_absorbing
       type(key_t), parameter :: key(4) = [key_t(name="x", kind=key_kind%flag), &
          & key_t(name="y", kind=key_kind%flag), key_t(name="p_speed", unit="m/s", above=0.0_wp), &
@@ -175,7 +175,7 @@ contains
          & "expected a line along faces of blocks, got one along none")
    end procedure take_absorbing
 
-   !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below
+   !> Read remove|add block N ... at T, or remove|add polygon at T followed by its corners
    module procedure take_change
       type(stage_change_t), allocatable :: more(:)
       integer, allocatable :: block(:)
@@ -210,11 +210,11 @@ contains
       plan%boundary%change = [plan%boundary%change, more]
    end procedure take_change
 
-   !> The blocks that an entry numbers
+   !> Blocks whose numbers are in an entry
    pure subroutine blocks_of(entry, n_block, block, error)
       type(entry_t), intent(in) :: entry
       integer, intent(in) :: n_block                 !! Number of blocks
-      integer, allocatable, intent(out) :: block(:)  !! Their numbers: (n)
+      integer, allocatable, intent(out) :: block(:)  !! Block numbers: (n)
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: ok
@@ -233,7 +233,7 @@ contains
          & //shown(trim(entry%head%word(min(i, size(block)) + 2)))//"'")
    end subroutine blocks_of
 
-   !> The blocks whose centre of gravity lies in the polygon of an entry
+   !> Blocks with their centre of gravity in the polygon of an entry
    pure subroutine blocks_inside(entry, plan, block, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(in) :: plan
@@ -257,7 +257,7 @@ contains
          & //"block, got one around none")
    end subroutine blocks_inside
 
-   !> Put the changes in the order of their times, and check that each is one
+   !> Sort the changes by time, and check each of them
    module procedure close_changes
       integer :: b, i, last(size(plan%fixed))
 

@@ -21,19 +21,19 @@ module dda_block_lines
    type :: line_t
       integer :: number = 0  !! Number of the line
       integer :: n = 0       !! Number of words
-      !> The words, a quote for the one in quotes; blanks behind them where they are fewer than
-      !> three: (n or more)
+      !> The words; a quoted text is replaced by a quote; padded to three words with
+      !> blanks: (n or more)
       character(len=word_size), allocatable :: word(:)
-      !> What stands in quotes, as it was written; unallocated if nothing does
+      !> The quoted text, unchanged; unallocated if there is none
       character(len=:), allocatable :: quoted
    end type line_t
 
-   !> An entry: a line, and rows of numbers below it
+   !> An entry: a line, and the rows of numbers after it
    type :: entry_t
-      type(line_t) :: head                !! Its first line
-      real(wp), allocatable :: row(:, :)  !! Rows of numbers below it: (3, n_row or more)
+      type(line_t) :: head                !! First line
+      real(wp), allocatable :: row(:, :)  !! Rows of numbers: (3, n_row or more)
       integer :: n_row = 0                !! Number of rows
-      integer :: n_column = 0             !! Numbers of each row
+      integer :: n_column = 0             !! Number of numbers per row
    end type entry_t
 
    !> Largest magnitude of a number, whose square does not overflow
@@ -41,11 +41,11 @@ module dda_block_lines
 
 contains
 
-   !> Put an entry behind others, in as much room as it needs
+   !> Append an entry to a list, without spare memory
    pure subroutine keep_entry(entry, list, n)
       type(entry_t), intent(in) :: entry
-      type(entry_t), allocatable, intent(inout) :: list(:)  !! The others: (n or more)
-      integer, intent(inout) :: n                           !! Their number
+      type(entry_t), allocatable, intent(inout) :: list(:)  !! The list: (n or more)
+      integer, intent(inout) :: n                           !! Number of entries
       type(entry_t), allocatable :: longer(:)
 
       if (n == size(list)) then
@@ -60,13 +60,12 @@ contains
       list(n)%row = entry%row(:, :entry%n_row)
    end subroutine keep_entry
 
-   !> Part a line into words; what follows a ! is a comment. One text may stand in quotes, and names
-   !> of columns
+   !> Split a line into words; a comment starts at !. One text and names of columns may be quoted
    pure subroutine split_line(text, number, line, error)
       character(len=*), intent(in) :: text  !! The line
-      integer, intent(in) :: number         !! Its number
+      integer, intent(in) :: number         !! Number of the line
       type(line_t), intent(out) :: line
-      !> Too many or too long words, or a quote without end
+      !> Allocated for too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
       character(len=word_size) :: word(max_words)
       integer :: first, last, next
@@ -103,7 +102,7 @@ contains
 
    contains
 
-      !> What is wrong with a line of too many or too long words
+      !> Message about too many or too long words
       pure function too_much() result(message)
          character(len=:), allocatable :: message
 
@@ -112,11 +111,11 @@ contains
       end function too_much
    end subroutine split_line
 
-   !> Find the quote that ends a text
+   !> Find the closing quote of a text
    pure subroutine find_quote(text, first, next, error)
       character(len=*), intent(in) :: text
-      integer, intent(in) :: first  !! Place of the first quote
-      integer, intent(out) :: next  !! Place after the last one
+      integer, intent(in) :: first  !! Position of the opening quote
+      integer, intent(out) :: next  !! Position after the closing quote
       type(error_t), allocatable, intent(out) :: error
       integer :: length
 
@@ -125,11 +124,11 @@ contains
       if (length < 0) call fatal_error(error, "expected a second quote, got none; close the text")
    end subroutine find_quote
 
-   !> Take the text between two quotes
+   !> Read a quoted text
    pure subroutine take_quoted(text, first, next, line, error)
       character(len=*), intent(in) :: text
-      integer, intent(in) :: first  !! Place of the first quote
-      integer, intent(out) :: next  !! Place after the last one
+      integer, intent(in) :: first  !! Position of the opening quote
+      integer, intent(out) :: next  !! Position after the closing quote
       type(line_t), intent(inout) :: line
       type(error_t), allocatable, intent(out) :: error
 
@@ -143,12 +142,12 @@ contains
       end if
    end subroutine take_quoted
 
-   !> Read the numbers behind a word
+   !> Read the numbers after a word
    pure subroutine take_numbers(line, i, number, error)
       type(line_t), intent(in) :: line
-      integer, intent(inout) :: i           !! Place of the word; then the place after the numbers
+      integer, intent(inout) :: i           !! Index of the word; moved past the numbers
       real(wp), intent(inout) :: number(:)  !! The numbers: (n)
-      !> Anything else
+      !> Allocated if there are other words
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
       integer :: k
@@ -169,15 +168,15 @@ contains
       i = i + size(number) + 1
    end subroutine take_numbers
 
-   !> Take the words that may follow, each once, with their numbers: one, three for a list, none
-   !> for a flag
+   !> Read optional words in any order, each at most once, with their numbers: one for a number,
+   !> three for a list, none for a flag
    pure subroutine take_words(line, first, key, value, given, error)
       type(line_t), intent(in) :: line
-      integer, intent(in) :: first         !! Place of the first word
-      type(key_t), intent(in) :: key(:)    !! Words that may come, and what numbers they take: (n)
-      real(wp), intent(inout) :: value(:)  !! All their numbers: (sum of the words')
-      logical, intent(out) :: given(:)     !! Which came: (n)
-      !> Another word, one that comes twice, or a number out of its range
+      integer, intent(in) :: first         !! Index of the first word
+      type(key_t), intent(in) :: key(:)    !! Allowed words and their kinds of numbers: (n)
+      real(wp), intent(inout) :: value(:)  !! Numbers of all words: (total number of numbers)
+      logical, intent(out) :: given(:)     !! True for words that are present: (n)
+      !> Allocated for an unknown or repeated word, or a number out of range
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k, width(size(key))
 
@@ -208,7 +207,7 @@ contains
       end do
    end subroutine take_words
 
-   !> Words as in a, b or c
+   !> Words as a list: a, b or c
    pure function listed(word) result(text)
       character(len=*), intent(in) :: word(:)  !! The words: (n)
       character(len=:), allocatable :: text
@@ -220,15 +219,15 @@ contains
       end do
    end function listed
 
-   !> Put the rows of the record that an entry names below it, and leave its words out; an entry
-   !> that names none stays as it is
+   !> Read the record named in an entry into its rows, and remove the words; other entries are
+   !> unchanged
    subroutine take_record(entry, file, marks, error)
       type(entry_t), intent(inout) :: entry
-      !> Name of the file of blocks, beside which the record is
+      !> Name of the file of blocks; the record is in the same folder
       character(len=*), intent(in) :: file
-      !> Receives the length and the check sums of the record
+      !> Receives the length and the checksum of the record
       character(len=:), allocatable, intent(inout) :: marks
-      !> Anything wrong with the words, or with the record
+      !> Allocated if the words or the record are invalid
       type(error_t), allocatable, intent(out) :: error
       character(len=word_size) :: column(3)
       character(len=:), allocatable :: message, mark, name
@@ -255,12 +254,12 @@ contains
       marks = marks//" "//mark
    end subroutine take_record
 
-   !> Take the words from 'file' on
+   !> Read the words from 'file' on
    pure subroutine take_columns(entry, first, column, scale, error)
       type(entry_t), intent(in) :: entry
-      integer, intent(in) :: first                        !! Place of that word
+      integer, intent(in) :: first                        !! Index of that word
       character(len=word_size), intent(out) :: column(3)  !! Columns of time, x and y: (3)
-      real(wp), intent(out) :: scale                      !! What the components are multiplied by
+      real(wp), intent(out) :: scale                      !! Factor of the components
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: number(1)
       integer :: i, n

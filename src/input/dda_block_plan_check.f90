@@ -1,4 +1,4 @@
-!> Assembly and checks of the blocks of a file; errors name the block
+!> Assembly and checks of the blocks of a file; errors have the number of the block
 submodule (dda_read_blocks) dda_block_plan_check
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_box_tree, only : find_boxes
@@ -14,10 +14,10 @@ submodule (dda_read_blocks) dda_block_plan_check
 
    !> Distance below which corners coincide, over the extent of the block
    real(wp), parameter :: same_corner = 1.0e-8_wp
-   !> Least thickness of a block over its extent
+   !> Smallest thickness of a block over its extent
    real(wp), parameter :: too_thin = 1.0e-8_wp
 
-   !> Permitted overlap over the contact tolerance; corners of both blocks are rounded
+   !> Permitted overlap over the contact tolerance: coordinates of both blocks are rounded
    real(wp), parameter :: both = 2.0_wp
    !> Relative round-off of corners that causes a warning
    real(wp), parameter :: few_digits = 1.0e-9_wp
@@ -62,10 +62,10 @@ contains
       call put_block(reading, vertex, fixed, material)
    end procedure add_plan_block
 
-   !> Put a block behind the others, at rest and free of stress
+   !> Append a block at rest and free of stress
    pure subroutine put_block(reading, vertex, fixed, material)
       type(reading_t), intent(inout) :: reading
-      real(wp), intent(in) :: vertex(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n) [m]
       logical, intent(in) :: fixed
       integer, intent(in) :: material
 
@@ -85,11 +85,11 @@ contains
       end associate
    end subroutine put_block
 
-   !> Leave out corners that follow one another at the same place
+   !> Merge consecutive corners at the same place
    pure subroutine merge_corners(corner, near, vertex)
       real(wp), intent(in) :: corner(:, :)                !! Corners in order: (2, n) [m]
-      real(wp), intent(in) :: near                        !! Corners nearer than this are one [m]
-      real(wp), allocatable, intent(out) :: vertex(:, :)  !! The corners that are left: (2, m) [m]
+      real(wp), intent(in) :: near                        !! Smallest distance of corners [m]
+      real(wp), allocatable, intent(out) :: vertex(:, :)  !! The remaining corners: (2, m) [m]
       logical :: kept(size(corner, 2))
       integer :: i, last
 
@@ -103,7 +103,8 @@ contains
       vertex = reshape(pack(corner, spread(kept, 1, 2)), [2, count(kept)])
    end subroutine merge_corners
 
-   !> Check a plan as a whole and move its origin to where coordinates keep their digits
+   !> Check a plan as a whole, and move its origin near the blocks, so that coordinates keep their
+   !> digits
    module procedure check_plan
       real(wp) :: extent(2), point(2)
 
@@ -124,7 +125,7 @@ contains
          & call add_warning(warnings, "all blocks are fixed: nothing can move", file, 1)
    end procedure check_plan
 
-   !> Whether all materials of blocks are given; a law of others is of no use
+   !> Check that all materials of blocks exist; warn of laws of other materials
    pure subroutine check_materials(plan, file, warnings, error)
       type(block_plan_t), intent(in) :: plan
       character(len=*), intent(in) :: file
@@ -148,7 +149,7 @@ contains
       end do
    end subroutine check_materials
 
-   !> Whether two materials have one law
+   !> Check that two materials have at most one law
    pure subroutine check_laws(plan, error)
       type(block_plan_t), intent(in) :: plan
       type(error_t), allocatable, intent(out) :: error
@@ -172,7 +173,7 @@ contains
       end do
    end subroutine check_laws
 
-   !> Whether no two blocks overlap
+   !> Check that no two blocks overlap
    module procedure check_overlaps
       real(wp) :: size_of(size(plan%fixed)), depth, point(2), smaller
       type(area_moments_t) :: moments
@@ -206,7 +207,7 @@ contains
       end do
    end procedure check_overlaps
 
-   !> Warn of coordinates so large that their spacing shows in a block
+   !> Warn of coordinates whose spacing of floating-point numbers is not small compared with a block
    pure subroutine check_digits(plan, file, warnings)
       type(block_plan_t), intent(in) :: plan
       character(len=*), intent(in) :: file
@@ -226,15 +227,16 @@ contains
       end do
    end subroutine check_digits
 
-   !> Say which blocks overlap, where, by how much, and which contact tolerance would take them
+   !> Set the error for overlapping blocks: numbers, place, depth, and the contact tolerance that
+   !> would accept them
    pure subroutine refuse_overlap(plan, block, inside, point, depth, share, error)
       type(block_plan_t), intent(in) :: plan
-      integer, intent(in) :: block(2)  !! The two blocks
-      !> Which of them lies wholly inside the other: 1, 2 or 0 for none
+      integer, intent(in) :: block(2)  !! Numbers of the two blocks
+      !> The block that lies inside the other: 1, 2 or 0 for neither
       integer, intent(in) :: inside
-      real(wp), intent(in) :: point(2)  !! A point that both hold: (2) [m]
-      real(wp), intent(in) :: depth     !! How deep they overlap [m]
-      real(wp), intent(in) :: share     !! The same over the size of the smaller block
+      real(wp), intent(in) :: point(2)  !! A point inside both: (2) [m]
+      real(wp), intent(in) :: depth     !! Depth of the overlap [m]
+      real(wp), intent(in) :: share     !! Depth over the size of the smaller block
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: advice
       real(wp) :: largest

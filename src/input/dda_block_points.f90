@@ -15,7 +15,7 @@ submodule (dda_read_blocks) dda_block_points
 
    interface
 
-      !> Take in a bar:
+      !> Read a bar:
       !> bar x1 y1 x2 y2 (stiffness S | ea V) [strength T] [prestress P] [slack] [breaks]
       pure module subroutine take_bar(entry, plan, site, file, warnings, error)
          type(entry_t), intent(in) :: entry
@@ -26,16 +26,16 @@ submodule (dda_read_blocks) dda_block_points
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_bar
 
-      !> Take in water: water x y x y ... [unit_weight W] [factor F], and rows of time and rise
-      !> below
+      !> Read a piezometric line: water x y x y ... [unit_weight W] [factor F], followed by rows of
+      !> time and rise
       pure module subroutine take_water(entry, plan, error)
          type(entry_t), intent(in) :: entry
          type(block_plan_t), intent(inout) :: plan
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_water
 
-      !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two points of its part along
-      !> each block, those of Gauss, at which forces that are linear along it have their exact work
+      !> Read absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two Gauss points on its part
+      !> along each block, where linear forces do their exact work
       pure module subroutine take_absorbing(entry, plan, site, error)
          type(entry_t), intent(in) :: entry
          type(block_plan_t), intent(inout) :: plan
@@ -43,18 +43,18 @@ submodule (dda_read_blocks) dda_block_points
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_absorbing
 
-      !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below: the
-      !> blocks whose centre of gravity lies inside
+      !> Read remove|add block N ... at T, or remove|add polygon at T followed by its corners, for
+      !> the blocks with their centre of gravity inside
       pure module subroutine take_change(entry, plan, error)
          type(entry_t), intent(in) :: entry
-         type(block_plan_t), intent(inout) :: plan  !! Receives a change for each of its blocks
+         type(block_plan_t), intent(inout) :: plan  !! Receives one change per block
          type(error_t), allocatable, intent(out) :: error
       end subroutine take_change
 
-      !> Put the changes in the order of their times, and check that each is one
+      !> Sort the changes by time, and check each of them
       pure module subroutine close_changes(plan, error)
          type(block_plan_t), intent(inout) :: plan
-         !> A block built or taken away twice, or a bar that would lose its end
+         !> Allocated for a repeated change, or a bar without its block
          type(error_t), allocatable, intent(out) :: error
       end subroutine close_changes
 
@@ -62,7 +62,7 @@ submodule (dda_read_blocks) dda_block_points
 
 contains
 
-   !> Take in points, lines that are held, and the motion of the ground, once all blocks are known
+   !> Read points, restrained lines and ground motion, after all blocks
    module procedure add_points
       integer :: i
 
@@ -100,7 +100,7 @@ contains
       call close_changes(plan, error)
    end procedure add_points
 
-   !> Lists as long as the file says; lines may hold more points than these
+   !> Allocate lists for the entries of the file; lines may need more points
    pure subroutine make_lists(later, boundary)
       type(entry_t), intent(in) :: later(:)
       type(boundary_t), intent(inout) :: boundary
@@ -122,7 +122,7 @@ contains
       allocate (boundary%held(n_held), boundary%loaded(n_loaded), boundary%measured(n_measured))
    end subroutine make_lists
 
-   !> Take in the motion of the ground
+   !> Read the ground motion
    pure subroutine take_ground(entry, plan, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
@@ -159,11 +159,11 @@ contains
       end if
    end subroutine take_ground
 
-   !> Hold a line: the ends of its part in each block that it crosses or runs along
+   !> Restrain a line: the ends of its part in each block that it crosses or touches
    pure subroutine hold_line(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
-      type(site_t), intent(inout) :: site  !! Where the blocks are, and which points hold them
+      type(site_t), intent(inout) :: site  !! Positions of the blocks and their restraints
       type(error_t), allocatable, intent(out) :: error
       type(held_point_t) :: held
       real(wp), allocatable :: part(:, :)
@@ -197,7 +197,7 @@ contains
          & "expected a line that crosses a block or runs along its edge, got one that does not")
    end subroutine hold_line
 
-   !> Take in a point of a block
+   !> Read a point of a block
    pure subroutine take_point(entry, plan, site, file, warnings, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
@@ -251,14 +251,14 @@ contains
       end associate
    end subroutine take_point
 
-   !> Read where a point is: [block N] x y; without a number it belongs to the block that holds it
+   !> Read the position of a point: [block N] x y; without a number, the block that contains it
    pure subroutine take_place(entry, plan, site, i, block, point, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      integer, intent(out) :: i          !! Place of the word after the coordinates
-      integer, intent(out) :: block      !! Number of its block
-      real(wp), intent(out) :: point(2)  !! The point, seen from the origin of the plan: (2) [m]
+      integer, intent(out) :: i          !! Index of the word after the coordinates
+      integer, intent(out) :: block      !! Number of the block
+      real(wp), intent(out) :: point(2)  !! The point relative to the origin of the plan: (2) [m]
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: shown_point
       logical :: ok
@@ -288,11 +288,11 @@ contains
       end if
    end subroutine take_place
 
-   !> Warn of a point that lies on several blocks, and name them
+   !> Warn of a point on several blocks, with their numbers
    pure subroutine warn_of_rivals(entry, block, rival, file, warnings)
       type(entry_t), intent(in) :: entry
-      integer, intent(in) :: block     !! The block that the point belongs to
-      integer, intent(in) :: rival(:)  !! The others: (n)
+      integer, intent(in) :: block     !! The block of the point
+      integer, intent(in) :: rival(:)  !! The other blocks: (n)
       character(len=*), intent(in) :: file
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: others
@@ -309,11 +309,11 @@ contains
          & //trim(entry%head%word(1))//" block N x y' to say which", file, entry%head%number)
    end subroutine warn_of_rivals
 
-   !> Directions in which something is held: both, or the one that is named
+   !> Read the restrained directions: both, or the given one
    pure subroutine take_directions(entry, i, along, error)
       type(entry_t), intent(in) :: entry
-      integer, intent(in) :: i          !! Place of the word after the numbers
-      logical, intent(out) :: along(2)  !! Whether it is held along x and along y: (2)
+      integer, intent(in) :: i          !! Index of the word after the numbers
+      logical, intent(out) :: along(2)  !! True for restrained directions x, y: (2)
       type(error_t), allocatable, intent(out) :: error
 
       along = .true.
@@ -324,11 +324,11 @@ contains
          & //shown(trim(entry%head%word(i)))//"'")
    end subroutine take_directions
 
-   !> A vector in time: one value behind the word, or rows of time and components below it
+   !> Read a vector as a function of time: one value after the word, or rows of time and components
    pure subroutine read_history(entry, has_value, value, history, error)
       type(entry_t), intent(in) :: entry
-      logical, intent(in) :: has_value  !! Whether there is one value behind the word
-      real(wp), intent(in) :: value(2)  !! That value: (2)
+      logical, intent(in) :: has_value  !! True if there is one value after the word
+      real(wp), intent(in) :: value(2)  !! The value: (2)
       type(history_t), intent(out) :: history
       type(error_t), allocatable, intent(out) :: error
       integer :: n

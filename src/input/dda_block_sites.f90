@@ -17,46 +17,46 @@ module dda_block_sites
 
    !> Distance below which positions coincide, over the block size
    real(wp), parameter :: same = 1.0e-9_wp
-   !> Points per block and direction to select restraints from
+   !> Number of points per block and direction that restraints are compared with
    integer, parameter :: enough = 16
 
    !> Permitted distance of a point outside its block, over the block size
    real(wp), parameter :: rounded = 1.0e-4_wp
 
-   !> Where the blocks are, and the points that have been found on them
+   !> Positions of the blocks, and the points on them
    type :: site_t
-      !> Boxes of the blocks, as wide as rounded coordinates ask for
+      !> Boxes of the blocks, with a margin for rounded coordinates
       type(box_tree_t) :: tree
-      !> Their diagonals: (n_block) [m]
+      !> Diagonals of the blocks: (n_block) [m]
       real(wp), allocatable :: size_of(:)
-      !> Place of the tree of each block's edges, 0 where they are few: (n_block)
+      !> Index of each block's tree of edges, 0 for blocks with few edges: (n_block)
       integer, allocatable :: edges_of(:)
-      !> These trees, the first of them empty: (0:n)
+      !> Trees of edges, the first one empty: (0:n)
       type(box_tree_t), allocatable :: edges(:)
-      !> Number of held, loaded and measured points so far
+      !> Number of restrained, loaded and monitoring points
       integer :: n_held = 0, n_loaded = 0, n_measured = 0
-      !> The last held point of each block that tells something of its motion: (n_block)
+      !> Last restrained point of each block with independent information: (n_block)
       integer, allocatable :: last_held(:)
-      !> The one of the same block before: (n_held or more)
+      !> Previous such point of the same block: (n_held or more)
       integer, allocatable :: before(:)
    end type site_t
 
-   !> Corners from which a block has a tree of its edges
+   !> Number of corners above which a block has a tree of its edges
    integer, parameter :: few_corners = 32
 
 contains
 
-   !> Whether a point is to go where the points held already do not let it. A block moves and
-   !> strains linearly, so along each direction a point that is a mixture of held ones goes where
-   !> the mixture of their ways leads
+   !> Compare a prescribed displacement with those of the same block. A block moves and strains
+   !> linearly: along each axis, a linear combination of points has the same linear combination of
+   !> displacements
    pure subroutine compare_paths(held, other, more, size_of_block, contradicts, telling)
-      type(held_point_t), intent(in) :: held(:)  !! Points that are held: (n)
-      !> Those of the same block that have told something: (n)
+      type(held_point_t), intent(in) :: held(:)  !! Restrained points: (n)
+      !> Independent points of the same block: (n)
       integer, intent(in) :: other(:)
       type(held_point_t), intent(in) :: more
-      real(wp), intent(in) :: size_of_block  !! Size of its block [m]
-      logical, intent(out) :: contradicts    !! Whether it cannot go its way
-      !> Whether it tells something: those that follow need not be compared with others
+      real(wp), intent(in) :: size_of_block  !! Size of the block [m]
+      logical, intent(out) :: contradicts    !! True if the displacements are incompatible
+      !> True if the point is independent; only such points are compared with later ones
       logical, intent(out) :: telling
       integer, allocatable :: same_axis(:)
       real(wp), allocatable :: row(:, :), share(:)
@@ -83,14 +83,15 @@ contains
       end do
    end subroutine compare_paths
 
-   !> Whether a way is ever off the mixture of others; all are linear between their times
+   !> True if a displacement differs from the combination of others at any time; all are piecewise
+   !> linear
    pure logical function far_from(held, other, share, more, axis, tolerance)
       type(held_point_t), intent(in) :: held(:)
-      integer, intent(in) :: other(:)    !! Numbers of the others: (m)
-      real(wp), intent(in) :: share(:)   !! Their shares: (m)
+      integer, intent(in) :: other(:)    !! Numbers of the other points: (m)
+      real(wp), intent(in) :: share(:)   !! Their coefficients: (m)
       type(held_point_t), intent(in) :: more
       integer, intent(in) :: axis        !! Direction, 1 or 2 for x or y
-      real(wp), intent(in) :: tolerance  !! How far off it may be [m]
+      real(wp), intent(in) :: tolerance  !! Permitted difference [m]
       real(wp), allocatable :: time(:)
       real(wp) :: way(2), off
       integer :: i, k
@@ -112,7 +113,7 @@ contains
       end do
    end function far_from
 
-   !> Times of a history; none if nothing is given
+   !> Times of a history, none if it is unallocated
    pure function times_of(history) result(time)
       type(history_t), intent(in) :: history
       real(wp), allocatable :: time(:)  !! The times: (n) [s]
@@ -121,7 +122,7 @@ contains
       if (allocated(history%time)) time = history%time
    end function times_of
 
-   !> Know where the blocks are
+   !> Compute the positions of the blocks
    pure subroutine survey(plan, site)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(out) :: site
@@ -150,11 +151,11 @@ contains
       call new_box_tree(low, high, site%tree)
    end subroutine survey
 
-   !> Block that holds a point most deeply or has it on its outline; 0 if none does
+   !> Block that contains a point most deeply or on its outline; 0 if there is none
    pure integer function block_at(plan, site, point)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      real(wp), intent(in) :: point(2)  !! The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)  !! The point relative to the origin of the plan: (2) [m]
       real(wp) :: deepest, depth
       integer, allocatable :: near(:)
       integer :: i
@@ -170,13 +171,13 @@ contains
       end do
    end function block_at
 
-   !> Blocks that have a point on their outlines together with a block, as far as rounding tells
+   !> Other blocks with a point on their outlines, within tolerances
    pure function rivals_at(plan, site, point, block) result(rival)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
       real(wp), intent(in) :: point(2)
-      integer, intent(in) :: block      !! The block, which holds it
-      integer, allocatable :: rival(:)  !! The others: (n)
+      integer, intent(in) :: block      !! The block of the point
+      integer, allocatable :: rival(:)  !! The other blocks: (n)
       integer, allocatable :: near(:)
       real(wp) :: depth, margin
       integer :: i, n
@@ -195,7 +196,7 @@ contains
       allocate (rival, source=near(:n))
    end function rivals_at
 
-   !> How deep a point lies in a block, negative outside [m]
+   !> Depth of a point inside a block, negative outside [m]
    pure real(wp) function depth_of(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
@@ -206,12 +207,12 @@ contains
          & plan%first_vertex(block + 1) - 1), point, site%edges(site%edges_of(block)))
    end function depth_of
 
-   !> Add a held point, unless others hold the block in its way
+   !> Add a restrained point, if it is compatible with the others of its block
    pure subroutine add_held(held, plan, site, error)
       type(held_point_t), intent(in) :: held
       type(block_plan_t), intent(inout) :: plan
       type(site_t), intent(inout) :: site
-      !> A fixed block that is to move, or a point that cannot go its way
+      !> Allocated for a moving fixed block, or an incompatible point
       type(error_t), allocatable, intent(out) :: error
       logical :: contradicts, telling
 
@@ -236,11 +237,11 @@ contains
       site%last_held(held%block) = site%n_held
    end subroutine add_held
 
-   !> Points that tell all that is known of how a block is held
+   !> Independent restrained points of a block
    pure function held_before(site, block) result(list)
       type(site_t), intent(in) :: site
       integer, intent(in) :: block
-      integer, allocatable :: list(:)  !! Their numbers: (n)
+      integer, allocatable :: list(:)  !! Numbers of the points: (n)
       integer :: i, n
 
       n = 0
@@ -257,9 +258,9 @@ contains
       end do
    end function held_before
 
-   !> Give the list of held points another length
+   !> Change the length of the list of restrained points
    pure subroutine close_held(n, list)
-      integer, intent(in) :: n                                   !! The length
+      integer, intent(in) :: n                                   !! New length
       type(held_point_t), allocatable, intent(inout) :: list(:)  !! The list
       type(held_point_t), allocatable :: other(:)
 

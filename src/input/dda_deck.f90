@@ -28,7 +28,7 @@ module dda_deck
    public :: follow_joints, put_number, put_text
    public :: split_name, find_parameter, parameter_name, group_index, key_index
 
-   !> A key, or one item of its list
+   !> A key, or one item of a list
    type :: parameter_t
       integer :: key = 0   !! Place in the registry
       integer :: item = 0  !! Item of a list, counted from 1; 0 for a single value
@@ -36,52 +36,52 @@ module dda_deck
 
    !> One &sweep
    type :: deck_sweep_t
-      !> What it varies
+      !> The swept parameter
       type(parameter_t) :: parameter
-      !> Its name, such as friction_deg or joints_deg(2)
+      !> Name of the parameter, such as friction_deg or joints_deg(2)
       character(len=word_length) :: name = ""
-      !> Where the values were written
+      !> Place of the values
       type(deck_place_t) :: place
-      !> Whether it advances together with the sweep before it
+      !> True if it advances together with the previous sweep
       logical :: linked = .false.
-      !> Numbers that the parameter takes; empty if it takes words: (n)
+      !> Numbers of the parameter; empty if it takes words: (n)
       real(wp), allocatable :: numbers(:)
-      !> Words that the parameter takes; empty if it takes numbers: (n)
+      !> Words of the parameter; empty if it takes numbers: (n)
       character(len=word_length), allocatable :: texts(:)
    end type deck_sweep_t
 
-   !> A record of the ground's motion that the deck names
+   !> A record of ground motion named in the deck
    type :: ground_record_t
-      character(len=:), allocatable :: name  !! Its name in the deck
-      type(history_t) :: motion              !! The motion as the file has it
+      character(len=:), allocatable :: name  !! Name of the record in the deck
+      type(history_t) :: motion              !! The motion in the units of the file
    end type ground_record_t
 
-   !> A deck: what it says, as written in the order of the registry, and what its files hold
+   !> A deck: values of all keys in the order of the registry, and contents of its files
    type :: deck_t
       !> Name of the file
       character(len=:), allocatable :: file
-      !> Values, by the names of dda_key_names: (0:n), 0 stands for a key that does not exist
+      !> Values, indexed by dda_key_names: (0:n); 0 is a key that does not exist
       type(deck_value_t), allocatable :: value(:)
-      !> Where each group begins, by its name likewise; line 0 if it is not there: (n)
+      !> Place of each group, likewise; line 0 if it is not given: (n)
       type(deck_place_t), allocatable :: group(:)
-      !> What is searched; key 0 if nothing is
+      !> Searched parameter; key 0 if there is no search
       type(parameter_t) :: searched
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweeps(:)
-      !> Lines of the file that scene%geometry names, for kind = 'lines' alone, until they are cut
+      !> Lines of the file scene%geometry for kind = 'lines', until they are cut
       type(line_model_t), allocatable :: lines
-      !> Blocks that were cut from them
+      !> Blocks cut from them
       type(cut_model_t), allocatable :: cut
-      !> What the file that scene%analysis names says; unallocated if none is named
+      !> Contents of the file scene%analysis; unallocated if there is none
       type(limerick_analysis_t), allocatable :: file_analysis
-      !> Lengths and check sums of all files that the deck names, each with a blank before it, for a
-      !> record of the deck; unallocated without files
+      !> Identifications of all files named in the deck, each preceded by a blank; unallocated
+      !> without files
       character(len=:), allocatable :: file_marks
-      !> What those files hold that is not read
+      !> Warnings about ignored contents of these files
       type(warnings_t) :: warnings
-      !> The blocks of that file
+      !> Blocks of the file of blocks
       type(block_plan_t) :: plan
-      !> Records of the ground's motion; unallocated if none is named: (n)
+      !> Records of ground motion; unallocated if there are none: (n)
       type(ground_record_t), allocatable :: ground_record(:)
    end type deck_t
 
@@ -102,10 +102,10 @@ contains
       group_index = findloc(deck_group%name == name, .true., dim=1)
    end function group_index
 
-   !> A deck of defaults
+   !> Make a deck with defaults
    pure subroutine new_deck(deck, file)
       type(deck_t), intent(out) :: deck
-      character(len=*), intent(in) :: file  !! Name that errors will show
+      character(len=*), intent(in) :: file  !! Name for messages
       integer :: i
 
       deck%file = file
@@ -117,7 +117,7 @@ contains
       end do
    end subroutine new_deck
 
-   !> Whether a deck has a group
+   !> True if a deck has a group
    pure logical function has_group(deck, group)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: group  !! Place of the group in the registry
@@ -125,8 +125,8 @@ contains
       has_group = deck%group(group)%line > 0
    end function has_group
 
-   !> Whether velocities are kept from step to step: asked by the mode, and in that of the original
-   !> by its key, or else by the analysis file
+   !> True if velocities are kept from step to step: in mode 'dynamic', or in mode 'limerick' by its
+   !> key or else by the analysis file
    pure logical function keeps_velocities(deck)
       type(deck_t), intent(in) :: deck
 
@@ -137,8 +137,8 @@ contains
          & keeps_velocities = deck%file_analysis%dynamic
    end function keeps_velocities
 
-   !> What the blocks of a case are made from, the word of scene%kind: but for arches that are more
-   !> than a circular ring of voussoirs, which are a shape
+   !> Source of the blocks of a case: scene%kind, but `shape` for arches other than a circular ring
+   !> of voussoirs
    pure function source_of(deck) result(kind)
       type(deck_t), intent(in) :: deck
       character(len=word_length) :: kind  !! arch, shape, lines or blocks
@@ -164,7 +164,7 @@ contains
       if (shaped) kind = "shape"
    end function source_of
 
-   !> Geometry of a case; in the mode of the original blocks always move
+   !> Geometry of a case; the default of mode 'limerick' is 'current'
    pure function geometry_of(deck) result(word)
       type(deck_t), intent(in) :: deck
       character(len=word_length) :: word  !! reference or current
@@ -174,16 +174,16 @@ contains
          & .and. .not. deck%value(analysis_geometry)%given) word = "current"
    end function geometry_of
 
-   !> The number of a key, or another one where it is not given
+   !> Value of a key, or another number if it is not given
    pure real(wp) function number_or(deck, key, other)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key     !! Place of the key in the registry
-      real(wp), intent(in) :: other  !! The other number
+      real(wp), intent(in) :: other  !! Value if the key is not given
 
       number_or = merge(deck%value(key)%number, other, deck%value(key)%given)
    end function number_or
 
-   !> Where a key was given, or else its group: line 0 if neither was given
+   !> Place of a key, else that of its group; line 0 if neither is given
    pure type(deck_place_t) function place_of(deck, key) result(place)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key  !! Place of the key in the registry
@@ -192,10 +192,10 @@ contains
       if (place%line == 0) place = deck%group(group_index(deck_key(key)%group))
    end function place_of
 
-   !> Make an error that names the deck and the line, or --set and its number
+   !> Set an error with deck and line, or with --set and its number
    pure subroutine deck_error(error, message, deck, place)
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in) :: message  !! What was wanted and what was found
+      character(len=*), intent(in) :: message  !! Expected and actual value
       type(deck_t), intent(in) :: deck
       type(deck_place_t), intent(in) :: place
 
@@ -206,7 +206,7 @@ contains
       end if
    end subroutine deck_error
 
-   !> Make an error that names where a key was given, or else its group
+   !> Set an error at the place of a key, or else of its group
    pure subroutine key_error(error, message, deck, key)
       type(error_t), allocatable, intent(out) :: error
       character(len=*), intent(in) :: message
@@ -216,10 +216,10 @@ contains
       call deck_error(error, message, deck, place_of(deck, key))
    end subroutine key_error
 
-   !> Refuse what a key says where it is wrong, unless something was refused before
+   !> Set an error if a condition holds, unless there is one already
    pure subroutine refuse(is_wrong, message, deck, key, error)
-      logical, intent(in) :: is_wrong          !! Whether it is
-      character(len=*), intent(in) :: message  !! What was wanted and what was found
+      logical, intent(in) :: is_wrong          !! The condition
+      character(len=*), intent(in) :: message  !! Expected and actual value
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key               !! Place of the key in the registry
       type(error_t), allocatable, intent(inout) :: error
@@ -227,26 +227,26 @@ contains
       if (is_wrong .and. .not. allocated(error)) call key_error(error, message, deck, key)
    end subroutine refuse
 
-   !> Remember what a file that a deck names holds
+   !> Add the identification of a file named in the deck
    pure subroutine add_file_mark(mark, deck)
-      character(len=*), intent(in) :: mark  !! Mark of the file
+      character(len=*), intent(in) :: mark  !! Identification of the file
       type(deck_t), intent(inout) :: deck
 
       if (.not. allocated(deck%file_marks)) deck%file_marks = ""
       deck%file_marks = deck%file_marks//" "//mark
    end subroutine add_file_mark
 
-   !> Name of a file that a deck names: beside the deck unless it begins with a slash
+   !> Path of a file named in the deck: relative to the deck unless it begins with a slash
    pure function file_beside(deck, name) result(path)
       type(deck_t), intent(in) :: deck
       character(len=*), intent(in) :: name   !! The name in the deck
-      character(len=:), allocatable :: path  !! The name for all
+      character(len=:), allocatable :: path  !! Path of the file
 
       path = name
       if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
    end function file_beside
 
-   !> Put a number into a key or into one item of its list
+   !> Set a key, or one item of its list, to a number
    pure subroutine put_number(deck, parameter, number, place, error)
       type(deck_t), intent(inout) :: deck
       !> The key, with the item if it is a list
@@ -254,7 +254,7 @@ contains
       !> The number in the unit of the registry
       real(wp), intent(in) :: number
       type(deck_place_t), intent(in) :: place
-      !> Not a number's key, out of range, or an item that the list lacks
+      !> Allocated for a key without numbers, a value out of range, or a missing item
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
@@ -263,13 +263,13 @@ contains
       call close_value(deck, parameter%key, problem, place, error)
    end subroutine put_number
 
-   !> Put a text, a word or the text of a flag into a key
+   !> Set a key to a text, a word or a flag
    pure subroutine put_text(deck, parameter, text, place, error)
       type(deck_t), intent(inout) :: deck
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: text  !! The value, without quotes
       type(deck_place_t), intent(in) :: place
-      !> Not a text's key, or a word that it does not know
+      !> Allocated for a key without texts, or an unknown word
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
@@ -277,11 +277,11 @@ contains
       call close_value(deck, parameter%key, problem, place, error)
    end subroutine put_text
 
-   !> Say where a key was given, or what kept it from its value
+   !> Record the place of a key, or set the error
    pure subroutine close_value(deck, key, problem, place, error)
       type(deck_t), intent(inout) :: deck
       integer, intent(in) :: key               !! Place of the key in the registry
-      character(len=*), intent(in) :: problem  !! Why it has no value; empty if it has
+      character(len=*), intent(in) :: problem  !! The problem; empty if there is none
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
 
@@ -293,7 +293,7 @@ contains
       end if
    end subroutine close_value
 
-   !> Half angle and number of voussoirs follow joints_deg where they are not given
+   !> Set half angle and number of voussoirs from joints_deg, unless they are given
    pure subroutine follow_joints(deck)
       type(deck_t), intent(inout) :: deck
       integer :: n
@@ -314,7 +314,7 @@ contains
       character(len=:), allocatable, intent(out) :: group
       character(len=:), allocatable, intent(out) :: key  !! Key, lower case
       integer, intent(out) :: item                       !! Item of a list; 0 if the name has none
-      !> Whether what stands in parentheses, if they are there, is a number from 1
+      !> False if parentheses contain anything other than a number from 1 on
       logical, intent(out) :: ok
       integer :: percent, open
 
@@ -332,12 +332,12 @@ contains
       key = trim(key(:open - 1))
    end subroutine split_name
 
-   !> Find a key that may vary by its name
+   !> Find a key that may vary, by its name
    pure subroutine find_parameter(name, parameter, problem)
       !> Name of the key, with or without its group: friction_deg, joints_deg(2), arch%radius
       character(len=*), intent(in) :: name
       type(parameter_t), intent(out) :: parameter
-      !> Why there is none; empty if there is one
+      !> The problem; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       character(len=:), allocatable :: group, key
       logical :: ok, fits(size(deck_key))
@@ -368,7 +368,7 @@ contains
          "parentheses"
    end subroutine find_parameter
 
-   !> Name of a parameter as a column is headed
+   !> Name of a parameter in a header
    pure function parameter_name(parameter) result(name)
       type(parameter_t), intent(in) :: parameter
       !> Key, with its group only if the key alone would be ambiguous, and with its item
@@ -381,7 +381,7 @@ contains
       alike = 0
       do i = 1, size(deck_key)
          if (.not. (deck_key(i)%varies .and. deck_key(i)%bare)) cycle
-         ! the first letter tells most keys apart, and a comparison of texts is a call
+         ! compare first letters first, because comparing texts is slow
          if (deck_key(i)%name(1:1) /= name(1:1)) cycle
          if (deck_key(i)%name == key%name) alike = alike + 1
       end do

@@ -14,7 +14,7 @@ submodule (dda_read_deck) dda_deck_check
 
 contains
 
-   !> Read all of them
+   !> Read all ground motion records of a deck
    module procedure read_ground_records
       integer :: i, s
 
@@ -29,10 +29,10 @@ contains
       end do
    end procedure read_ground_records
 
-   !> Read one of them, unless it is there already
+   !> Read one record, unless it is present
    subroutine add_record(name, place, deck, error)
-      character(len=*), intent(in) :: name     !! Its name in the deck
-      type(deck_place_t), intent(in) :: place  !! Where the deck names it
+      character(len=*), intent(in) :: name     !! Name of the record in the deck
+      type(deck_place_t), intent(in) :: place  !! Place of the name
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: mark, message
@@ -64,8 +64,8 @@ contains
       call add_file_mark(mark, deck)
    end subroutine add_record
 
-   !> Part ground%columns into the columns of time, x and y, as a record is parted: at semicolons,
-   !> or else at commas, or else at blanks
+   !> Split ground%columns into the columns of time, x and y: at semicolons, else at commas, else at
+   !> blanks
    pure subroutine split_columns(deck, column, error)
       type(deck_t), intent(in) :: deck
       character(len=column_size), intent(out) :: column(3)  !! The columns; 0 for none: (3)
@@ -88,7 +88,7 @@ contains
          & deck%value(ground_columns)%place)
    end subroutine split_columns
 
-   !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
+   !> Read the files of a deck with kind = 'lines'; other decks are unchanged
    module procedure read_lines
       character(len=:), allocatable :: file
 
@@ -109,7 +109,7 @@ contains
       call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
    end procedure read_lines
 
-   !> An error without a line speaks of a file that cannot be read
+   !> Add the place of a key to an error about a file that cannot be read
    module procedure name_key
       character(len=:), allocatable :: message
 
@@ -119,7 +119,7 @@ contains
       call deck_error(error, message, deck, deck%value(key)%place)
    end procedure name_key
 
-   !> Check a deck and the cases of its sweeps, before anything is computed
+   !> Check a deck and all cases of its sweeps before any computation
    module procedure check_deck
       integer :: s
 
@@ -131,7 +131,7 @@ contains
       if (.not. allocated(error)) call check_cases(deck, cases, error)
    end procedure check_deck
 
-   !> Check that the deck says where its blocks come from, once
+   !> Check that the source of the blocks is given exactly once
    pure subroutine check_kind(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -158,7 +158,7 @@ contains
       end if
    end subroutine check_kind
 
-   !> Check what is searched
+   !> Check the search
    pure subroutine check_search(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -185,7 +185,7 @@ contains
       end if
    end subroutine check_search
 
-   !> Check one sweep against those before it and against the search
+   !> Check one sweep against the previous ones and the search
    pure subroutine check_sweep(deck, s, error)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: s  !! Number of the sweep
@@ -215,11 +215,11 @@ contains
       end associate
    end subroutine check_sweep
 
-   !> Check that a linked sweep is as long as the one before it
+   !> Check that a linked sweep has the length of the previous one
    pure subroutine check_link(deck, s, problem)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: s
-      !> What is wrong; left as it was if nothing is
+      !> The problem; unchanged if there is none
       character(len=:), allocatable, intent(inout) :: problem
       integer :: here, before
 
@@ -233,7 +233,7 @@ contains
          to_text(before)//", got "//to_text(here)//"; make them equal"
    end subroutine check_link
 
-   !> Check that varying a parameter has an effect and does not undo a --set
+   !> Check that varying a parameter has an effect and does not override a --set
    pure subroutine check_varied(deck, parameter, how, place, error)
       type(deck_t), intent(in) :: deck
       type(parameter_t), intent(in) :: parameter
@@ -253,7 +253,7 @@ contains
       end if
    end subroutine check_varied
 
-   !> Why a key changes nothing beside the others of a deck, and what to do; empty if it may
+   !> Reason why varying a key has no effect, and the remedy; empty if it has one
    pure function reason_of_no_effect(deck, varied) result(why)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: varied  !! Place of the key in the registry
@@ -285,7 +285,7 @@ contains
       end if
    end function reason_of_no_effect
 
-   !> Whether a key is given or varied
+   !> True if a key is given or varied
    pure logical function is_known(deck, key)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key  !! Place of the key in the registry

@@ -24,10 +24,10 @@ module dda_deck_check_case
 
 contains
 
-   !> Check what the keys of one case must be to one another
+   !> Check the keys of one case against each other
    pure subroutine check_case(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! The first thing that is wrong
+      type(error_t), allocatable, intent(out) :: error  !! The first problem
       integer :: unknowns
 
       call check_model(deck, error)
@@ -36,7 +36,7 @@ contains
       if (.not. allocated(error)) call check_ground(deck, error)
       if (.not. allocated(error)) call check_strength(deck, error)
       if (allocated(error)) return
-      ! files of blocks have loads of their own
+      ! files of blocks have their own loads
       if (.not. keeps_velocities(deck) .and. .not. (deck%value(load_gravity)%number > 0.0_wp &
          & .or. deck%value(material_unit_weight)%given .or. deck%value(scene_analysis)%given &
          & .or. deck%value(scene_kind)%text == "blocks" &
@@ -52,10 +52,10 @@ contains
       if (.not. allocated(error) .and. deck%searched%key > 0) call check_bracket(deck, error)
    end subroutine check_case
 
-   !> Check that there is such a model, and that the parameter can be searched in it
+   !> Check that the model exists and that the parameter can be searched in it
    pure subroutine check_model(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! What the table of models does not have
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the model does not exist
       character(len=:), allocatable :: mode, kind, problem
 
       mode = deck%value(analysis_mode)%text
@@ -75,7 +75,7 @@ contains
          "; 'dda help models' lists them", deck, search_parameter)
    end subroutine check_model
 
-   !> Check that a case has what its keys require, unless they have their defaults
+   !> Check that a case has the keys that others require, except for keys with default values
    pure subroutine check_needs(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -93,7 +93,7 @@ contains
       end do
    end subroutine check_needs
 
-   !> Whether a value is given and not the default
+   !> True if a value is given and differs from the default
    pure logical function acts(value, key)
       type(deck_value_t), intent(in) :: value
       type(key_t), intent(in) :: key
@@ -106,11 +106,11 @@ contains
       if (allocated(value%text)) acts = value%text /= default%text
    end function acts
 
-   !> Check that a case has one thing that a key requires
+   !> Check one requirement of a key
    pure subroutine check_need(deck, key, need, error)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key            !! Place of the key in the registry
-      character(len=*), intent(in) :: need  !! What it requires: one of key_t%needs
+      character(len=*), intent(in) :: need  !! The requirement: one of key_t%needs
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: group, found, name
       integer :: other
@@ -153,7 +153,7 @@ contains
          later(deck, arch_half_angle_deg, arch_voussoirs))
    end subroutine check_shape
 
-   !> Check joints_deg, and what is given beside it
+   !> Check joints_deg and the keys that depend on it
    pure subroutine check_joints(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -189,7 +189,7 @@ contains
       end if
    end subroutine check_joints
 
-   !> Check that half_angle_deg, where given, is where the joints end
+   !> Check that half_angle_deg, if given, is the angle of the last joint
    pure subroutine check_half_angle(deck, error)
       !> The deck of one case, with two angles in joints_deg or more
       type(deck_t), intent(in) :: deck
@@ -207,7 +207,7 @@ contains
          later(deck, arch_joints_deg, arch_half_angle_deg))
    end subroutine check_half_angle
 
-   !> Where the later one of two keys of &arch was given; a --set is later than the deck
+   !> Place of the later one of two keys of &arch; a --set is later than the deck
    pure type(deck_place_t) function later(deck, a, b) result(place)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: a, b  !! Places of the keys in the registry
@@ -238,7 +238,7 @@ contains
       if (.not. allocated(error)) call check_end(deck, search_high, error)
    end subroutine check_bracket
 
-   !> Check that the parameter can take one end of the search
+   !> Check that the parameter can have the value of one end of the search
    pure subroutine check_end(deck, key, error)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key  !! Place of the key of that end in the registry
@@ -260,7 +260,7 @@ contains
       end associate
    end subroutine check_end
 
-   !> Where the search for a parameter begins and ends
+   !> Ends of the search for a parameter
    pure subroutine search_bracket(deck, low, high)
       type(deck_t), intent(in) :: deck
       real(wp), intent(out) :: low   !! Lower end; -huge if there is none

@@ -23,10 +23,10 @@ module dda_deck_check_loads
 
 contains
 
-   !> Check the motion of the ground in one case
+   !> Check the ground motion of one case
    pure subroutine check_ground(deck, error)
       type(deck_t), intent(in) :: deck
-      !> Keys that do not go together, or a mode that has no use for them
+      !> Allocated for contradicting keys, or a mode without ground motion
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
@@ -56,7 +56,7 @@ contains
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_ground
 
-   !> The first key of &ground that is searched, given, or swept; 0 if none is
+   !> The first key of &ground that is searched, given or swept; 0 if there is none
    pure integer function ground_key(deck)
       type(deck_t), intent(in) :: deck
 
@@ -67,7 +67,7 @@ contains
       ground_key = findloc(deck_key%group == "ground" .and. deck%value(1:)%given, .true., dim=1)
    end function ground_key
 
-   !> Whether a key is given, or searched
+   !> True if a key is given or searched
    pure logical function gives(deck, key)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key  !! Place of the key in the registry
@@ -75,12 +75,12 @@ contains
       gives = deck%value(key)%given .or. deck%searched%key == key
    end function gives
 
-   !> Check what a pulse or a record needs, and what it has no use for
+   !> Check required keys of a pulse or a record, and keys without effect
    pure subroutine check_keys(deck, problem, key)
       type(deck_t), intent(in) :: deck
-      !> What is wrong; left as it was if nothing is
+      !> The problem; unchanged if there is none
       character(len=:), allocatable, intent(inout) :: problem
-      integer, intent(inout) :: key  !! The key at fault, 0 if one is missing
+      integer, intent(inout) :: key  !! Key of the problem, 0 for a missing key
       logical, dimension(ground_amplitude:ground_unit) :: needed, fits
       character(len=:), allocatable :: what, name
       integer :: i
@@ -114,11 +114,11 @@ contains
       end do
    end subroutine check_keys
 
-   !> Check a deck against its file of blocks: the ground has one motion, the point that means
-   !> collapse is measured, and strength goes by slip only where slip is followed
+   !> Check a deck against its file of blocks: one ground motion, a monitoring point for collapse,
+   !> and loss of strength by slip only if slip is computed
    pure subroutine check_block_file(deck, error)
       type(deck_t), intent(in) :: deck
-      !> No motion of the ground or two, or no such point
+      !> Allocated for missing or contradicting items
       type(error_t), allocatable, intent(out) :: error
       logical :: gives
       integer :: measured, point, s
@@ -148,7 +148,7 @@ contains
       end if
    end subroutine check_block_file
 
-   !> Check that joints may lose strength by slip where the file says so
+   !> Check that joints may lose strength by slip, if the file has such joints
    pure subroutine check_wear(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(inout) :: error
@@ -167,7 +167,7 @@ contains
       end do
    end subroutine check_wear
 
-   !> Check what a search in time needs
+   !> Check the keys of a dynamic search
    pure subroutine check_search_in_time(deck, error)
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -189,7 +189,7 @@ contains
    !> Check the live loads of one case
    pure subroutine check_live(deck, error)
       type(deck_t), intent(in) :: deck
-      !> Lists that do not go together, or what has no effect
+      !> Allocated for lists of different lengths, or keys without effect
       type(error_t), allocatable, intent(out) :: error
       logical :: pushed
 
@@ -280,7 +280,7 @@ contains
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_vehicle
 
-   !> Group of what is searched; empty if nothing is
+   !> Group of the searched parameter; empty if there is none
    pure function group_of(deck) result(group)
       type(deck_t), intent(in) :: deck
       character(len=len(deck_key%group)) :: group  !! Name of the group
@@ -289,7 +289,7 @@ contains
       if (deck%searched%key > 0) group = deck_key(deck%searched%key)%group
    end function group_of
 
-   !> Whether a force of &live is not 0
+   !> True if any force of &live is nonzero
    pure logical function has_forces(deck)
       type(deck_t), intent(in) :: deck
 
@@ -297,10 +297,11 @@ contains
          & .or. any(abs(deck%value(live_fy)%numbers) > 0.0_wp)
    end function has_forces
 
-   !> Check that limit analysis decides blocks that may be crushed: nothing else knows it
+   !> Check that limit analysis is used for blocks that may be crushed; no other method includes
+   !> crushing
    pure subroutine check_strength(deck, error)
       type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error  !! What it cannot be beside
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for contradicting keys
       character(len=*), parameter :: needs = "material%compressive_strength needs "
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
@@ -332,7 +333,7 @@ contains
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_strength
 
-   !> Whether joints have strength of their own
+   !> True if joints have strength other than friction
    pure logical function has_bond(deck)
       type(deck_t), intent(in) :: deck
       integer :: i

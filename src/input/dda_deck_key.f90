@@ -16,7 +16,7 @@ module dda_deck_key
    !> Maximum number of items in a list
    integer, parameter :: max_items = 100000
 
-   !> What kind of value a key takes
+   !> Kinds of values
    type :: key_kind_enum
       integer :: number = 1   !! One real number
       integer :: whole = 2    !! One whole number
@@ -27,7 +27,7 @@ module dda_deck_key
       integer :: texts = 7    !! A list of words
    end type key_kind_enum
 
-   !> The kinds of value by name
+   !> Names of the kinds
    type(key_kind_enum), parameter :: key_kind = key_kind_enum()
 
    !> One key of a deck
@@ -35,31 +35,31 @@ module dda_deck_key
       character(len=16) :: group = ""          !! Group that the key belongs to
       character(len=name_length) :: name = ""  !! Name of the key
       integer :: kind = key_kind%number        !! One of key_kind
-      character(len=8) :: unit = ""            !! Unit of the value; empty if it has none
-      !> Default as one would write it in a deck; empty if there is none
+      character(len=8) :: unit = ""            !! Unit of the value; empty if none
+      !> Default as written in a deck; empty if none
       character(len=24) :: default = ""
-      character(len=80) :: without = ""  !! What happens without the key where it has no default
-      !> Smallest and largest value that is allowed: (2)
+      character(len=80) :: without = ""  !! Effect of omitting a key without default
+      !> Smallest and largest permitted value: (2)
       real(wp) :: within(2) = [-huge(1.0_wp), huge(1.0_wp)]
-      real(wp) :: above = -huge(1.0_wp)  !! Bound of these that the value must exceed
-      real(wp) :: below = huge(1.0_wp)   !! Bound of these that the value must stay below
-      character(len=72) :: words = ""    !! Words that are allowed, separated by blanks
-      !> Whether &sweep may name the key; &search may, if it is also a real number
+      real(wp) :: above = -huge(1.0_wp)  !! Lower bound, excluded
+      real(wp) :: below = huge(1.0_wp)   !! Upper bound, excluded
+      character(len=72) :: words = ""    !! Permitted words, separated by blanks
+      !> True if &sweep may vary the key; &search may too, if it is a real number
       logical :: varies = .true.
-      !> Whether its name alone means it where groups share the name
+      !> True if the name without group refers to this key, even if other groups have the same name
       logical :: bare = .true.
-      !> What it requires, separated by a comma and a blank: KEY = 'WORD' or 'WORD', KEY for one
-      !> that must be given, no KEY for one that must not
+      !> Requirements, separated by a comma and a blank: KEY = 'WORD' or 'WORD', KEY if it must be
+      !> given, no KEY if it must not
       character(len=120) :: needs = ""
-      real(wp) :: search_low = -huge(1.0_wp)  !! Lower end of a search that gives none
-      real(wp) :: search_high = huge(1.0_wp)  !! Upper end of a search that gives none
-      character(len=180) :: meaning = ""      !! What the key means, in one sentence
+      real(wp) :: search_low = -huge(1.0_wp)  !! Default lower end of a search
+      real(wp) :: search_high = huge(1.0_wp)  !! Default upper end of a search
+      character(len=180) :: meaning = ""      !! Meaning of the key, in one sentence
    end type key_t
 
    !> One group of a deck
    type :: group_t
       character(len=16) :: name = ""     !! Name of the group
-      character(len=120) :: meaning = ""  !! What the group describes
+      character(len=120) :: meaning = ""  !! Meaning of the group
    end type group_t
 
    !> Maximum length of words compared for suggestions [characters]
@@ -67,7 +67,7 @@ module dda_deck_key
 
 contains
 
-   !> Whether a number is one that a key takes
+   !> True if a number is in the range of a key
    elemental logical function in_range(key, number)
       type(key_t), intent(in) :: key
       real(wp), intent(in) :: number  !! The number in the unit of the key
@@ -78,7 +78,7 @@ contains
          & in_range = .not. abs(number - anint(number)) > 0.0_wp
    end function in_range
 
-   !> What a key takes: kind of value, unit and range
+   !> Description of valid values of a key: kind, unit and range
    pure function wanted(key) result(text)
       type(key_t), intent(in) :: key
       character(len=:), allocatable :: text  !! Words such as: a number [m] from 1e-9 to 1e9
@@ -104,7 +104,7 @@ contains
    !> Unit in brackets
    pure function unit_text(key) result(text)
       type(key_t), intent(in) :: key
-      character(len=:), allocatable :: text  !! The unit after a blank; empty if there is none
+      character(len=:), allocatable :: text  !! Unit after a blank; empty if there is none
 
       text = ""
       if (len_trim(key%unit) > 0) text = " ["//trim(key%unit)//"]"
@@ -113,7 +113,7 @@ contains
    !> Range of a number
    pure function range_text(key) result(text)
       type(key_t), intent(in) :: key
-      !> The range after a blank, such as: from 0 to 90; empty if all numbers will do
+      !> Range after a blank, such as: from 0 to 90; empty if unlimited
       character(len=:), allocatable :: text
       real(wp), parameter :: none = huge(1.0_wp)
       character(len=:), allocatable :: comma
@@ -132,8 +132,8 @@ contains
 
    !> A list of words, each in quotes
    pure function quoted_words(words) result(text)
-      character(len=*), intent(in) :: words  !! Words parted by one blank
-      character(len=:), allocatable :: text  !! Such as: 'stress', 'strain' or 'shear'
+      character(len=*), intent(in) :: words  !! Words separated by one blank
+      character(len=:), allocatable :: text  !! Text such as: 'stress', 'strain' or 'shear'
       character(len=word_length), allocatable :: list(:)
       integer :: i
 
@@ -144,9 +144,9 @@ contains
       end do
    end function quoted_words
 
-   !> Words one by one
+   !> Words of a list
    pure function listed_words(words) result(list)
-      character(len=*), intent(in) :: words               !! Words parted by one blank
+      character(len=*), intent(in) :: words               !! Words separated by one blank
       character(len=word_length), allocatable :: list(:)  !! The words: (n)
       integer :: i
 
@@ -154,9 +154,9 @@ contains
       read (words, *) list
    end function listed_words
 
-   !> Whether a list of words holds a word, whatever its case
+   !> True if a list contains a word, in upper or lower case
    pure logical function has_word(words, text)
-      character(len=*), intent(in) :: words  !! Words parted by one blank
+      character(len=*), intent(in) :: words  !! Words separated by one blank
       character(len=*), intent(in) :: text   !! The word
 
       has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
@@ -166,29 +166,29 @@ contains
    !> Name of a key with its group
    pure function full_name(key) result(name)
       type(key_t), intent(in) :: key
-      character(len=:), allocatable :: name  !! Such as: arch%radius
+      character(len=:), allocatable :: name  !! Text such as: arch%radius
 
       name = trim(key%group)//"%"//trim(key%name)
    end function full_name
 
-   !> The group that was meant
+   !> Suggestion for an unknown group
    pure function near_group(name, groups, topic) result(text)
-      character(len=*), intent(in) :: name    !! Name that is no group
+      character(len=*), intent(in) :: name    !! The unknown name
       type(group_t), intent(in) :: groups(:)  !! Groups of the registry
-      character(len=*), intent(in) :: topic   !! Page of the help that lists them
-      character(len=:), allocatable :: text   !! Sentence that names the nearest group
+      character(len=*), intent(in) :: topic   !! Page of the help with the list of groups
+      character(len=:), allocatable :: text   !! Sentence with the nearest group
 
       text = "the nearest known group is &"//nearest_word(name, groups%name)//"; 'dda help " &
          & //topic//"' lists all"
    end function near_group
 
-   !> The key that was meant
+   !> Suggestion for an unknown key
    pure function near_key(name, group, keys, topic) result(text)
-      character(len=*), intent(in) :: name   !! Name that is no key of the group
-      character(len=*), intent(in) :: group  !! Name of the group; empty if any group will do
+      character(len=*), intent(in) :: name   !! The unknown name
+      character(len=*), intent(in) :: group  !! Name of the group; empty for any group
       type(key_t), intent(in) :: keys(:)     !! Keys of the registry
-      character(len=*), intent(in) :: topic  !! Page of the help that lists them
-      !> Sentence that names the group of that key, or the nearest key
+      character(len=*), intent(in) :: topic  !! Page of the help with the list of keys
+      !> Sentence with the group of the key, or the nearest key
       character(len=:), allocatable :: text
       logical :: fits(size(keys))
       integer :: i
@@ -203,22 +203,22 @@ contains
          & //"; 'dda help "//topic//"' lists all"
    end function near_key
 
-   !> The word that was meant, of those that a key takes
+   !> Suggestion for an invalid word of a key
    pure function near_word(key, text) result(near)
       type(key_t), intent(in) :: key
-      character(len=*), intent(in) :: text  !! Word that the key does not take
-      !> Words after a colon that name the nearest one; empty for a key that takes no words
+      character(len=*), intent(in) :: text  !! The invalid word
+      !> Words after a colon with the nearest word; empty for a key without words
       character(len=:), allocatable :: near
 
       near = ""
       if (len_trim(key%words) > 0) near = near_one(lower_case(trim(text)), listed_words(key%words))
    end function near_word
 
-   !> A word of a list that is much like another
+   !> Suggestion from a list of words
    pure function near_one(word, list) result(near)
-      character(len=*), intent(in) :: word     !! Word that is not on the list
+      character(len=*), intent(in) :: word     !! The word, which is not in the list
       character(len=*), intent(in) :: list(:)  !! Words to choose from: (n)
-      !> Words after a colon that name it; empty if more than half of the letters differ
+      !> Words after a colon with the suggestion; empty if more than half of the letters differ
       character(len=:), allocatable :: near
 
       near = nearest_word(word, list)
@@ -229,7 +229,7 @@ contains
       end if
    end function near_one
 
-   !> What a deck may do instead of giving a key a value that it can take
+   !> Advice for a key with an invalid value
    pure function or_leave_out(key) result(advice)
       type(key_t), intent(in) :: key
       character(len=:), allocatable :: advice  !! Words after a semicolon
@@ -243,14 +243,14 @@ contains
       end if
    end function or_leave_out
 
-   !> Whether a deck that has the group needs the key, at least in some cases
+   !> True if a key is required in its group, at least in some cases
    pure logical function is_required(key)
       type(key_t), intent(in) :: key
 
       is_required = index(key%without, "required") == 1
    end function is_required
 
-   !> The word of a list that is nearest to a word, which may be the beginning of one
+   !> The nearest word of a list; the given word may be its beginning
    pure function nearest_word(word, list) result(found)
       character(len=*), intent(in) :: word    !! Word to compare
       character(len=*), intent(in) :: list(:)
@@ -268,9 +268,9 @@ contains
       end do
    end function nearest_word
 
-   !> Fewest letters to insert, delete or replace to turn one word into another (Levenshtein)
+   !> Smallest number of inserted, deleted or replaced letters between two words (Levenshtein)
    pure integer function edit_distance(a, b)
-      !> First word; only its beginning counts where it is very long
+      !> First word; only its beginning is used if it is very long
       character(len=*), intent(in) :: a
       character(len=*), intent(in) :: b  !! Second word
       integer :: row(0:len(b)), diagonal, above, i, j

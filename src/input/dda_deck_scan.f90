@@ -17,11 +17,11 @@ module dda_deck_scan
 
 contains
 
-   !> Cut a deck into tokens
+   !> Split a deck into tokens
    pure subroutine scan_deck(text, scan, error)
       character(len=*), intent(in) :: text  !! Text of the deck, lines ended by line feeds
       type(deck_scan_t), intent(out) :: scan
-      !> What the grammar does not allow, with its line
+      !> Allocated for invalid syntax, with the line
       type(error_t), allocatable, intent(out) :: error
 
       call start(text, scan)
@@ -44,7 +44,7 @@ contains
       end if
    end subroutine scan_deck
 
-   !> Cut the value of a --set into tokens: one value, or several parted by commas or blanks
+   !> Split the value of a --set into tokens: one value, or several separated by commas or blanks
    pure subroutine scan_values(text, scan, error)
       character(len=*), intent(in) :: text  !! Text after the equals sign
       type(deck_scan_t), intent(out) :: scan
@@ -66,7 +66,7 @@ contains
       end do
    end subroutine scan_values
 
-   !> Scan the head of a group: & and a name
+   !> Scan the beginning of a group: & and a name
    pure subroutine scan_group(scan, error)
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -89,7 +89,7 @@ contains
       end if
    end subroutine scan_group
 
-   !> Scan what stands at the scanner's place inside a group
+   !> Scan one item inside a group
    pure subroutine scan_item(scan, error)
       !> Scanner inside a group, at a character that is not blank
       type(deck_scan_t), intent(inout) :: scan
@@ -122,7 +122,7 @@ contains
       scan%open_group = 0
    end subroutine close_group
 
-   !> Scan an ampersand inside a group: &end, or a group that lacks its slash
+   !> Scan an ampersand inside a group: &end, or the next group if a slash is missing
    pure subroutine scan_ampersand(scan, error)
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -137,7 +137,7 @@ contains
       end if
    end subroutine scan_ampersand
 
-   !> Scan a comma: the second one in a row leaves an empty value
+   !> Scan a comma: the second of two adjacent ones makes an empty value
    pure subroutine scan_comma(scan, error)
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -183,7 +183,7 @@ contains
          "'; close the quote")
    end subroutine scan_quoted
 
-   !> Scan a word without quotes: a key if an equals sign follows, else a value
+   !> Scan a word without quotes: a key before an equals sign, otherwise a value
    pure subroutine scan_word(scan, error)
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -219,7 +219,7 @@ contains
    pure subroutine repeat_count(scan, first, star, count, error)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first  !! First character of the word
-      integer, intent(in) :: star   !! Place of the star in the word
+      integer, intent(in) :: star   !! Position of the asterisk in the word
       integer, intent(out) :: count
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
@@ -231,10 +231,10 @@ contains
          " before '*', got '"//shown(scan%text(first:first + star - 2))//"'; write it like 3*1.5")
    end subroutine repeat_count
 
-   !> The error of a group without its slash
+   !> Set the error for a group without its slash
    pure subroutine not_closed(scan, found, error)
-      type(deck_scan_t), intent(in) :: scan  !! Scanner where the end was missed
-      character(len=*), intent(in) :: found  !! What was found instead of the slash
+      type(deck_scan_t), intent(in) :: scan  !! Scanner at the missing end
+      character(len=*), intent(in) :: found  !! Text in place of the slash
       type(error_t), allocatable, intent(out) :: error
 
       if (scan%open_group == 0) then

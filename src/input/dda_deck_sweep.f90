@@ -27,13 +27,13 @@ module dda_deck_sweep
 
 contains
 
-   !> Turn the keys of the &sweep that was just read into the next sweep of the deck
+   !> Add the keys of the last &sweep as the next sweep of the deck
    pure subroutine add_sweep(deck, place, error)
-      !> The deck; the keys of &sweep are put back to their defaults
+      !> The deck; the keys of &sweep are reset to their defaults
       type(deck_t), intent(inout) :: deck
-      !> Where the group begins
+      !> Place of the group
       type(deck_place_t), intent(in) :: place
-      !> Keys that do not go together, or a value that the parameter cannot take
+      !> Allocated for contradicting keys, or a value that the parameter cannot have
       type(error_t), allocatable, intent(out) :: error
       type(deck_sweep_t) :: sweep
       type(deck_sweep_t), allocatable :: longer(:)
@@ -57,7 +57,7 @@ contains
       call take_values(deck, sweep, error)
       if (.not. allocated(error)) call check_values(deck, sweep, error)
       if (allocated(error)) return
-      ! an array constructor would lose the memory of values
+      ! gfortran loses the memory of values in an array constructor
       allocate (longer(size(deck%sweeps) + 1))
       longer(:size(deck%sweeps)) = deck%sweeps
       longer(size(longer)) = sweep
@@ -67,7 +67,7 @@ contains
       end do
    end subroutine add_sweep
 
-   !> Take the values of a sweep from exactly one of: values, texts, (first, last, count)
+   !> Set the values of a sweep from exactly one of: values, texts, (first, last, count)
    pure subroutine take_values(deck, sweep, error)
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
@@ -108,7 +108,7 @@ contains
       sweep%place = deck%value(i)%place
    end subroutine take_values
 
-   !> Values from first to last in equal steps
+   !> Make equally spaced values from first to last
    pure subroutine space_evenly(deck, sweep, error)
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
@@ -129,7 +129,7 @@ contains
       end if
    end subroutine space_evenly
 
-   !> Whether the parameter of a sweep can take all of its values
+   !> Check that the parameter of a sweep can have all its values
    pure subroutine check_values(deck, sweep, error)
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(in) :: sweep
@@ -182,11 +182,11 @@ contains
       end do
    end function n_cases
 
-   !> Which value each sweep has in a case
+   !> Index of the value of each sweep in a case
    pure function positions(deck, number) result(position)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: number           !! Number of the case, from 1 to n_cases
-      integer :: position(size(deck%sweeps))  !! Place of the value in each sweep: (n)
+      integer :: position(size(deck%sweeps))  !! Index of the value in each sweep: (n)
       integer :: s, rest
 
       rest = number - 1
@@ -200,7 +200,7 @@ contains
       end do
    end function positions
 
-   !> Put the swept values of a case into a deck
+   !> Set the swept values of a case in a deck
    pure subroutine put_case(swept, number, deck, error)
       type(deck_t), intent(in) :: swept  !! A deck with the sweeps
       integer, intent(in) :: number
@@ -222,12 +222,12 @@ contains
       end do
    end subroutine put_case
 
-   !> Turn the deck of one case into that of another one of the same sweeps; the first time all of
-   !> the deck is copied, and later the swept values alone
+   !> Change the deck of one case into that of another: the first time the whole deck is copied,
+   !> later the swept values only
    pure subroutine turn_to_case(deck, number, result, error)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: number
-      !> The deck of a case, without sweeps; new, or as this routine left it
+      !> Deck of a case without sweeps; new, or from an earlier call
       type(deck_t), intent(inout) :: result
       type(error_t), allocatable, intent(out) :: error
 
@@ -243,7 +243,7 @@ contains
    pure function swept_texts(deck, number) result(texts)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: number  !! Number of the case
-      !> One text a sweep; numbers read back as the same doubles: (n)
+      !> One text per sweep; numbers read back as the same doubles: (n)
       character(len=word_length) :: texts(size(deck%sweeps))
       integer :: position(size(deck%sweeps)), s
 
@@ -259,13 +259,13 @@ contains
       end do
    end function swept_texts
 
-   !> Choose cases by their numbers
+   !> Select cases by their numbers
    pure subroutine choose_cases(text, total, chosen, error)
-      !> Numbers and ranges parted by commas, such as 1-500,812; empty for all cases
+      !> Numbers and ranges separated by commas, such as 1-500,812; empty for all cases
       character(len=*), intent(in) :: text
       integer, intent(in) :: total                    !! Number of cases of the deck
-      logical, allocatable, intent(out) :: chosen(:)  !! Whether a case is chosen: (total)
-      !> Not such a list, or a case that the deck does not have
+      logical, allocatable, intent(out) :: chosen(:)  !! True for selected cases: (total)
+      !> Allocated for an invalid list, or a case that does not exist
       type(error_t), allocatable, intent(out) :: error
       integer :: first, comma, low, high
       logical :: ok
@@ -286,12 +286,12 @@ contains
       end do
    end subroutine choose_cases
 
-   !> Read a number, or two with a dash between
+   !> Read a number, or two numbers with a dash between them
    pure subroutine read_range(text, low, high, ok)
       character(len=*), intent(in) :: text
       integer, intent(out) :: low   !! First number
       integer, intent(out) :: high  !! Last number
-      logical, intent(out) :: ok    !! Whether the text is that
+      logical, intent(out) :: ok    !! True if the text is valid
       integer :: dash
 
       dash = index(text, "-")

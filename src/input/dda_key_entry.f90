@@ -16,9 +16,9 @@ module dda_key_entry
 
    !> One group of the file
    type :: key_group_t
-      character(len=16) :: name                    !! Its name
+      character(len=16) :: name                    !! Name of the group
       integer :: row                               !! Line of the file
-      type(deck_value_t), allocatable :: value(:)  !! By the places of its keys in the registry
+      type(deck_value_t), allocatable :: value(:)  !! Values, indexed by the keys of the registry
    end type key_group_t
 
 contains
@@ -27,10 +27,10 @@ contains
    pure subroutine read_groups(text, file, groups, keys, topic, group, error)
       character(len=*), intent(in) :: text    !! The text, lines ended by line feeds
       character(len=*), intent(in) :: file    !! Name of the file
-      type(group_t), intent(in) :: groups(:)  !! Groups that there are
-      type(key_t), intent(in) :: keys(:)      !! Keys that there are, group by group
-      character(len=*), intent(in) :: topic   !! Page of the help that lists them
-      !> The groups of the text, in their order
+      type(group_t), intent(in) :: groups(:)  !! Groups of the registry
+      type(key_t), intent(in) :: keys(:)      !! Keys of the registry, by group
+      character(len=*), intent(in) :: topic   !! Page of the help with the list of groups and keys
+      !> Groups of the text, in order
       type(key_group_t), allocatable, intent(out) :: group(:)
       type(error_t), allocatable, intent(out) :: error
       type(deck_scan_t) :: scan
@@ -65,10 +65,10 @@ contains
       if (allocated(error)) error%file = file
    end subroutine read_groups
 
-   !> An error that speaks of a group
+   !> Set an error at a group
    pure subroutine group_error(group, message, error)
       type(key_group_t), intent(in) :: group
-      character(len=*), intent(in) :: message  !! What was expected, what was found
+      character(len=*), intent(in) :: message  !! Expected and actual value
       type(error_t), allocatable, intent(out) :: error
 
       call fatal_error(error, "&"//trim(group%name)//": "//message, line=group%row)
@@ -77,15 +77,15 @@ contains
    !> Read one key and its values
    pure subroutine read_entry(scan, i, group, keys, topic, value, problem, line)
       type(deck_scan_t), intent(in) :: scan
-      integer, intent(inout) :: i            !! Token of the key; then the token after its values
+      integer, intent(inout) :: i            !! Token of the key; moved past its values
       character(len=*), intent(in) :: group  !! Name of the group
       type(key_t), intent(in) :: keys(:)     !! Keys of the registry
-      character(len=*), intent(in) :: topic  !! Page of the help that lists them
-      !> Values by the places of their keys; those of other groups may be missing
+      character(len=*), intent(in) :: topic  !! Page of the help with the list of keys
+      !> Values, indexed by keys; those of other groups may be missing
       type(deck_value_t), allocatable, intent(inout) :: value(:)
-      !> What is wrong, and what to do; empty if nothing is
+      !> The problem and its remedy; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
-      integer, intent(out) :: line  !! Where it is
+      integer, intent(out) :: line  !! Line of the problem
       integer :: first, key
 
       line = scan%token(i)%line
@@ -117,7 +117,7 @@ contains
       character(len=*), intent(in) :: group
       character(len=*), intent(in) :: name  !! Name of the key
       character(len=*), intent(in) :: topic
-      integer, intent(out) :: key           !! Place in the registry
+      integer, intent(out) :: key           !! Index in the registry
       character(len=:), allocatable, intent(out) :: problem
       integer :: open
 
@@ -137,15 +137,15 @@ contains
    pure subroutine read_value(scan, first, last, keys, key, item, place, value, problem)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first  !! First token of the values
-      integer, intent(in) :: last   !! Last token; one before the first if there are none
+      integer, intent(in) :: last   !! Last token; precedes the first if there are none
       type(key_t), intent(in) :: keys(:)
-      integer, intent(in) :: key    !! Place of the key among them
-      integer, intent(in) :: item   !! The item of its list, if only that one is set; else 0
-      !> Where the key stands
+      integer, intent(in) :: key    !! Index of the key
+      integer, intent(in) :: item   !! Item of the list, or 0 for the whole value
+      !> Place of the key
       type(deck_place_t), intent(in) :: place
-      !> Receives the value, and where it stands, or what is wrong with it
+      !> Receives the value and its place, or the place of the problem
       type(deck_value_t), intent(inout) :: value
-      !> Wrong type, wrong number of values, or a value out of range; empty if it will do
+      !> The problem: wrong kind, number of values, or range; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       integer :: i, k
 
@@ -173,15 +173,15 @@ contains
       value%given = len(problem) == 0
    end subroutine read_value
 
-   !> Whether the values of a key are of its kind and not too many
+   !> Check kind and number of the values of a key
    pure subroutine check_values(scan, first, last, keys, key, item, place, at, problem)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: first, last
       type(key_t), intent(in) :: keys(:)
       integer, intent(in) :: key, item
       type(deck_place_t), intent(in) :: place
-      type(deck_place_t), intent(out) :: at  !! Where the first is that will not do
-      !> Why it will not do; empty if all will
+      type(deck_place_t), intent(out) :: at  !! Place of the first invalid value
+      !> The problem; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       character(len=:), allocatable :: found
       logical :: takes_list
@@ -212,12 +212,12 @@ contains
          & //", got "//found//or_leave_out(keys(key))
    end subroutine check_values
 
-   !> What a token is instead of a value of a key
+   !> Text of a token that is no valid value of a key
    pure function mismatch(scan, i, key) result(found)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: i                !! Place of the token
       type(key_t), intent(in) :: key
-      character(len=:), allocatable :: found  !! What was found; empty if the token will do
+      character(len=:), allocatable :: found  !! The text; empty if the token is valid
       logical :: fits, needs_quotes, is_word
       integer :: whole
       real(wp) :: number
@@ -244,12 +244,12 @@ contains
       if (fits) found = ""
    end function mismatch
 
-   !> Why there may be a second value where one was wanted
+   !> Hint about a second value where one is expected
    pure function hint(scan, i, names) result(text)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: i                  !! Place of the second value
-      character(len=*), intent(in) :: names(:)  !! Names of the keys of its group
-      character(len=:), allocatable :: text     !! A guess in parentheses; empty if there is none
+      character(len=*), intent(in) :: names(:)  !! Names of the keys of the group
+      character(len=:), allocatable :: text     !! Hint in parentheses; empty if there is none
       character(len=:), allocatable :: name
 
       text = ""
@@ -262,7 +262,7 @@ contains
       end if
    end function hint
 
-   !> Where a token stands
+   !> Place of a token
    pure type(deck_place_t) function place_at(scan, i, place)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: i  !! Place of the token; past the end if there is none
@@ -274,7 +274,7 @@ contains
       place_at%line = scan%token(i)%line
    end function place_at
 
-   !> Number that a token stands for
+   !> Number of a token
    pure real(wp) function number_at(scan, i)
       type(deck_scan_t), intent(in) :: scan
       integer, intent(in) :: i  !! Place of a token that is a number

@@ -10,13 +10,13 @@ module dda_key_help
 
    !> End of a line
    character(len=1), parameter :: lf = achar(10)
-   !> Kinds of value as JSON names them, in the order of key_kind
+   !> Kinds of values in JSON, in the order of key_kind
    character(len=*), parameter :: kind_name(*) = [character(len=7) :: "number", "whole", "word", &
       & "text", "flag", "numbers", "words"]
 
 contains
 
-   !> The groups and keys of a registry with unit, range, default and meaning
+   !> Help on all groups and keys of a registry, with unit, range, default and meaning
    pure function registry_help(groups, keys) result(text)
       type(group_t), intent(in) :: groups(:)  !! The groups
       type(key_t), intent(in) :: keys(:)      !! The keys
@@ -30,9 +30,9 @@ contains
       end do
    end function registry_help
 
-   !> What a registry says of a group, or of all keys of a name; empty if it knows neither
+   !> Help on a group, or on all keys of a name; empty if unknown
    pure function topic_help(name, groups, keys) result(text)
-      !> Name of a group, of a key, or of both with % between
+      !> Name of a group, of a key, or of both with %
       character(len=*), intent(in) :: name
       type(group_t), intent(in) :: groups(:)
       type(key_t), intent(in) :: keys(:)
@@ -53,11 +53,11 @@ contains
       end do
    end function topic_help
 
-   !> Help on a group and some of the keys
+   !> Help on a group and selected keys
    pure function group_help(group, keys, is_meant) result(text)
       type(group_t), intent(in) :: group
       type(key_t), intent(in) :: keys(:)
-      logical, intent(in) :: is_meant(:)  !! Which keys: (n)
+      logical, intent(in) :: is_meant(:)  !! True for selected keys: (n)
       character(len=:), allocatable :: text
       integer :: i
 
@@ -85,7 +85,7 @@ contains
       text = text//lf
    end function key_help
 
-   !> A registry as JSON: groups with their keys
+   !> A registry in JSON: groups with their keys
    pure function registry_json(groups, keys) result(text)
       type(group_t), intent(in) :: groups(:)
       type(key_t), intent(in) :: keys(:)
@@ -106,7 +106,7 @@ contains
       text = "{""groups"": ["//text(2:)//"]}"//lf
    end function registry_json
 
-   !> Members of the object of a key; what it does not have is left out
+   !> Members of the object of a key, without empty ones
    pure function key_json(key) result(text)
       type(key_t), intent(in) :: key
       character(len=:), allocatable :: text
@@ -127,7 +127,7 @@ contains
 
    contains
 
-      !> A bound, if there is one
+      !> Member for a bound, empty if unlimited
       pure function bound(name, value) result(member)
          character(len=*), intent(in) :: name  !! Name of the member
          real(wp), intent(in) :: value         !! The bound
@@ -137,7 +137,7 @@ contains
          if (abs(value) < none) member = ", """//name//""": "//to_text(value)
       end function bound
 
-      !> A flag
+      !> JSON text of a flag
       pure function truth(flag) result(word)
          logical, intent(in) :: flag  !! The flag
          character(len=:), allocatable :: word
@@ -145,7 +145,7 @@ contains
          word = trim(merge("true ", "false", flag))
       end function truth
 
-      !> Words between quotes and commas
+      !> JSON list of words
       pure function joined(words) result(list)
          character(len=*), intent(in) :: words  !! Words separated by blanks
          character(len=:), allocatable :: list
@@ -162,10 +162,10 @@ contains
       end function joined
    end function key_json
 
-   !> A member whose value is a text
+   !> Member with a text value
    pure function pair(name, value) result(member)
-      character(len=*), intent(in) :: name   !! Its name
-      character(len=*), intent(in) :: value  !! Its text, without control characters
+      character(len=*), intent(in) :: name   !! Name of the member
+      character(len=*), intent(in) :: value  !! Text without control characters
       character(len=:), allocatable :: member
       integer :: k
 

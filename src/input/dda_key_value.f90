@@ -11,30 +11,30 @@ module dda_key_value
    public :: deck_place_t, deck_value_t, default_value, is_numeric, number_fits, number_problem
    public :: set_number, set_text, text_problem
 
-   !> Where a value was written
+   !> Place of a value
    type :: deck_place_t
       integer :: line = 0  !! Line of the deck, or number of the --set; 0 for a default
-      !> Whether it came from a --set
+      !> True for a --set
       logical :: from_command = .false.
    end type deck_place_t
 
-   !> Value of one key
+   !> Value of a key
    type :: deck_value_t
-      logical :: given = .false.   !! Whether the deck, a --set or a sweep gives it
-      type(deck_place_t) :: place  !! Where
-      real(wp) :: number = 0.0_wp  !! Number, whole numbers too
+      logical :: given = .false.   !! True if it is given in the deck, a --set or a sweep
+      type(deck_place_t) :: place  !! Place of the value
+      real(wp) :: number = 0.0_wp  !! Number, also for integers
       logical :: flag = .false.    !! Flag
-      !> Text, words too; unallocated where the key takes none
+      !> Text or word; unallocated for other kinds
       character(len=:), allocatable :: text
-      !> List of numbers; unallocated where the key takes none: (n)
+      !> List of numbers; unallocated for other kinds: (n)
       real(wp), allocatable :: numbers(:)
-      !> List of words; unallocated where the key takes none: (n)
+      !> List of words; unallocated for other kinds: (n)
       character(len=word_length), allocatable :: texts(:)
    end type deck_value_t
 
 contains
 
-   !> The default of a key
+   !> Default of a key
    pure type(deck_value_t) function default_value(key) result(value)
       type(key_t), intent(in) :: key
       character(len=:), allocatable :: default
@@ -56,13 +56,13 @@ contains
       end select
    end function default_value
 
-   !> Give a key, or one item of its list, a number
+   !> Set a key, or one item of its list, to a number
    pure subroutine set_number(value, key, item, number, problem)
-      type(deck_value_t), intent(inout) :: value  !! Left as it is if there is a problem
+      type(deck_value_t), intent(inout) :: value  !! The value; unchanged if there is a problem
       type(key_t), intent(in) :: key
       integer, intent(in) :: item                 !! Item of a list; 0 for a single number
       real(wp), intent(in) :: number              !! The number in the unit of the registry
-      !> Why it cannot be, and what to do; empty if it can
+      !> The problem and its remedy; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       integer :: n
 
@@ -83,12 +83,12 @@ contains
       end if
    end subroutine set_number
 
-   !> Give a key a text, a word or the text of a flag
+   !> Set a key to a text, a word or a flag
    pure subroutine set_text(value, key, text, problem)
-      type(deck_value_t), intent(inout) :: value  !! Left as it is if there is a problem
+      type(deck_value_t), intent(inout) :: value  !! The value; unchanged if there is a problem
       type(key_t), intent(in) :: key
       character(len=*), intent(in) :: text        !! The value, without quotes
-      !> Why it cannot be, and what to do; empty if it can
+      !> The problem and its remedy; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       logical :: unused
 
@@ -106,11 +106,11 @@ contains
       end select
    end subroutine set_text
 
-   !> Why a number cannot be the value of a key
+   !> Problem of a number as the value of a key
    pure function number_problem(key, number) result(problem)
       type(key_t), intent(in) :: key
       real(wp), intent(in) :: number  !! The number in the unit of the registry
-      !> What was wanted and what was found; empty if the number will do
+      !> Expected and actual value; empty if there is no problem
       character(len=:), allocatable :: problem
 
       problem = ""
@@ -118,7 +118,7 @@ contains
       problem = full_name(key)//" must be "//wanted(key)//", got "//short_text(number)
    end function number_problem
 
-   !> Whether a number can be the value of a key
+   !> True if a number is a valid value of a key
    pure logical function number_fits(key, number)
       type(key_t), intent(in) :: key
       real(wp), intent(in) :: number
@@ -127,11 +127,11 @@ contains
       if (number_fits) number_fits = in_range(key, number)
    end function number_fits
 
-   !> Why a text cannot be the value of a key
+   !> Problem of a text as the value of a key
    pure function text_problem(key, text) result(problem)
       type(key_t), intent(in) :: key
       character(len=*), intent(in) :: text
-      !> What was wanted and what was found; empty if the text will do
+      !> Expected and actual value; empty if there is no problem
       character(len=:), allocatable :: problem
       logical :: fits, flag
 
@@ -148,11 +148,11 @@ contains
          wanted(key)//", got '"//shown(trim(text))//"'"//near_word(key, text)
    end function text_problem
 
-   !> Read .true., .false., T, F and what is like them
+   !> Read .true., .false., T, F and similar words
    pure subroutine read_flag(text, flag, ok)
       character(len=*), intent(in) :: text
-      logical, intent(inout) :: flag  !! The flag; left as it was if the text is none
-      logical, intent(out) :: ok      !! Whether the text is a flag
+      logical, intent(inout) :: flag  !! The flag; unchanged if the text is none
+      logical, intent(out) :: ok      !! True if the text is a flag
 
       ok = .true.
       select case (lower_case(text))
@@ -165,7 +165,7 @@ contains
       end select
    end subroutine read_flag
 
-   !> Whether a key takes numbers
+   !> True if a key takes numbers
    pure logical function is_numeric(key)
       type(key_t), intent(in) :: key
 

@@ -1,5 +1,5 @@
-!> Models, and the parameters that can be searched in them: the tables of docs/input.md. Decks are
-!> checked by them; `dda check` prints what they say of a deck, `dda help models` all of them
+!> Models and their searchable parameters: the tables of docs/input.md. Decks are checked against
+!> them; `dda check` prints the rows for a deck, `dda help models` prints both tables
 module dda_model_table
    use dda_deck_key, only : key_t
    use dda_model_rows, only : model_row, search_row
@@ -8,20 +8,20 @@ module dda_model_table
 
    public :: model_problem, models_of, models_help, search_problem, searches_of
 
-   !> Kinds of blocks in the order of the columns
+   !> Names of the sources of blocks, in the order of the columns
    character(len=6), parameter :: kind_name(4) = [character(len=6) :: "arch", "shape", "lines", &
       & "blocks"]
-   !> Columns before those of the kinds
+   !> Number of columns before those of the sources
    integer, parameter :: before_models = 2, before_searches = 1
 
 contains
 
-   !> Why blocks of a kind cannot be run so
+   !> Reason why a model does not exist for a source of blocks
    pure function model_problem(kind, mode, geometry) result(why)
       character(len=*), intent(in) :: kind      !! One of kind_name
       character(len=*), intent(in) :: mode      !! Word of analysis%mode
       character(len=*), intent(in) :: geometry  !! Word of analysis%geometry
-      character(len=:), allocatable :: why      !! The reason; empty if they can
+      character(len=:), allocatable :: why      !! The reason; empty if the model exists
       character(len=:), allocatable :: head
       integer :: i
 
@@ -34,11 +34,11 @@ contains
       end do
    end function model_problem
 
-   !> Why a key cannot be searched: the first row of it or of the numbers of its group says so
+   !> Reason why a key cannot be searched, from the first row with the key or its group
    pure function search_problem(key, kind, mode) result(why)
-      type(key_t), intent(in) :: key        !! The key, which has real values
+      type(key_t), intent(in) :: key        !! A key with real values
       character(len=*), intent(in) :: kind, mode
-      character(len=:), allocatable :: why  !! The reason; empty if it can
+      character(len=:), allocatable :: why  !! The reason; empty if it can be searched
       character(len=:), allocatable :: name, group
       integer :: i, last
 
@@ -55,7 +55,7 @@ contains
       end do
    end function search_problem
 
-   !> Whether the keys of a row are searched
+   !> True if the keys of a row can be searched
    pure logical function is_searched(i, kind, mode)
       integer, intent(in) :: i  !! Place of the row
       character(len=*), intent(in) :: kind, mode
@@ -63,10 +63,10 @@ contains
       is_searched = index(cell(search_row(i), before_searches + place(kind)), mode) > 0
    end function is_searched
 
-   !> Modes and geometries that blocks of a kind are run with
+   !> Models of a source of blocks: modes and geometries
    pure function models_of(kind) result(text)
       character(len=*), intent(in) :: kind
-      character(len=:), allocatable :: text  !! Such as: static reference, static current
+      character(len=:), allocatable :: text  !! Text such as: static reference, static current
       integer :: i
 
       text = ""
@@ -77,10 +77,10 @@ contains
       text = text(3:)
    end function models_of
 
-   !> What is searched in scenes of a kind with a mode
+   !> Searchable parameters for a source of blocks and a mode
    pure function searches_of(kind, mode) result(text)
       character(len=*), intent(in) :: kind, mode
-      character(len=:), allocatable :: text  !! Such as: numbers of &material, numbers of &load
+      character(len=:), allocatable :: text  !! Text such as: numbers of &material, numbers of &load
       integer :: i
 
       text = ""
@@ -90,7 +90,7 @@ contains
       text = text(3:)
    end function searches_of
 
-   !> Both tables as docs/input.md has them
+   !> Both tables as in docs/input.md
    pure function models_help() result(text)
       character(len=:), allocatable :: text  !! Lines, each ended by a line feed
       integer :: i
@@ -105,16 +105,16 @@ contains
       end do
    end function models_help
 
-   !> Place of a kind among the columns of kinds
+   !> Column of a source of blocks, among the sources
    pure integer function place(kind)
       character(len=*), intent(in) :: kind
 
       place = findloc(kind_name, kind, dim=1)
    end function place
 
-   !> Text of a row in one of its columns, without marks
+   !> Text of one cell of a row, without Markdown marks
    pure function cell(row, column) result(text)
-      character(len=*), intent(in) :: row  !! Such as: | `static` | `reference` | yes |
+      character(len=*), intent(in) :: row  !! Row such as: | `static` | `reference` | yes |
       integer, intent(in) :: column        !! Number of the column, from 1
       character(len=len(row)) :: text
       integer :: first, i, k, n

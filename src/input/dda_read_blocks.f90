@@ -18,13 +18,13 @@ module dda_read_blocks
 
    public :: parse_blocks
 
-   !> A kind of entry
+   !> Kinds of entries
    type :: entry_kind_t
-      character(len=17) :: word  !! The word that begins it
-      integer :: n_column        !! Numbers of each row below it
+      character(len=17) :: word  !! First word of the entry
+      integer :: n_column        !! Number of numbers per row
    end type entry_kind_t
 
-   !> All of them
+   !> All kinds of entries
    type(entry_kind_t), parameter :: entries(*) = [entry_kind_t("block", 2), &
       & entry_kind_t("material", 0), entry_kind_t("joint", 0), entry_kind_t("fix", 0), &
       & entry_kind_t("fix_line", 0), entry_kind_t("measure", 0), entry_kind_t("load", 3), &
@@ -36,61 +36,60 @@ module dda_read_blocks
    !> Lines between two progress reports
    integer, parameter :: told_lines = 10000
 
-   !> What has been read of a file
+   !> State of reading a file
    type :: reading_t
       character(len=:), allocatable :: file  !! Name of the file
-      !> Blocks, materials and laws so far; the arrays have room for more
+      !> Blocks, materials and laws read so far, in arrays with spare capacity
       type(block_plan_t) :: plan
       integer :: n_block = 0   !! Number of blocks
       integer :: n_vertex = 0  !! Number of corners
-      integer :: n_start = 0   !! Number of blocks that begin with a velocity or a stress
+      integer :: n_start = 0   !! Number of blocks with an initial velocity or stress
       integer :: n_law = 0     !! Number of laws
-      type(entry_t) :: entry   !! The entry that is being read
-      !> Entries of points, kept until all blocks are known: (n_later or more)
+      type(entry_t) :: entry   !! The entry being read
+      !> Entries of points, kept until all blocks are read: (n_later or more)
       type(entry_t), allocatable :: later(:)
-      integer :: n_later = 0  !! Number of these
+      integer :: n_later = 0  !! Number of kept entries
    end type reading_t
 
    interface
 
-      !> Take in points, lines that are held, and the motion of the ground, once all blocks are
-      !> known
+      !> Read points, restrained lines and ground motion, after all blocks
       module subroutine add_points(later, plan, site, file, warnings, error, watch)
-         !> Their entries in the order of the file; rows of numbers go
+         !> Entries of points in the order of the file; their rows are deallocated
          type(entry_t), intent(inout) :: later(:)
          type(block_plan_t), intent(inout) :: plan
-         !> Where the blocks are; receives the points too
+         !> Positions of the blocks; receives the points
          type(site_t), intent(inout) :: site
-         !> Name of the file, for warnings and records beside it
+         !> Name of the file, for warnings and relative paths of records
          character(len=*), intent(in) :: file
          type(warnings_t), intent(inout) :: warnings
          type(error_t), allocatable, intent(out) :: error
          class(watch_t), intent(inout), optional :: watch
       end subroutine add_points
 
-      !> Add the block of an entry; corners given twice are merged, clockwise ones are turned
+      !> Add the block of an entry; repeated corners are merged, a clockwise order is reversed
       pure module subroutine add_plan_block(reading, fixed, material, warnings, error)
          type(reading_t), intent(inout) :: reading
-         logical, intent(in) :: fixed                      !! Whether it cannot move
-         integer, intent(in) :: material                   !! Number of its material
+         logical, intent(in) :: fixed                      !! True for a fixed block
+         integer, intent(in) :: material                   !! Number of the material
          type(warnings_t), intent(inout) :: warnings
-         type(error_t), allocatable, intent(out) :: error  !! Allocated if the corners make no block
+         type(error_t), allocatable, intent(out) :: error  !! Allocated if the block is invalid
       end subroutine add_plan_block
 
-      !> Check a plan as a whole and move its origin to where coordinates keep their digits
+      !> Check a plan as a whole, and move its origin near the blocks
       pure module subroutine check_plan(plan, file, warnings, error)
          type(block_plan_t), intent(inout) :: plan
          character(len=*), intent(in) :: file  !! Name of the file, for warnings
          type(warnings_t), intent(inout) :: warnings
-         !> Allocated if there is no block, or one material or law too few or too many
+         !> Allocated if there is no block, or a missing or extra material or law
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_plan
 
-      !> Whether no two blocks overlap; two fixed ones may
+      !> Check that no two blocks overlap, except fixed ones
       module subroutine check_overlaps(plan, site, error, watch)
          type(block_plan_t), intent(in) :: plan
          type(site_t), intent(in) :: site
-         type(error_t), allocatable, intent(out) :: error  !! Blocks that do
+         type(error_t), allocatable, intent(out) :: error  !! Allocated for overlapping blocks
          class(watch_t), intent(inout), optional :: watch
       end subroutine check_overlaps
 
@@ -98,15 +97,15 @@ module dda_read_blocks
 
 contains
 
-   !> Blocks from the text of a file
+   !> Read blocks from the text of a file
    subroutine parse_blocks(text, file, plan, warnings, error, watch, tolerance)
       character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
-      character(len=*), intent(in) :: file  !! Name that errors will show
+      character(len=*), intent(in) :: file  !! Name for messages
       type(block_plan_t), intent(out) :: plan
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       class(watch_t), intent(inout), optional :: watch
-      !> Blocks lie together within this share of the smaller one's size
+      !> Gap within which blocks touch, over the size of the smaller one
       real(wp), intent(in), optional :: tolerance
       type(reading_t) :: reading
       type(site_t) :: site
@@ -142,10 +141,10 @@ contains
       if (.not. allocated(error%file)) error%file = file
    end subroutine parse_blocks
 
-   !> Place of the last character of a line
+   !> Last character of a line
    pure integer function line_end(text, start)
       character(len=*), intent(in) :: text
-      integer, intent(in) :: start  !! Place of its first character
+      integer, intent(in) :: start  !! First character of the line
 
       do line_end = start - 1, len(text) - 1
          if (text(line_end + 1:line_end + 1) == achar(10)) return
@@ -153,7 +152,7 @@ contains
       line_end = len(text)
    end function line_end
 
-   !> Take a line: the beginning of an entry, or a row of the one before
+   !> Read a line: the first one of an entry, or a row of the entry
    pure subroutine take_line(line, reading, warnings, error)
       type(line_t), intent(in) :: line
       type(reading_t), intent(inout) :: reading
@@ -196,7 +195,7 @@ contains
       end associate
    end subroutine take_line
 
-   !> What a row below an entry ought to be
+   !> Description of a row of an entry
    pure function row_wanted(entry) result(text)
       type(entry_t), intent(in) :: entry
       character(len=:), allocatable :: text
@@ -212,9 +211,9 @@ contains
       end select
    end function row_wanted
 
-   !> Hand over the plan, its arrays as long as what they hold
+   !> Return the plan, its arrays reduced to their contents
    pure subroutine close_plan(reading, plan)
-      type(reading_t), intent(inout) :: reading  !! What has been read; its plan goes
+      type(reading_t), intent(inout) :: reading  !! State of reading; its plan is moved
       type(block_plan_t), intent(out) :: plan
 
       associate (from => reading%plan, n => reading%n_block)
@@ -230,9 +229,9 @@ contains
       plan = reading%plan
    end subroutine close_plan
 
-   !> Take in an entry that is complete; points wait until all blocks are known
+   !> Read a complete entry; points are kept until all blocks are read
    pure subroutine close_entry(reading, warnings, error)
-      !> What has been read so far; its entry is left without rows
+      !> State of reading; its entry is left without rows
       type(reading_t), intent(inout) :: reading
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
@@ -253,9 +252,9 @@ contains
       reading%entry%n_row = 0
    end subroutine close_entry
 
-   !> Take in a block: block [fixed] [material N] [velocity vx vy w] [stress sx sy txy]
+   !> Read a block: block [fixed] [material N] [velocity vx vy w] [stress sx sy txy]
    pure subroutine close_block(reading, warnings, error)
-      type(reading_t), intent(inout) :: reading  !! What has been read so far; receives the block
+      type(reading_t), intent(inout) :: reading  !! State of reading; receives the block
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(key_t), parameter :: key(4) = [key_t(name="fixed", kind=key_kind%flag), &
@@ -277,7 +276,7 @@ contains
       reading%plan%start(:, reading%n_start) = value(2:7)
    end subroutine close_block
 
-   !> Take in a material:
+   !> Read a material:
    !> material N [density d] [unit_weight w] [young e] [poisson p] [compressive_strength s]
    pure subroutine add_material(line, plan, error)
       type(line_t), intent(in) :: line
@@ -300,7 +299,7 @@ contains
       if (.not. allocated(error)) plan%materials = [plan%materials, material]
    end subroutine add_material
 
-   !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
+   !> Read a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
    !> [slip_length d]
    pure subroutine add_law(line, reading, error)
       type(line_t), intent(in) :: line
@@ -325,7 +324,7 @@ contains
          return
       end if
       law%line = line%number
-      ! the second half is room
+      ! double the capacity
       if (reading%n_law == size(reading%plan%laws)) &
          & reading%plan%laws = [reading%plan%laws, reading%plan%laws, law]
       reading%n_law = reading%n_law + 1

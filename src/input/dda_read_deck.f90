@@ -23,44 +23,44 @@ module dda_read_deck
 
    public :: read_deck, parse_deck, geometry_file, check_deck
 
-   !> What --tight sets in a search
+   !> Setting of --tight for a search
    character(len=*), parameter :: tightest = "search%tolerance=1e-11"
 
    interface
 
-      !> Read all of them
+      !> Read all ground motion records of a deck
       module subroutine read_ground_records(deck, error)
          type(deck_t), intent(inout) :: deck  !! The deck, checked; receives the records
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_ground_records
 
-      !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
+      !> Read the files of a deck with kind = 'lines'; other decks are unchanged
       module subroutine read_lines(deck, error)
          !> The deck, checked; receives lines, analysis and warnings
          type(deck_t), intent(inout) :: deck
-         !> What is wrong with the files, or with the two together
+         !> Allocated if the files are invalid or do not match
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_lines
 
-      !> An error without a line speaks of a file that cannot be read: the line of the deck helps
-      !> more
+      !> Add the place of a key to an error about a file that cannot be read, because the line of
+      !> the deck is more useful
       pure module subroutine name_key(deck, key, error)
          type(deck_t), intent(in) :: deck
-         integer, intent(in) :: key  !! Place of the key that names the file in the registry
+         integer, intent(in) :: key  !! Index of the key in the registry
          type(error_t), allocatable, intent(inout) :: error
       end subroutine name_key
 
-      !> Check a deck and the cases of its sweeps, before anything is computed
+      !> Check a deck and all cases of its sweeps before any computation
       pure module subroutine check_deck(deck, cases, error)
          type(deck_t), intent(in) :: deck
-         !> Cases that will be computed, as choose_cases reads them; empty for all
+         !> Selected cases, as in choose_cases; empty for all
          character(len=*), intent(in) :: cases
-         type(error_t), allocatable, intent(out) :: error  !! The first thing that is wrong
+         type(error_t), allocatable, intent(out) :: error  !! The first problem
       end subroutine check_deck
 
    end interface
 
-   !> Page of the help that lists groups and keys
+   !> Page of the help with the list of groups and keys
    character(len=*), parameter :: topic = "keys"
 
 contains
@@ -69,16 +69,15 @@ contains
    subroutine read_deck(file, settings, deck, error, watch, cases, tight)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The --set values: group%key=value: (n)
+      !> --set values, as group%key=value: (n)
       character(len=*), intent(in) :: settings(:)
       type(deck_t), intent(out) :: deck
-      !> Bad input, with file and line, or with --set and its number
+      !> Allocated for bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
       class(watch_t), intent(inout), optional :: watch
-      !> Cases that will be computed, such as 1-500,812: the others are not checked; without it, or
-      !> empty, all are
+      !> Selected cases, such as 1-500,812; only these are checked; absent or empty for all
       character(len=*), intent(in), optional :: cases
-      !> Whether the bounds of a search are to be as near as rounding lets them be
+      !> True for search bounds at the limit of round-off
       logical, intent(in), optional :: tight
       character(len=:), allocatable :: text, geometry
 
@@ -101,7 +100,7 @@ contains
       if (.not. allocated(error)) call check_block_file(deck, error)
    end subroutine read_deck
 
-   !> Name of the file of blocks: beside the deck unless it begins with a slash
+   !> Path of the file of blocks: relative to the deck unless it begins with a slash
    pure function geometry_file(deck) result(path)
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: path
@@ -112,12 +111,12 @@ contains
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error, cases, tight)
       character(len=*), intent(in) :: text             !! The text, lines ended by line feeds
-      character(len=*), intent(in) :: file             !! Name that errors will show
+      character(len=*), intent(in) :: file             !! Name for messages
       character(len=*), intent(in) :: settings(:)
       type(deck_t), intent(out) :: deck
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), intent(in), optional :: cases  !! As of read_deck
-      logical, intent(in), optional :: tight           !! As of read_deck
+      character(len=*), intent(in), optional :: cases  !! As in read_deck
+      logical, intent(in), optional :: tight           !! As in read_deck
       type(key_group_t), allocatable :: group(:)
       character(len=:), allocatable :: checked, problem
       integer :: i
@@ -143,7 +142,7 @@ contains
       if (.not. allocated(error)) call choose_tables(deck)
    end subroutine parse_deck
 
-   !> Write the tables of which the deck says nothing if there are few cases, reactions with joints
+   !> Enable unset tables if there are few cases; reactions follow the table of joints
    pure subroutine choose_tables(deck)
       type(deck_t), intent(inout) :: deck
       logical :: few
@@ -159,7 +158,7 @@ contains
       end associate
    end subroutine choose_tables
 
-   !> Take the values of one group
+   !> Set the values of one group
    pure subroutine take_group(group, deck, error)
       type(key_group_t), intent(in) :: group
       type(deck_t), intent(inout) :: deck
@@ -179,9 +178,9 @@ contains
       if (g == sweep_group) call add_sweep(deck, place, error)
    end subroutine take_group
 
-   !> Put the value of a --set into the deck
+   !> Set a key from a --set
    pure subroutine apply_setting(setting, place, deck, error)
-      character(len=*), intent(in) :: setting  !! Such as arch%radius=5.0
+      character(len=*), intent(in) :: setting  !! Text such as arch%radius=5.0
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -209,7 +208,7 @@ contains
       end if
    end subroutine apply_setting
 
-   !> Whether a text holds control characters
+   !> True if a text contains control characters
    pure logical function has_control(text)
       character(len=*), intent(in) :: text  !! Any text
       integer :: i
@@ -217,11 +216,11 @@ contains
       has_control = any([(ichar(text(i:i)) < 32 .or. ichar(text(i:i)) == 127, i=1, len(text))])
    end function has_control
 
-   !> Put the text after the equals sign of a --set into its key
+   !> Set a key from the text after the equals sign of a --set
    pure subroutine set_value(text, parameter, place, deck, error)
-      !> The value as a namelist would have it; a word or a text may lack its quotes
+      !> The value as in a namelist; words and texts may lack quotes
       character(len=*), intent(in) :: text
-      !> The key, with its item if one is set
+      !> The key, with its item if only one is set
       type(parameter_t), intent(in) :: parameter
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck

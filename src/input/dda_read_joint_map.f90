@@ -36,7 +36,7 @@ contains
    subroutine read_joint_map(file, map, is_ddaml, error)
       character(len=*), intent(in) :: file  !! Name of the file
       type(joint_map_t), intent(out) :: map
-      logical, intent(out) :: is_ddaml      !! Whether lines are to be written in DDAML
+      logical, intent(out) :: is_ddaml      !! True to write lines in DDAML
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
 
@@ -48,7 +48,7 @@ contains
    !> Read a text
    pure subroutine parse_joint_map(text, file, map, is_ddaml, error)
       character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
-      character(len=*), intent(in) :: file  !! Name that errors show
+      character(len=*), intent(in) :: file  !! Name for messages
       type(joint_map_t), intent(out) :: map
       logical, intent(out) :: is_ddaml
       type(error_t), allocatable, intent(out) :: error
@@ -92,7 +92,7 @@ contains
       if (allocated(error)) error%file = file
    end subroutine parse_joint_map
 
-   !> A set of joints
+   !> Read a set of joints
    pure subroutine take_set(group, seed, map, error)
       type(key_group_t), intent(in) :: group
       integer, intent(in) :: seed  !! Seed of the map
@@ -121,9 +121,9 @@ contains
       if (.not. allocated(error)) map%set = [map%set, set]
    end subroutine take_set
 
-   !> A length with its law
+   !> Make a length with its distribution
    pure type(length_t) function length_of(value)
-      type(deck_value_t), intent(in) :: value(3)  !! Its mean, its law and its randomness
+      type(deck_value_t), intent(in) :: value(3)  !! Mean, distribution and randomness
 
       length_of%mean = value(1)%number
       length_of%randomness = value(3)%number
@@ -137,7 +137,7 @@ contains
       end select
    end function length_of
 
-   !> Lines or points placed by hand
+   !> Read lines or points given explicitly
    pure subroutine take_lines(group, map, error)
       type(key_group_t), intent(in) :: group
       type(joint_map_t), intent(inout) :: map
@@ -164,7 +164,7 @@ contains
       end do
    end subroutine take_lines
 
-   !> Bolts around an opening
+   !> Read bolts around an opening
    pure subroutine take_bolts(group, map)
       type(key_group_t), intent(in) :: group
       type(joint_map_t), intent(inout) :: map
@@ -179,7 +179,7 @@ contains
       map%bolts = [map%bolts, bolts]
    end subroutine take_bolts
 
-   !> Whether the openings of all bolts are there
+   !> Check that the openings of all bolts exist
    pure subroutine check_bolts(group, map, error)
       type(key_group_t), intent(in) :: group(:)  !! All groups
       type(joint_map_t), intent(in) :: map
@@ -196,11 +196,11 @@ contains
       end do
    end subroutine check_bolts
 
-   !> The outline: a polygon, a rectangle, or the ground below a slope
+   !> Read the outline: a polygon, a rectangle, or the ground below a slope
    pure subroutine take_outline(group, map, error)
       type(key_group_t), intent(in) :: group(:)
       type(joint_map_t), intent(inout) :: map
-      type(error_t), allocatable, intent(out) :: error  !! No outline, or no simple one
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid outline
       character(len=:), allocatable :: side
       character(len=*), parameter :: sides(3) = [character(len=6) :: "left", "right", "bottom"]
       real(wp), allocatable :: box(:), surface(:, :)
@@ -243,8 +243,8 @@ contains
             if (allocated(error)) return
             map%held_side = map%held_side .or. sides == side
          end do
-         ! a line so near to the side crosses all blocks along it: corners nearer than twice as much
-         ! are merged with the side
+         ! a line this close to the side crosses all blocks along it: corners within twice this
+         ! distance are merged with the side
          map%hold_depth = 0.2_wp*max(1.0e-4_wp, map%edge_node_ratio) &
             & *norm2(maxval(map%outline, 2) - minval(map%outline, 2))
          if (outline%value(outline_hold_depth)%given) &
@@ -252,10 +252,10 @@ contains
       end associate
    end subroutine take_outline
 
-   !> The surface of the ground from the left side to the right one
+   !> Read the ground surface from the left side to the right side
    pure subroutine take_surface(group, left, right, surface, error)
       type(key_group_t), intent(in) :: group
-      real(wp), intent(in) :: left, right                  !! The two sides [m]
+      real(wp), intent(in) :: left, right                  !! Abscissae of the two sides [m]
       real(wp), allocatable, intent(out) :: surface(:, :)  !! Points from left to right: (2, n) [m]
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: point(:, :)
@@ -290,13 +290,13 @@ contains
       if (point(1, 1) <= left) surface = surface(:, 2:)
    end subroutine take_surface
 
-   !> Points of two lists
+   !> Read points from two lists
    pure subroutine take_points(group, x_key, y_key, least, point, error)
       type(key_group_t), intent(in) :: group
-      integer, intent(in) :: x_key, y_key                !! Places of the keys
-      integer, intent(in) :: least                       !! Fewest points
+      integer, intent(in) :: x_key, y_key                !! Indices of the keys
+      integer, intent(in) :: least                       !! Smallest number of points
       real(wp), allocatable, intent(out) :: point(:, :)  !! The points: (2, n) [m]
-      !> Lists of unequal lengths, or too short ones
+      !> Allocated for lists of different lengths, or too short ones
       type(error_t), allocatable, intent(out) :: error
 
       associate (x => group%value(x_key)%numbers, y => group%value(y_key)%numbers)
@@ -309,12 +309,12 @@ contains
       end associate
    end subroutine take_points
 
-   !> A polygon of two lists, anticlockwise whichever way it was given
+   !> Read a polygon from two lists, in either order; the result is anticlockwise
    pure subroutine take_polygon(group, x_key, y_key, corner, error)
       type(key_group_t), intent(in) :: group
       integer, intent(in) :: x_key, y_key
-      real(wp), allocatable, intent(out) :: corner(:, :)  !! Its corners: (2, n) [m]
-      type(error_t), allocatable, intent(out) :: error    !! No simple polygon
+      real(wp), allocatable, intent(out) :: corner(:, :)  !! Corners: (2, n) [m]
+      type(error_t), allocatable, intent(out) :: error    !! Allocated if the polygon is not simple
       type(area_moments_t) :: moments
 
       call take_points(group, x_key, y_key, 3, corner, error)
@@ -324,7 +324,7 @@ contains
       call check_polygon(group, corner, error)
    end subroutine take_polygon
 
-   !> Whether a polygon is simple and has an area
+   !> Check that a polygon is simple and has an area
    pure subroutine check_polygon(group, corner, error)
       type(key_group_t), intent(in) :: group
       real(wp), intent(in) :: corner(:, :)
@@ -343,7 +343,7 @@ contains
          & //place_text(crossing), error)
    end subroutine check_polygon
 
-   !> An opening
+   !> Read an opening
    pure subroutine take_opening(group, map, error)
       type(key_group_t), intent(in) :: group
       type(joint_map_t), intent(inout) :: map

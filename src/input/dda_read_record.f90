@@ -1,4 +1,4 @@
-!> Records of motion: columns of numbers below a header
+!> Records of motion: columns of numbers after a header
 module dda_read_record
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error, place_error
@@ -18,7 +18,7 @@ module dda_read_record
    integer, parameter :: most_columns = 10000
    !> Largest magnitude of a number
    real(wp), parameter :: largest = 1.0e30_wp
-   !> What begins a line of comment
+   !> First characters of comment lines
    character(len=*), parameter :: comment = "#!%"
 
 contains
@@ -26,13 +26,13 @@ contains
    !> Read a record
    subroutine read_record(file, column, scale, row, mark, error)
       character(len=*), intent(in) :: file  !! Name of the file
-      !> Columns of time, x and y: numbers from 1, 0 for none, or names of the header: (3)
+      !> Columns of time, x and y: numbers from 1, 0 for none, or names in the header: (3)
       character(len=*), intent(in) :: column(3)
-      real(wp), intent(in) :: scale                    !! What the two components are multiplied by
+      real(wp), intent(in) :: scale                    !! Factor of the two components
       real(wp), allocatable, intent(out) :: row(:, :)  !! Time and components: (3, n)
-      !> Length and check sums of the file
+      !> Length and checksum of the file
       character(len=:), allocatable, intent(out) :: mark
-      !> Bad input, with file and line; without a line if the file cannot be read
+      !> Allocated for bad input, with file and line; without a line if the file cannot be read
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
 
@@ -44,7 +44,7 @@ contains
       mark = text_mark(text)
    end subroutine read_record
 
-   !> A record from its text. Lines before the first that begins with a number are its header
+   !> Read a record from a text. Lines before the first that begins with a number are its header
    pure subroutine parse_record(text, column, scale, row, error)
       character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
       character(len=*), intent(in) :: column(3)
@@ -86,7 +86,7 @@ contains
       call place_error(error, max(1, number))
    end subroutine parse_record
 
-   !> The last line of what was taken for a header, where nothing else was there
+   !> Words about the last line of the header, if the file has nothing else
    pure function last_row(text, header, n) result(words)
       character(len=*), intent(in) :: text
       integer, intent(in) :: header(2)  !! First and last character of the header's last line: (2)
@@ -98,7 +98,7 @@ contains
          & words = "; the last line is '"//shown(text(header(1):header(2)))//"'"
    end function last_row
 
-   !> Whether a line says nothing
+   !> True if a line is blank or a comment
    pure logical function is_blank(line)
       character(len=*), intent(in) :: line  !! The line
       integer :: first
@@ -108,7 +108,7 @@ contains
       if (.not. is_blank) is_blank = scan(line(first:first), comment) > 0
    end function is_blank
 
-   !> Whether the first field of a line is a number
+   !> True if the first field of a line is a number
    pure logical function begins_with_number(line)
       character(len=*), intent(in) :: line
       real(wp) :: value
@@ -116,8 +116,8 @@ contains
       call read_number(field_of(line, 1, separator_of(line)), value, begins_with_number)
    end function begins_with_number
 
-   !> What separates the fields of a line: a semicolon or else a comma outside double quotes, or
-   !> else blanks
+   !> Separator of the fields of a line: a semicolon, else a comma, outside double quotes, else
+   !> blanks
    pure character function separator_of(line)
       character(len=*), intent(in) :: line
       logical :: quoted
@@ -136,9 +136,9 @@ contains
    !> One field of a line
    pure function field_of(line, number, separator) result(text)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number      !! Its number, from 1
-      character, intent(in) :: separator  !! A semicolon, comma or tab; a blank for blanks and tabs
-      !> The field without blanks and double quotes around it; empty if there is none
+      integer, intent(in) :: number      !! Number of the field, from 1
+      character, intent(in) :: separator  !! Semicolon, comma or tab; a blank for blanks and tabs
+      !> The field without surrounding blanks and double quotes; empty if there is none
       character(len=:), allocatable :: text
       character(len=2), parameter :: blanks = " "//achar(9)
       integer :: ends(2)
@@ -152,7 +152,8 @@ contains
       text = text(max(1, verify(text, blanks//"""")):verify(text, blanks//"""", back=.true.))
    end function field_of
 
-   !> First and last character of a word between blanks; the last before the first if there is none
+   !> First and last character of a word between blanks; the last precedes the first if there is
+   !> none
    pure function word_ends(line, number) result(ends)
       character(len=*), intent(in) :: line
       integer, intent(in) :: number
@@ -171,18 +172,18 @@ contains
       end do
    end function word_ends
 
-   !> Numbers of the columns; a name is looked for in the last line of the header
+   !> Find the columns; names are searched in the last line of the header
    pure subroutine find_columns(header, column, place, error)
-      character(len=*), intent(in) :: header  !! That line; empty if there is none
+      character(len=*), intent(in) :: header  !! Last line of the header; empty if there is none
       character(len=*), intent(in) :: column(3)
-      integer, intent(out) :: place(3)        !! Their numbers, 0 for none: (3)
+      integer, intent(out) :: place(3)        !! Numbers of the columns, 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       character :: separator
       integer :: i, k
       logical :: ok
 
       separator = separator_of(header)
-      ! names may have blanks where numbers are separated by tabs
+      ! names may contain blanks if numbers are separated by tabs
       if (separator == " " .and. index(trim(header), achar(9)) > 0) separator = achar(9)
       do i = 1, 3
          call read_integer(trim(column(i)), place(i), ok)
@@ -213,7 +214,7 @@ contains
       end do
    end function n_columns
 
-   !> Take the numbers of a row
+   !> Read the numbers of a row
    pure subroutine take_row(line, place, scale, row, error)
       character(len=*), intent(in) :: line
       integer, intent(in) :: place(3)  !! Columns of time, x and y; 0 for none: (3)
@@ -238,9 +239,9 @@ contains
       end do
    end subroutine take_row
 
-   !> Check that time goes on
+   !> Check that time increases
    pure subroutine check_time(time, error)
-      real(wp), intent(in) :: time(2)  !! Time of the row before and of this one: (2) [s]
+      real(wp), intent(in) :: time(2)  !! Time of the previous row and of this one: (2) [s]
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. time(2) > time(1)) call fatal_error(error, "expected a time after " &
