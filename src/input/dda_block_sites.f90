@@ -49,7 +49,7 @@ contains
    !> Compare a prescribed displacement with those of the same block. A block moves and strains
    !> linearly: along each axis, a linear combination of points has the same linear combination of
    !> displacements
-   pure subroutine compare_paths(held, other, more, size_of_block, contradicts, telling)
+   pure subroutine compare_paths(held, other, more, size_of_block, contradicts, independent)
       type(held_point_t), intent(in) :: held(:)  !! Restrained points: (n)
       !> Independent points of the same block: (n)
       integer, intent(in) :: other(:)
@@ -57,23 +57,23 @@ contains
       real(wp), intent(in) :: size_of_block  !! Size of the block [m]
       logical, intent(out) :: contradicts    !! True if the displacements are incompatible
       !> True if the point is independent; only such points are compared with later ones
-      logical, intent(out) :: telling
+      logical, intent(out) :: independent
       integer, allocatable :: same_axis(:)
       real(wp), allocatable :: row(:, :), share(:)
       integer :: axis, i
 
       contradicts = .false.
-      telling = .false.
+      independent = .false.
       do axis = 1, 2
          if (.not. more%along(axis)) cycle
          same_axis = pack(other, held(other)%along(axis))
-         telling = telling .or. size(same_axis) < enough
+         independent = independent .or. size(same_axis) < enough
          if (size(same_axis) == 0) cycle
          row = reshape([(1.0_wp, (held(same_axis(i))%point - more%point)/size_of_block, &
             & i=1, size(same_axis))], [3, size(same_axis)])
          share = least_squares(row, [1.0_wp, 0.0_wp, 0.0_wp], same)
          if (norm2(matmul(row, share) - [1.0_wp, 0.0_wp, 0.0_wp]) > same) then
-            telling = .true.
+            independent = .true.
             cycle
          end if
          same_axis = pack(same_axis, abs(share) > 0.0_wp)
@@ -214,7 +214,7 @@ contains
       type(site_t), intent(inout) :: site
       !> Allocated for a moving fixed block, or an incompatible point
       type(error_t), allocatable, intent(out) :: error
-      logical :: contradicts, telling
+      logical :: contradicts, independent
 
       if (plan%fixed(held%block) .and. allocated(held%path%value)) then
          if (any(abs(held%path%value) > 0.0_wp)) call fatal_error(error, "block " &
@@ -222,7 +222,7 @@ contains
          if (allocated(error)) return
       end if
       call compare_paths(plan%boundary%held, held_before(site, held%block), held, &
-         & site%size_of(held%block), contradicts, telling)
+         & site%size_of(held%block), contradicts, independent)
       if (contradicts) call fatal_error(error, &
          & "the prescribed displacement conflicts with the other fixed or " &
          & //"prescribed points of the block")
@@ -232,7 +232,7 @@ contains
       site%n_held = site%n_held + 1
       plan%boundary%held(site%n_held) = held
       call make_room(site%before, site%n_held)
-      if (.not. telling) return
+      if (.not. independent) return
       site%before(site%n_held) = site%last_held(held%block)
       site%last_held(held%block) = site%n_held
    end subroutine add_held

@@ -34,7 +34,7 @@ module dda_read_blocks
       & entry_kind_t("absorb", 0), entry_kind_t("remove", 2), entry_kind_t("add", 2)]
 
    !> Lines between two progress reports
-   integer, parameter :: told_lines = 10000
+   integer, parameter :: report_lines = 10000
 
    !> State of reading a file
    type :: reading_t
@@ -126,7 +126,7 @@ contains
          if (.not. allocated(error) .and. line%n > 0) call take_line(line, reading, warnings, error)
          call place_error(error, number)
          start = finish + 2
-         if (present(watch) .and. modulo(number, told_lines) == 0) &
+         if (present(watch) .and. modulo(number, report_lines) == 0) &
             & call watch%tell("reading blocks", real(start, wp)/real(len(text), wp))
       end do
       if (.not. allocated(error)) call close_entry(reading, warnings, error)
@@ -173,7 +173,7 @@ contains
          return
       end if
       associate (entry => reading%entry)
-         if (line%n /= entry%n_column) call fatal_error(error, row_wanted(entry)//", got " &
+         if (line%n /= entry%n_column) call fatal_error(error, row_form(entry)//", got " &
             & //to_text(line%n)//" words")
          if (allocated(error)) return
          call make_room(entry%row, entry%n_row + 1)
@@ -181,11 +181,11 @@ contains
          do i = 1, line%n
             call read_number(line%word(i)(:len_trim(line%word(i))), value, ok)
             if (.not. ok) then
-               call fatal_error(error, row_wanted(entry)//", got '"//shown(trim(line%word(i)))//"'")
+               call fatal_error(error, row_form(entry)//", got '"//shown(trim(line%word(i)))//"'")
                return
             else if (abs(value) > merge(largest_coordinate, largest_number, &
                & entry%n_column == 2)) then
-               call fatal_error(error, row_wanted(entry)//" of at most "//trim(merge("1e15", &
+               call fatal_error(error, row_form(entry)//" of at most "//trim(merge("1e15", &
                   & "1e30", entry%n_column == 2))//" in magnitude, got "//short_text(value) &
                   & //"; correct it or change the unit")
                return
@@ -196,7 +196,7 @@ contains
    end subroutine take_line
 
    !> Description of a row of an entry
-   pure function row_wanted(entry) result(text)
+   pure function row_form(entry) result(text)
       type(entry_t), intent(in) :: entry
       character(len=:), allocatable :: text
 
@@ -209,7 +209,7 @@ contains
       case default
          text = "expected one of "//listed(entries%word)
       end select
-   end function row_wanted
+   end function row_form
 
    !> Return the plan, its arrays reduced to their contents
    pure subroutine close_plan(reading, plan)
