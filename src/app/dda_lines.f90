@@ -50,7 +50,7 @@ contains
          & //" for pictures")
    end procedure draw_map
 
-   !> Name of the table beside a file of lines
+   !> Name of the table for a file of lines
    pure function table_name(file) result(name)
       character(len=*), intent(in) :: file   !! Name of the file
       character(len=:), allocatable :: name  !! The same with the ending .csv

@@ -154,8 +154,7 @@ contains
       call open_joints(size(graph%block, 2), graph%block, graph%row, motion, opening)
    end subroutine joint_motion
 
-   !> The same for arrays of explicit shape, here and below, which lets the compiler unroll the
-   !> loops
+   !> The same for arrays of explicit shape, here and below, whose loops the compiler unrolls
    pure subroutine open_joints(n_joint, block, row, motion, opening)
       integer, intent(in) :: n_joint            !! Number of joints
       integer, intent(in) :: block(2, n_joint)  !! Blocks of each joint: (2, n_joint)

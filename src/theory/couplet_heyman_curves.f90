@@ -100,7 +100,7 @@ contains
    elemental function initial_thickness(alpha, which) result(eta)
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-      !> 0 where A >= 1; else 2 (1/A - 1), or 3 (A - sqrt((A + 2)(A - 2/3))) for Milankovitch [-]
+      !> 0 if A >= 1; else 2 (1/A - 1), or 3 (A - sqrt((A + 2)(A - 2/3))) for Milankovitch [-]
       real(wp) :: eta
       real(wp) :: a, shortfall
 

@@ -39,7 +39,7 @@ module couplet_heyman_discrete
    type :: joint_role_enum
       integer :: intrados_hinge = 1  !! The thrust passes through its intrados corner
       integer :: extrados_hinge = 2  !! The thrust passes through its extrados corner
-      integer :: slides = 3          !! Its friction is exhausted
+      integer :: slides = 3          !! Its friction is fully mobilised
    end type joint_role_enum
 
    !> The names of the roles
@@ -62,7 +62,7 @@ contains
    !> Above solution%eta the arch has an admissible system of forces, below it none.
    pure subroutine discrete_critical(joint_angle, facets, friction, springing_no_slip, solution)
       !> Joints of one half, from the crown to the springing, strictly increasing, in [0, pi): (n)
-      !> [rad]. The first is 0 where there is a joint at the crown; otherwise a voussoir straddles
+      !> [rad]. The first is 0 if there is a joint at the crown; otherwise a voussoir straddles
       !> the crown
       real(wp), intent(in) :: joint_angle(:)
       !> Equal chords of each voussoir, from the crown: (n - 1) with a joint at the crown; (n)

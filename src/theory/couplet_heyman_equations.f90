@@ -32,7 +32,7 @@ module couplet_heyman_equations
       !> Thrust line tangent to the intrados, weight along the centre line (Cocchetti, Colasante,
       !> Rizzi)
       integer :: ccr = 2
-      integer :: milankovitch = 3  !! Thrust line tangent to the intrados, weight where it is
+      integer :: milankovitch = 3  !! Thrust line tangent to the intrados, true centre of weight
    end type theory_enum
 
    !> The names in use
@@ -254,7 +254,7 @@ contains
    elemental real(wp) function eccentricity(beta, eta, h, which)
       real(wp), intent(in) :: beta  !! Angle of the joint, [0, pi) [rad]
       real(wp), intent(in) :: eta
-      real(wp), intent(in) :: h     !! Horizontal thrust, positive where beta is 0 [w r]
+      real(wp), intent(in) :: h     !! Horizontal thrust, positive if beta is 0 [w r]
       integer, intent(in) :: which
       real(wp) :: drop
 

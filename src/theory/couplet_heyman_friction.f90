@@ -101,7 +101,7 @@ contains
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
       real(wp), intent(in) :: beta, eta, h      !! Critical hinge, thickness and thrust
-      real(wp), intent(out) :: x                !! That thrust, as asin(sqrt(1 - h)) [rad]
+      real(wp), intent(out) :: x                !! Its thrust, as asin(sqrt(1 - h)) [rad]
       real(wp), intent(out) :: mu               !! The coefficient
       logical, intent(out) :: springing_slides  !! True if the springing slides first there
       real(wp) :: springing, haunch
