@@ -243,7 +243,7 @@ contains
 
    !> Continue forces, strength and direction of sliding of previous contacts
    pure subroutine take_over_state(before, past, source, j, contacts)
-      type(contacts_t), intent(in) :: before  !! The contacts of the step before
+      type(contacts_t), intent(in) :: before  !! The contacts of the previous step
       !> The contacts of the previous step as a list
       type(past_contact_t), intent(in) :: past(:)
       integer, intent(in) :: source(2)  !! Contacts that the joint continues, 0 for none: (2)
