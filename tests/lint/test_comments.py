@@ -1,4 +1,4 @@
-"""Doc comments and commits begin with a verb or a noun phrase, and the rules find what does not."""
+"""Comments are in the words of the field, doc comments and commits begin as the rules ask, which find others."""
 
 from __future__ import annotations
 
@@ -9,15 +9,79 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: Doc comments of each folder that begin with a clause: these numbers may only become smaller
-CEILINGS = {"src": 752, "post": 103, "tests": 306}
+CEILINGS = {"src": 386, "post": 96, "tests": 303}
 #: Newest commits whose subjects are checked
 COMMITS = 8
+#: Folders of sources, and those whose comments still need other words: a folder is taken off when it has been rewritten
+FOLDERS = sorted(folder.name for folder in (REPOSITORY / "src").iterdir() if folder.is_dir())
+TO_REWRITE = ("arch", "case", "linalg", "search", "solver", "statics", "step")
 
 
 @pytest.mark.parametrize("folder", CEILINGS)
 def test_doc_comments_that_begin_with_a_clause_become_fewer(folder: str) -> None:
     found = list(comment_rules.openings(REPOSITORY / folder))
     assert len(found) <= CEILINGS[folder], "\n".join(found[-20:])
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_comments_of_a_folder_are_in_the_words_of_the_field(folder: str) -> None:
+    files = sorted((REPOSITORY / "src" / folder).glob("*.f90"))
+    found = [line for file in files for line in comment_rules.offences_of_comments(file)]
+    assert files != []
+    if folder in TO_REWRITE:
+        assert found != [], f"{folder} keeps the rules: take it off TO_REWRITE"
+    else:
+        assert found == []
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "What a file says of a material",
+        "Whether it could be told without reading the digits back",
+        "Which of them moves",
+        "The joints. How far they open is measured",
+        "Nothing here knows polygons",
+        "Springs of all joints, as the solver wants them",
+        "Fields, parted by commas",
+        "Compute all anew",
+        "Corners, seen from the origin",
+        "Is told of a task now and then",
+        "Hand contacts over; what is handed over is large",
+        "Look around for edges",
+        "Keep a distance, lest it creeps",
+        "Load that a block felt",
+        "A value that is left as it is",
+        "A row a case",
+        "Contacts of the step before",
+        "Whether blocks move in time",
+    ],
+)
+def test_words_of_comments_are_found(tmp_path: Path, comment: str) -> None:
+    half = comment.find(" ", 3)
+    name = tmp_path / "a.f90"
+    for source in (f"   !> {comment}\n", f"   integer :: n = 0  !! {comment}\n",
+                   f"   x = 'it''s' ! {comment[:half]}\n   ! {comment[half + 1:]}\n"):
+        name.write_text(f"print *, 'What it says: anew'\n{source}end\n", encoding="utf-8")
+        found = comment_rules.offences_of_comments(name)
+        assert found != [] and all(line.startswith(f"{name}:2: ") for line in found), source
+
+
+def test_good_comments_are_left_alone(tmp_path: Path) -> None:
+    source = """   !> Number of joints: what counts is their length. True if whether matters
+   !>
+   !> Blocks before Newton's method is used; a part by volume
+   !$omp What it says
+   integer :: n = 0  !! First row, whatever it contains
+   print *, "What is told anew", 'it''s !! What'
+"""
+    (tmp_path / "a.f90").write_text(source, encoding="utf-8")
+    assert comment_rules.offences_of_comments(tmp_path / "a.f90") == []
+
+
+def test_lines_of_a_paragraph_are_one_comment() -> None:
+    source = "   !> One\n   !> two\n   !>\n   !> three\nx = '!'  !! four\n         !! five\n   ! six\n"
+    assert list(comment_rules.comments(source)) == [(1, "One two"), (4, "three"), (5, "four five"), (7, "six")]
 
 
 def test_subjects_of_the_newest_commits_have_an_area_and_a_verb() -> None:
