@@ -1,9 +1,9 @@
-!> What a Fortran program may call: decks as the command dda reads them, and joints on a graph
+!> Public procedures for Fortran programs: decks as in the command dda, and joints on a graph
 !>
 !>    call read_deck("arch.nml", deck, error)
 !>    call solve_case(deck, 1, row, joint, remark, error)
 !>
-!> All else is of the program's own, and may change.
+!> Everything else is internal to the program and may change.
 module voussoir
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
    use dda_case, only : case_t, prepare_case
@@ -33,17 +33,17 @@ module voussoir
 
 contains
 
-   !> Compute one case of a deck. Not from two threads at a time: texts are made
+   !> Compute one case of a deck. Not thread-safe, because it makes texts
    subroutine solve_case(deck, number, row, joint, remark, error)
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases(deck)
       integer, intent(in) :: number
       type(result_row_t), intent(out) :: row
-      !> Its rows of joints.csv: (n_joint), (0) where there are none
+      !> Rows of joints.csv: (n_joint); (0) if there are none
       type(joint_row_t), allocatable, intent(out) :: joint(:)
-      !> What the log would say beside the row, the reason of `undecided` among it
+      !> Remark as in the log, including the reason of `undecided`
       character(len=:), allocatable, intent(out) :: remark
-      !> A number out of range, or a case that cannot be made
+      !> Allocated for a number out of range or an invalid case
       type(error_t), allocatable, intent(out) :: error
       type(deck_t), allocatable :: case_of_deck
       type(case_t) :: this

@@ -1,9 +1,9 @@
-/* Threads of BLAS. The procedures are found by name at run time, because the reference BLAS has none */
+/* Threads of BLAS. The procedures are found by name at run time; the reference BLAS has none */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stddef.h>
 
-/* Let BLAS use one thread: OpenBLAS, MKL and FlexiBLAS */
+/* Restrict BLAS to one thread: OpenBLAS, MKL and FlexiBLAS */
 void voussoir_set_one_blas_thread(void)
 {
     static const char *const name[] = {"openblas_set_num_threads", "MKL_Set_Num_Threads",
@@ -15,7 +15,7 @@ void voussoir_set_one_blas_thread(void)
     }
 }
 
-/* Whether threads may call BLAS at the same time: an OpenBLAS built without threads has no locks */
+/* 1 if threads may call BLAS at the same time: an OpenBLAS built without threads has no locks */
 int voussoir_blas_has_locks(void)
 {
     int (*kind_of_threads)(void);

@@ -1,4 +1,4 @@
-!> Memory that is used again from case to case: left to the C library
+!> Reuse of memory between cases: no settings for this C library
 module dda_memory
    implicit none
    private
@@ -7,7 +7,7 @@ module dda_memory
 
 contains
 
-   !> Nothing to be told to this C library
+   !> Do nothing: this C library has no settings
    subroutine keep_memory()
    end subroutine keep_memory
 end module dda_memory

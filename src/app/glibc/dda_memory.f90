@@ -1,4 +1,4 @@
-!> Memory that is used again from case to case, for the C library glibc
+!> Reuse of memory between cases, for the C library glibc
 module dda_memory
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -6,27 +6,27 @@ module dda_memory
 
    public :: keep_memory
 
-   !> Free memory at the end of the heap that goes back to the system [bytes]
+   !> Free memory at the end of the heap that is returned to the system [bytes]
    integer(c_int), parameter :: trim_threshold = -1
-   !> How much more than is needed the heap grows by [bytes]
+   !> Spare memory requested whenever the heap grows [bytes]
    integer(c_int), parameter :: top_pad = -2
-   !> Size from which on an array gets pages of its own [bytes]
+   !> Size of arrays above which they get their own pages [bytes]
    integer(c_int), parameter :: mmap_threshold = -3
 
    interface
       !> C: set a parameter of the allocator
       function c_mallopt(parameter, value) bind(c, name="mallopt") result(done)
          import :: c_int
-         integer(c_int), intent(in), value :: parameter  !! One of the above
-         integer(c_int), intent(in), value :: value      !! Its value
-         integer(c_int) :: done                          !! 1 if it was set
+         integer(c_int), intent(in), value :: parameter  !! One of the above parameters
+         integer(c_int), intent(in), value :: value      !! Value of the parameter
+         integer(c_int) :: done                          !! 1 on success
       end function c_mallopt
    end interface
 
 contains
 
-   !> Keep freed memory instead of giving it back: a case uses as much as the case before, and pages
-   !> that are new must be cleared by the system, which can take longer than the decision itself
+   !> Keep freed memory instead of returning it to the system: a case needs as much as the previous
+   !> one, and the system must clear new pages, which can take longer than the decision itself
    subroutine keep_memory()
       integer(c_int) :: done
 

@@ -1,5 +1,5 @@
-!> XML by libxml2 (https://gnome.pages.gitlab.gnome.org/libxml2/): no network, no DTD, no
-!> entities of the file's own
+!> XML by libxml2 (https://gnome.pages.gitlab.gnome.org/libxml2/): without network, DTD and entities
+!> of the file
 module dda_xml_parser
    use, intrinsic :: iso_c_binding, only : c_associated, c_funloc, c_funptr, c_int, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof
@@ -15,53 +15,53 @@ module dda_xml_parser
 
    public :: parse_xml, has_xml
 
-   !> Whether this build reads XML
+   !> True if this build reads XML
    logical, parameter :: has_xml = .true.
-   !> Deepest element that is read
+   !> Maximum depth of elements
    integer, parameter :: max_depth = 100
-   !> libxml2: print neither errors nor warnings, never use the network, no limits of its own to
-   !> the length of a text
+   !> libxml2: print no errors and warnings, do not use the network, do not limit the length of
+   !> texts
    integer(c_int), parameter :: options = int(ior(ior(32, 64), ior(2048, 524288)), c_int)
 
    !> libxml2's kinds of nodes
    type :: node_enum
-      integer :: element = 1             !! An element begins
+      integer :: element = 1             !! Start of an element
       integer :: text = 3                !! Text
-      integer :: cdata = 4               !! Text that may hold marks
-      integer :: instruction = 7         !! An instruction to a program
+      integer :: cdata = 4               !! Text that may contain markup characters
+      integer :: instruction = 7         !! A processing instruction
       integer :: comment = 8             !! A comment
       integer :: blank = 13              !! Blanks between elements
-      integer :: significant_blank = 14  !! Blanks that count
-      integer :: element_end = 15        !! An element ends
+      integer :: significant_blank = 14  !! Significant blanks
+      integer :: element_end = 15        !! End of an element
    end type node_enum
 
    !> Names of the kinds
    type(node_enum), parameter :: node = node_enum()
 
-   !> libxml2's xmlError as far as it is used here
+   !> libxml2's xmlError, as far as used here
    type, bind(c) :: xml_error_t
       integer(c_int) :: domain  !! Part of the library
       integer(c_int) :: code    !! Number of the error
-      type(c_ptr) :: message    !! What happened
-      integer(c_int) :: level   !! How bad it is
+      type(c_ptr) :: message    !! Text of the error
+      integer(c_int) :: level   !! Severity
       type(c_ptr) :: file       !! Name of the file
       integer(c_int) :: line    !! Line of the file
    end type xml_error_t
 
    interface
-      !> libxml2: prepare whatever it may need
+      !> libxml2: initialise the library
       subroutine init_parser() bind(c, name="xmlInitParser")
       end subroutine init_parser
 
-      !> libxml2: parse a text in memory. Its reader would parse in pieces of 512 bytes, and begin
-      !> long texts and names anew at each piece
+      !> libxml2: parse a text in memory. Its reader would parse in pieces of 512 bytes, and start
+      !> long texts and names again with each piece
       function read_memory(text, size, url, encoding, options) &
          & bind(c, name="xmlReadMemory") result(document)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: text
-         integer(c_int), intent(in), value :: size     !! Its length
+         integer(c_int), intent(in), value :: size     !! Length of the text
          type(c_ptr), intent(in), value :: url
-         type(c_ptr), intent(in), value :: encoding    !! Encoding; null to find it
+         type(c_ptr), intent(in), value :: encoding    !! Encoding; null to detect it
          integer(c_int), intent(in), value :: options  !! Sum of options
          type(c_ptr) :: document                       !! The document; null after a failure
       end function read_memory
@@ -72,7 +72,7 @@ module dda_xml_parser
          type(c_ptr), intent(in), value :: document
       end subroutine free_document
 
-      !> libxml2: a reader of a document
+      !> libxml2: make a reader of a document
       function reader_of(document) bind(c, name="xmlReaderWalker") result(reader)
          import :: c_ptr
          type(c_ptr), intent(in), value :: document
@@ -85,77 +85,77 @@ module dda_xml_parser
          type(c_ptr), intent(in), value :: reader
       end subroutine free_reader
 
-      !> libxml2: go to the next node
+      !> libxml2: advance to the next node
       function read_node(reader) bind(c, name="xmlTextReaderRead") result(status)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         integer(c_int) :: status  !! 1 if there is one, 0 at the end, -1 after a failure
+         integer(c_int) :: status  !! 1 for a node, 0 at the end, -1 after a failure
       end function read_node
 
-      !> libxml2: kind of this node
+      !> libxml2: kind of the current node
       function node_type(reader) bind(c, name="xmlTextReaderNodeType") result(kind)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
          integer(c_int) :: kind  !! One of node_enum
       end function node_type
 
-      !> libxml2: whether this element holds nothing, so that no node tells its end
+      !> libxml2: 1 if the current element is empty and has no end node
       function is_empty(reader) bind(c, name="xmlTextReaderIsEmptyElement") result(yes)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         integer(c_int) :: yes  !! 1 if it does
+         integer(c_int) :: yes  !! 1 for an empty element
       end function is_empty
 
-      !> libxml2: number of attributes and namespaces of this element
+      !> libxml2: number of attributes and namespaces of the current element
       function count_attributes(reader) bind(c, name="xmlTextReaderAttributeCount") result(n)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         integer(c_int) :: n  !! How many
+         integer(c_int) :: n  !! Number of attributes
       end function count_attributes
 
-      !> libxml2: whether this attribute declares a namespace
+      !> libxml2: 1 if the current attribute declares a namespace
       function is_namespace(reader) bind(c, name="xmlTextReaderIsNamespaceDecl") result(yes)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
          integer(c_int) :: yes
       end function is_namespace
 
-      !> libxml2: go to the next attribute
+      !> libxml2: advance to the next attribute
       function next_attribute(reader) bind(c, name="xmlTextReaderMoveToNextAttribute") &
          & result(status)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         integer(c_int) :: status  !! 1 if there is one
+         integer(c_int) :: status  !! 1 for an attribute
       end function next_attribute
 
       !> libxml2: name without prefix
       function local_name(reader) bind(c, name="xmlTextReaderConstLocalName") result(name)
          import :: c_ptr
          type(c_ptr), intent(in), value :: reader
-         type(c_ptr) :: name  !! C's text
+         type(c_ptr) :: name  !! C text
       end function local_name
 
       !> libxml2: text or value
       function node_value(reader) bind(c, name="xmlTextReaderConstValue") result(value)
          import :: c_ptr
          type(c_ptr), intent(in), value :: reader
-         type(c_ptr) :: value  !! C's text
+         type(c_ptr) :: value  !! C text
       end function node_value
 
-      !> libxml2: say who is told of errors, warnings and encodings that fail
+      !> libxml2: set the receiver of errors, warnings and failed encodings
       subroutine set_error_listener(context, listener) bind(c, name="xmlSetStructuredErrorFunc")
          import :: c_funptr, c_ptr
          type(c_ptr), intent(in), value :: context
          type(c_funptr), intent(in), value :: listener
       end subroutine set_error_listener
 
-      !> libxml2: what went wrong last
+      !> libxml2: the last error
       function last_error() bind(c, name="xmlGetLastError") result(error)
          import :: c_ptr
          type(c_ptr) :: error  !! An xmlError, or null
       end function last_error
 
-      !> libxml2: forget what went wrong
+      !> libxml2: delete the last error
       subroutine reset_error() bind(c, name="xmlResetLastError")
       end subroutine reset_error
 
@@ -163,14 +163,14 @@ module dda_xml_parser
       function c_strlen(text) bind(c, name="strlen") result(length)
          import :: c_ptr, c_size_t
          type(c_ptr), intent(in), value :: text
-         integer(c_size_t) :: length  !! Characters before the null character
+         integer(c_size_t) :: length  !! Number of characters before the null character
       end function c_strlen
 
       !> C: copy bytes
       subroutine c_memcpy(to, from, n) bind(c, name="memcpy")
          import :: c_ptr, c_size_t
          type(c_ptr), intent(in), value :: to, from
-         integer(c_size_t), intent(in), value :: n  !! How many
+         integer(c_size_t), intent(in), value :: n  !! Number of bytes
       end subroutine c_memcpy
    end interface
 
@@ -178,10 +178,10 @@ contains
 
    !> Read an XML text
    subroutine parse_xml(text, file, tree, error)
-      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: text              !! The text of the file
       character(len=*), intent(in) :: file              !! Name of the file
       type(xml_tree_t), intent(out) :: tree
-      type(error_t), allocatable, intent(out) :: error  !! What is not XML, with its line
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for invalid XML, with its line
       character(len=:), allocatable, target :: kept
       type(xml_builder_t) :: builder
       type(c_ptr) :: document, reader
@@ -190,7 +190,7 @@ contains
       call new_xml_builder(text, file, builder, error)
       if (allocated(error)) return
       call begin_parser()
-      ! XML allows no blank lines before it, people do
+      ! XML allows no blank lines before it, but users write them
       first = max(1, verify(text, " "//achar(9)//achar(10)))
       kept = text(first:)//c_null_char
       document = read_memory(c_loc(kept(1:1)), len(kept, c_int) - 1, c_null_ptr, c_null_ptr, &
@@ -216,7 +216,7 @@ contains
       tree%n = builder%tree%n
    end subroutine parse_xml
 
-   !> Prepare libxml2, which divides by zero to have a NaN
+   !> Prepare libxml2, which divides by zero to make a NaN
    subroutine begin_parser()
       type(ieee_status_type) :: status
 
@@ -228,15 +228,15 @@ contains
       call set_error_listener(c_null_ptr, c_funloc(print_nothing))
    end subroutine begin_parser
 
-   !> Hear of an error and print nothing: the last one is asked for
+   !> Receive an error without printing it; the last one is read later
    subroutine print_nothing(context, address) bind(c)
-      type(c_ptr), intent(in), value :: context  !! What was passed with the listener
+      type(c_ptr), intent(in), value :: context  !! Context passed with the listener
       type(c_ptr), intent(in), value :: address
 
       if (c_associated(context) .or. c_associated(address)) return
    end subroutine print_nothing
 
-   !> Take what the reader stands on
+   !> Add the current node to the tree
    subroutine take_node(reader, builder)
       type(c_ptr), intent(in) :: reader
       type(xml_builder_t), intent(inout) :: builder
@@ -262,10 +262,10 @@ contains
       end if
    end subroutine take_node
 
-   !> Take the attributes of the element that begins here
+   !> Read the attributes of the current element
    subroutine take_attributes(reader, attribute)
       type(c_ptr), intent(in) :: reader
-      !> Receives them, namespaces left out: (n)
+      !> The attributes without namespaces: (n)
       type(xml_attribute_t), allocatable, intent(out) :: attribute(:)
       type(xml_attribute_t), allocatable :: all(:)
       integer :: n
@@ -285,10 +285,10 @@ contains
       end if
    end subroutine take_attributes
 
-   !> Make an error of what libxml2 says
+   !> Make an error from that of libxml2
    subroutine report_error(file, skipped, error)
       character(len=*), intent(in) :: file
-      integer, intent(in) :: skipped  !! Lines of the file before what libxml2 was given
+      integer, intent(in) :: skipped  !! Number of lines of the file before the parsed text
       type(error_t), allocatable, intent(out) :: error
       type(xml_error_t), target :: said
       character(len=:), allocatable :: message
@@ -308,9 +308,9 @@ contains
          & //"; correct it", file, line + skipped)
    end subroutine report_error
 
-   !> A C text as Fortran's
+   !> Convert a C text to Fortran
    function fortran_text(address) result(text)
-      type(c_ptr), intent(in) :: address  !! Where it is; may be null
+      type(c_ptr), intent(in) :: address  !! Address of the text; may be null
       character(len=:), allocatable, target :: text
       integer(c_size_t) :: n
 

@@ -1,4 +1,4 @@
-!> Stands in for the XML parser in builds without libxml2: says what is missing
+!> Replacement of the XML parser in builds without libxml2: reports the missing library
 module dda_xml_parser
    use dda_error, only : error_t, fatal_error
    use dda_xml_tree, only : xml_tree_t
@@ -7,16 +7,16 @@ module dda_xml_parser
 
    public :: parse_xml, has_xml
 
-   !> Whether this build reads XML
+   !> True if this build reads XML
    logical, parameter :: has_xml = .false.
 
 contains
 
-   !> Refuse an XML file
+   !> Report that XML files cannot be read
    subroutine parse_xml(text, file, tree, error)
-      character(len=*), intent(in) :: text              !! The file's text
+      character(len=*), intent(in) :: text              !! The text of the file
       character(len=*), intent(in) :: file              !! Name of the file
-      type(xml_tree_t), intent(out) :: tree             !! Left without elements
+      type(xml_tree_t), intent(out) :: tree             !! Empty
       type(error_t), allocatable, intent(out) :: error  !! Always allocated
 
       tree%file = file
