@@ -9,7 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: Doc comments of each folder that begin with a clause: these numbers may only become smaller
-CEILINGS = {"src": 386, "post": 96, "tests": 303}
+CEILINGS = {"src": 381, "post": 96, "tests": 303}
 #: Newest commits whose subjects are checked
 COMMITS = 8
 #: Folders of sources, and those whose comments still need other words: a folder is taken off when it has been rewritten
@@ -25,7 +25,7 @@ def test_doc_comments_that_begin_with_a_clause_become_fewer(folder: str) -> None
 
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_comments_of_a_folder_are_in_the_words_of_the_field(folder: str) -> None:
-    files = sorted((REPOSITORY / "src" / folder).glob("*.f90"))
+    files = sorted((REPOSITORY / "src" / folder).rglob("*.f90"))
     found = [line for file in files for line in comment_rules.offences_of_comments(file)]
     assert files != []
     if folder in TO_REWRITE:
