@@ -1,6 +1,6 @@
 !> dda export: arches as Limerick files or files of blocks, and cut blocks as files of blocks
 submodule (dda_verbs) dda_export
-   use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
+   use dda_arch_lines, only : arch_analysis, arch_lines, lost_keys
    use dda_binary_file, only : write_file
    use dda_deck, only : deck_t, has_group, key_error, source_of
    use dda_deck_sweep, only : n_cases, turn_to_case
@@ -130,8 +130,8 @@ contains
          & //stem//"_plain.ana")
       call print_line(screen, "   the plain .ana has no place for contact constants, automatic "// &
          & "step and penalty, plane strain and gravity (only as unit weight over unit mass)")
-      if (what_is_lost(deck) /= "") call print_line(screen, &
-         & "   neither form has a place for "//what_is_lost(deck))
+      if (lost_keys(deck) /= "") call print_line(screen, &
+         & "   neither form has a place for "//lost_keys(deck))
       if (has_group(deck, search_group)) call print_line(screen, &
          & "   the search is not written: the files hold the deck's own value of its parameter")
    end subroutine report_files

@@ -20,7 +20,7 @@ module dda_contact_search
    implicit none
    private
 
-   public :: find_edge_pairs, new_joint_search, look_around, law_between, touching_joints
+   public :: find_edge_pairs, new_joint_search, store_near_edges, law_between, touching_joints
    public :: near_joints, remember_drawn
 
    !> Smallest and largest margin over the block size
@@ -77,7 +77,7 @@ contains
 
    !> Store pairs of edges that may come near in this step and the following ones, unless the stored
    !> pairs suffice
-   pure subroutine look_around(search, system, reach)
+   pure subroutine store_near_edges(search, system, reach)
       type(joint_search_t), intent(inout) :: search
       type(block_system_t), intent(in) :: system
       !> Largest motion of the corners of each block in this step: (n_block) [m]
@@ -92,7 +92,7 @@ contains
          call edge_boxes(search%outline, known%vertex, known%reach, low, high)
          call search_pairs(search%outline, system%equation, low, high, known%pair)
       end associate
-   end subroutine look_around
+   end subroutine store_near_edges
 
    !> True if the stored pairs include all near pairs
    pure logical function covers(search, vertex, reach)

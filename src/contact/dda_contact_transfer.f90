@@ -2,7 +2,7 @@
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_search, only : look_around, near_joints
+   use dda_contact_search, only : store_near_edges, near_joints
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
       & place_joint, slip_at
    use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
@@ -81,13 +81,13 @@ contains
       real(wp) :: gap(3)
 
       call list_past(system, contacts, past, closed)
-      call look_around(contacts%search, system, reach)
+      call store_near_edges(contacts%search, system, reach)
       call near_joints(contacts%search, system, travel, closed, reach, &
          & .not. contacts%remember, joint)
       allocate (source(2, size(joint)), place(size(joint)))
       call match_contacts(system, joint, reach, past, source)
       do j = 1, size(joint)
-         call take_over_slip(system, past, source(:, j), .not. contacts%remember, joint(j), &
+         call continue_slip(system, past, source(:, j), .not. contacts%remember, joint(j), &
             & place(j))
       end do
       call move_alloc(contacts%face, before%face)
@@ -98,11 +98,11 @@ contains
       call new_joint_springs(system, system%motion, contacts%joint, contacts%law, &
          & contacts%place, penalty_ratio, n_dof, contacts%springs)
       do j = 1, size(contacts%joint)
-         call take_over_state(before, past, source(:, j), j, contacts)
+         call continue_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))
          call place_joint(system%moved, contacts%joint(j), contacts%place(j), gap)
-         if (.not. contacts%remember) call stay_inside(contacts%joint(j), gap)
+         if (.not. contacts%remember) call accept_penetration(contacts%joint(j), gap)
          contacts%gap(:, j) = gap
          contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
          call guess_face(source(:, j), j, contacts)
@@ -154,7 +154,7 @@ contains
    end subroutine list_past
 
    !> Continue the slip of previous contacts in a joint, and place the joint
-   pure subroutine take_over_slip(system, past, source, in_time, joint, place)
+   pure subroutine continue_slip(system, past, source, in_time, joint, place)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)  !! The contacts of the previous step
       integer, intent(in) :: source(2)             !! Continued contacts, 0 for none: (2)
@@ -185,7 +185,7 @@ contains
          joint%contact%share = apart([2, 1])/sum(apart)
       end if
       call place_joint(system%moved, joint, place, gap)
-   end subroutine take_over_slip
+   end subroutine continue_slip
 
    !> Keep the shear force if the stiffness changes
    pure subroutine keep_shear(system, past, source, stiffness, joint)
@@ -207,7 +207,7 @@ contains
 
    !> Accept the present penetration of a corner. Its removal would add energy: in the shortest
    !> steps the smallest displacement is a speed
-   pure subroutine stay_inside(joint, gap)
+   pure subroutine accept_penetration(joint, gap)
       type(joint_t), intent(inout) :: joint
       real(wp), intent(inout) :: gap(3)  !! Opening at the two contacts, and slip: (3) [m]
       integer :: k
@@ -217,7 +217,7 @@ contains
          joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k)
          gap(k) = 0.0_wp
       end do
-   end subroutine stay_inside
+   end subroutine accept_penetration
 
    !> Set the slip of a joint to zero at the present position
    pure subroutine lock_joint(vertex, joint)
@@ -242,7 +242,7 @@ contains
    end function edge_size
 
    !> Continue forces, strength and direction of sliding of previous contacts
-   pure subroutine take_over_state(before, past, source, j, contacts)
+   pure subroutine continue_state(before, past, source, j, contacts)
       type(contacts_t), intent(in) :: before  !! The contacts of the previous step
       !> The contacts of the previous step as a list
       type(past_contact_t), intent(in) :: past(:)
@@ -263,7 +263,7 @@ contains
                & contacts%face(j)%slip = before%face(old%joint)%slip
          end associate
       end do
-   end subroutine take_over_state
+   end subroutine continue_state
 
    !> Initial face of a joint: continued contacts by their trial force, new ones by their gap
    pure subroutine guess_face(source, j, contacts)

@@ -340,14 +340,14 @@ contains
       half = (size(item) + 1)/2
       axis = merge(1, 2, maxval(centre(1, :)) - minval(centre(1, :)) &
          & >= maxval(centre(2, :)) - minval(centre(2, :)))
-      call part_at(centre, item, axis, half)
+      call partition(centre, item, axis, half)
       call fill_leaves(centre(:, :half), item(:half), 2*node, tree)
       call fill_leaves(centre(:, half + 1:), item(half + 1:), 2*node + 1, tree)
    end subroutine fill_leaves
 
    !> Move the n boxes with the smallest coordinates to the front (Hoare 1961). The pivot is chosen
    !> at random, so that no order of the input is a bad one
-   pure subroutine part_at(centre, item, axis, n)
+   pure subroutine partition(centre, item, axis, n)
       real(wp), intent(inout) :: centre(:, :)  !! Centres of the boxes: (2, :) [m]
       integer, intent(inout) :: item(:)
       integer, intent(in) :: axis              !! Axis of the coordinate, 1 or 2
@@ -389,5 +389,5 @@ contains
             exit
          end if
       end do
-   end subroutine part_at
+   end subroutine partition
 end module dda_box_tree

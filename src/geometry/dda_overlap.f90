@@ -40,8 +40,8 @@ contains
       common(:, 2) = minval(box(:, 2, :), dim=2)
       if (any(common(:, 2) - common(:, 1) <= tolerance)) return
       if (.not. (has_tree(first_tree) .or. has_tree(second_tree))) then
-         if (are_apart(first, second, tolerance)) return
-         if (are_apart(second, first, tolerance)) return
+         if (are_separated(first, second, tolerance)) return
+         if (are_separated(second, first, tolerance)) return
       end if
       common(:, 1) = common(:, 1) - tolerance
       common(:, 2) = common(:, 2) + tolerance
@@ -50,8 +50,8 @@ contains
       call deepest_on_outline(second, first, common, deepest(2), place(:, 2), second_tree, &
          & first_tree)
       point = place(:, maxloc(deepest, dim=1))
-      if (holds_all(second, first, box(:, :, 1), common, tolerance, second_tree)) inside = 1
-      if (holds_all(first, second, box(:, :, 2), common, tolerance, first_tree)) inside = 2
+      if (contains_all(second, first, box(:, :, 1), common, tolerance, second_tree)) inside = 1
+      if (contains_all(first, second, box(:, :, 2), common, tolerance, first_tree)) inside = 2
       overlaps = any(deepest > tolerance) .or. inside > 0
       if (present(depth)) depth = maxval(deepest)
    end subroutine find_overlap
@@ -73,14 +73,14 @@ contains
 
    !> True if an edge of one polygon separates it from another, except for a strip of at most the
    !> tolerance
-   pure logical function are_apart(one, other, tolerance)
+   pure logical function are_separated(one, other, tolerance)
       real(wp), intent(in) :: one(:, :)    !! Corners of the one: (2, n) [m]
       real(wp), intent(in) :: other(:, :)  !! Corners of the other: (2, m) [m]
       real(wp), intent(in) :: tolerance
       real(wp) :: ends(4), normal(2), top, bottom
       integer :: e, i
 
-      are_apart = .false.
+      are_separated = .false.
       do e = 1, size(one, 2)
          ends = edge_ends(one, e)
          normal = right_normal(ends(3:4) - ends(1:2))
@@ -92,13 +92,13 @@ contains
          do i = 1, size(other, 2)
             bottom = min(bottom, dot_product(normal, other(:, i) - ends(1:2)))
          end do
-         are_apart = top - bottom <= tolerance*norm2(normal)
-         if (are_apart) return
+         are_separated = top - bottom <= tolerance*norm2(normal)
+         if (are_separated) return
       end do
-   end function are_apart
+   end function are_separated
 
    !> True if a polygon contains all corners of another
-   pure logical function holds_all(vertex, other, box, common, tolerance, tree)
+   pure logical function contains_all(vertex, other, box, common, tolerance, tree)
       real(wp), intent(in) :: vertex(:, :), other(:, :)
       real(wp), intent(in) :: box(2, 2)  !! Bounding box of the other: (2, 2) [m]
       !> Intersection of both boxes, widened by the tolerance: (2, 2) [m]
@@ -107,12 +107,12 @@ contains
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 
-      holds_all = all(box(:, 1) >= common(:, 1)) .and. all(box(:, 2) <= common(:, 2))
+      contains_all = all(box(:, 1) >= common(:, 1)) .and. all(box(:, 2) <= common(:, 2))
       do i = 1, size(other, 2)
-         if (.not. holds_all) return
-         holds_all = depth_in(vertex, other(:, i), tree) > -tolerance
+         if (.not. contains_all) return
+         contains_all = depth_in(vertex, other(:, i), tree) > -tolerance
       end do
-   end function holds_all
+   end function contains_all
 
    !> Deepest point of one polygon's outline in another. Candidates are its corners and the middles
    !> of its edges between the lines of near edges

@@ -79,7 +79,7 @@ contains
             case ("base_acceleration", "base_velocity", "base_displacement")
                call take_ground(entry, plan, error)
             case ("fix_line")
-               call hold_line(entry, plan, site, error)
+               call restrain_line(entry, plan, site, error)
             case ("bar")
                call take_bar(entry, plan, site, file, warnings, error)
             case ("water")
@@ -160,7 +160,7 @@ contains
    end subroutine take_ground
 
    !> Restrain a line: the ends of its part in each block that it crosses or touches
-   pure subroutine hold_line(entry, plan, site, error)
+   pure subroutine restrain_line(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
       type(site_t), intent(inout) :: site  !! Positions of the blocks and their restraints
@@ -195,7 +195,7 @@ contains
       end do
       if (site%n_held == n_before) call fatal_error(error, &
          & "expected a line that crosses a block or runs along its edge, got one that does not")
-   end subroutine hold_line
+   end subroutine restrain_line
 
    !> Read a point of a block
    pure subroutine take_point(entry, plan, site, file, warnings, error)

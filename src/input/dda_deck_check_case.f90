@@ -82,7 +82,7 @@ contains
       integer :: key, first, last
 
       do key = 1, size(deck_key)
-         if (deck_key(key)%needs == "" .or. .not. acts(deck%value(key), deck_key(key))) cycle
+         if (deck_key(key)%needs == "" .or. .not. is_active(deck%value(key), deck_key(key))) cycle
          first = 1
          do while (first <= len_trim(deck_key(key)%needs) .and. .not. allocated(error))
             last = first + index(trim(deck_key(key)%needs(first:))//", ", ", ") - 2
@@ -94,17 +94,17 @@ contains
    end subroutine check_needs
 
    !> True if a value is given and differs from the default
-   pure logical function acts(value, key)
+   pure logical function is_active(value, key)
       type(deck_value_t), intent(in) :: value
       type(key_t), intent(in) :: key
       type(deck_value_t) :: default
 
-      acts = value%given
-      if (.not. acts .or. key%default == "") return
+      is_active = value%given
+      if (.not. is_active .or. key%default == "") return
       default = default_value(key)
-      acts = abs(value%number - default%number) > 0.0_wp .or. (value%flag .neqv. default%flag)
-      if (allocated(value%text)) acts = value%text /= default%text
-   end function acts
+      is_active = abs(value%number - default%number) > 0.0_wp .or. (value%flag .neqv. default%flag)
+      if (allocated(value%text)) is_active = value%text /= default%text
+   end function is_active
 
    !> Check one requirement of a key
    pure subroutine check_need(deck, key, need, error)

@@ -44,10 +44,10 @@ contains
       if (deck%value(analysis_mode)%text /= "dynamic") then
          problem = "&ground needs mode = 'dynamic', got '" &
             & //deck%value(analysis_mode)%text//"'; change the one or remove the other"
-      else if (gives(deck, ground_pulse) .and. gives(deck, ground_record)) then
+      else if (is_given(deck, ground_pulse) .and. is_given(deck, ground_record)) then
          problem = "&ground needs a pulse or a record, got both; remove one of them"
          key = ground_record
-      else if (.not. (gives(deck, ground_pulse) .or. gives(deck, ground_record)) &
+      else if (.not. (is_given(deck, ground_pulse) .or. is_given(deck, ground_record)) &
          & .and. deck%value(scene_kind)%text /= "blocks") then
          problem = "&ground needs a pulse or a record, got none; give one"
       end if
@@ -68,12 +68,12 @@ contains
    end function ground_key
 
    !> True if a key is given or searched
-   pure logical function gives(deck, key)
+   pure logical function is_given(deck, key)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: key  !! Place of the key in the registry
 
-      gives = deck%value(key)%given .or. deck%searched%key == key
-   end function gives
+      is_given = deck%value(key)%given .or. deck%searched%key == key
+   end function is_given
 
    !> Check required keys of a pulse or a record, and keys without effect
    pure subroutine check_keys(deck, problem, key)
@@ -87,11 +87,11 @@ contains
 
       needed = .false.
       fits = .false.
-      if (gives(deck, ground_record)) then
+      if (is_given(deck, ground_record)) then
          what = "a record"
          fits = .true.
          fits(ground_duration:ground_frequency) = .false.
-      else if (.not. gives(deck, ground_pulse)) then
+      else if (.not. is_given(deck, ground_pulse)) then
          what = "the motion of the file of blocks"
       else if (deck%value(ground_pulse)%text == "sine") then
          what = "a sine"
@@ -104,9 +104,9 @@ contains
       end if
       do i = ground_amplitude, ground_unit
          name = trim(deck_key(i)%name)
-         if (needed(i) .and. .not. gives(deck, i)) then
+         if (needed(i) .and. .not. is_given(deck, i)) then
             problem = "&ground needs "//name//" for "//what//", got none; give it"
-         else if (gives(deck, i) .and. .not. fits(i)) then
+         else if (is_given(deck, i) .and. .not. fits(i)) then
             problem = "ground%"//name//" has no effect on "//what//"; remove it"
             key = i
          end if
@@ -120,7 +120,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> Allocated for missing or contradicting items
       type(error_t), allocatable, intent(out) :: error
-      logical :: gives
+      logical :: is_given
       integer :: measured, point, s
 
       measured = 0
@@ -133,15 +133,15 @@ contains
       if (allocated(error)) return
       call check_wear(deck, error)
       if (allocated(error)) return
-      gives = deck%value(ground_pulse)%given .or. allocated(deck%ground_record)
+      is_given = deck%value(ground_pulse)%given .or. allocated(deck%ground_record)
       do s = 1, size(deck%sweeps)
-         gives = gives .or. deck%sweeps(s)%parameter%key == ground_pulse
+         is_given = is_given .or. deck%sweeps(s)%parameter%key == ground_pulse
       end do
-      if (gives .and. deck%plan%ground_line > 0) then
+      if (is_given .and. deck%plan%ground_line > 0) then
          call deck_error(error, "&ground needs a file of blocks whose ground is at rest, got "// &
             & "one that moves it in line "//to_text(deck%plan%ground_line)//"; remove one", &
             & deck, deck%group(ground_group))
-      else if (has_group(deck, ground_group) .and. .not. gives &
+      else if (has_group(deck, ground_group) .and. .not. is_given &
          & .and. deck%plan%ground_line == 0) then
          call deck_error(error, "&ground needs a pulse, a record, or a file of blocks that "// &
             & "moves the ground, got none; give one", deck, deck%group(ground_group))
@@ -217,7 +217,7 @@ contains
       if (n == 0) problem = "&live needs x and y, where its forces act, got none; give both"
       do key = live_y, live_fy
          if (len(problem) > 0) exit
-         if (key > live_y .and. .not. gives(deck, key)) cycle
+         if (key > live_y .and. .not. is_given(deck, key)) cycle
          if (size(deck%value(key)%numbers) == n) cycle
          problem = full_name(deck_key(key))//" needs as many numbers as live%x, "//to_text(n) &
             & //", got "//to_text(size(deck%value(key)%numbers))//"; give one per force"

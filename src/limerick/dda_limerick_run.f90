@@ -42,9 +42,9 @@ module dda_limerick_run
    !> Change of the largest displacement at rest, over the half size
    real(wp), parameter :: rest_share = 1.0e-7_wp
    !> Friction angle in the gravity phase [deg]
-   real(wp), parameter :: turning_on_deg = 89.0_wp
+   real(wp), parameter :: gravity_phase_deg = 89.0_wp
    !> Cohesion in the gravity phase, in units of the file
-   real(wp), parameter :: turning_on_cohesion = 1.0e4_wp
+   real(wp), parameter :: gravity_phase_cohesion = 1.0e4_wp
 
 contains
 
@@ -88,7 +88,7 @@ contains
       type(error_t), allocatable :: error
 
       allocate (outcome%track(2, n_track, 0))
-      call turn_gravity_on(model, run, error)
+      call apply_gravity(model, run, error)
       if (allocated(error)) outcome%reason = "turning gravity on: "//error%message
       call keep_track(run, outcome)
    end subroutine begin_outcome
@@ -118,7 +118,7 @@ contains
       else if (model%constants%dynamic) then
          outcome%verdict = verdict%completed
       else
-         call spend_steps(run%march%time, end, outcome)
+         call end_at_step_limit(run%march%time, end, outcome)
       end if
       outcome%steps = run%march%steps
       outcome%passes = run%march%passes
@@ -139,7 +139,7 @@ contains
 
    !> Apply gravity in steps from rest, with high joint strength, until the contact forces are
    !> constant; time starts after this phase (MacLaughlin 1997)
-   pure subroutine turn_gravity_on(model, run, error)
+   pure subroutine apply_gravity(model, run, error)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
       type(error_t), allocatable, intent(out) :: error
@@ -151,14 +151,14 @@ contains
       if (model%constants%gravity_steps == 0) return
       phase = model
       phase%constants%dynamic = .false.
-      phase%law%friction = max(phase%law%friction, friction_coefficient(turning_on_deg))
-      phase%law%cohesion = max(phase%law%cohesion, turning_on_cohesion)
+      phase%law%friction = max(phase%law%friction, friction_coefficient(gravity_phase_deg))
+      phase%law%cohesion = max(phase%law%cohesion, gravity_phase_cohesion)
       allocate (before(2, 0))
       do step = 1, model%constants%gravity_steps
          call advance_limerick(phase, run, error)
          if (allocated(error)) return
          now = contact_forces(model, run)
-         steady = size(now) == size(before) .and. falls_no_more(model, run)
+         steady = size(now) == size(before) .and. is_quasi_static(model, run)
          if (steady) steady = all(maxval(abs(now - before), dim=2) &
             & <= model%constants%gravity_tolerance*maxval(abs(now), dim=2))
          if (steady) exit
@@ -171,11 +171,11 @@ contains
       do b = 1, size(run%blocks%area)
          run%blocks%velocity(1:3, b) = model%material(model%block_material(b))%velocity
       end do
-   end subroutine turn_gravity_on
+   end subroutine apply_gravity
 
    !> True if the last step moved blocks by a small part of a free fall only: blocks without contact
    !> have constant forces too
-   pure logical function falls_no_more(model, run)
+   pure logical function is_quasi_static(model, run)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(in) :: run
       real(wp) :: fall
@@ -183,11 +183,11 @@ contains
       associate (march => run%march)
          fall = norm2(model%load_direction)*maxval(model%material%unit_weight &
             & /model%material%density)*march%time_step**2/2.0_wp
-         falls_no_more = march%displacement_ratio*march%half_size &
+         is_quasi_static = march%displacement_ratio*march%half_size &
             & *model%constants%max_displacement_ratio &
             & <= maxval(model%constants%gravity_tolerance)*fall
       end associate
-   end function falls_no_more
+   end function is_quasi_static
 
    !> Normal and shear forces of the contacts
    pure function contact_forces(model, run) result(force)
@@ -206,7 +206,7 @@ contains
 
    !> Set the verdict at the step limit: stable, as in Shi's program, but only after the last record
    !> of a load
-   pure subroutine spend_steps(time, end, outcome)
+   pure subroutine end_at_step_limit(time, end, outcome)
       real(wp), intent(in) :: time                        !! Time at the step limit [s]
       real(wp), intent(in) :: end                         !! Time of the last record of a load [s]
       type(limerick_outcome_t), intent(inout) :: outcome  !! The outcome; verdict and reason are set
@@ -218,7 +218,7 @@ contains
          outcome%verdict = verdict%stable
          outcome%still_moving = .true.
       end if
-   end subroutine spend_steps
+   end subroutine end_at_step_limit
 
    !> Record the monitoring points at the end of a step
    pure subroutine keep_track(run, outcome)

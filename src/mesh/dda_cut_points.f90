@@ -217,7 +217,7 @@ contains
 
    !> Assign materials to blocks: from the last material line that crosses one of their edges, or
    !> that starts inside and crosses none
-   module procedure give_materials
+   module procedure assign_materials
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
       integer :: i, n, b
@@ -229,18 +229,18 @@ contains
          do i = 1, lines%n
             n = 0
             call add_crossed(lines%place(:, i), i, boxes, cut, point, n)
-            call give_material(point(:n)%block, lines%material(i), cut)
+            call assign_material(point(:n)%block, lines%material(i), cut)
             if (n > 0) cycle
             b = block_around(cut, boxes, lines%place(1:2, i) - cut%scale%origin)
             if (b == 0) call no_block(error, model, entity_role%material, i)
             if (b == 0) return
-            call give_material([b], lines%material(i), cut)
+            call assign_material([b], lines%material(i), cut)
          end do
       end associate
-   end procedure give_materials
+   end procedure assign_materials
 
    !> Assign a material to blocks and to all pieces of these blocks
-   pure subroutine give_material(block, material, cut)
+   pure subroutine assign_material(block, material, cut)
       integer, intent(in) :: block(:)  !! Numbers of the blocks
       integer, intent(in) :: material  !! Number of the material
       type(cut_model_t), intent(inout) :: cut
@@ -249,7 +249,7 @@ contains
       do i = 1, size(block)
          where (cut%whole == cut%whole(block(i))) cut%material = material
       end do
-   end subroutine give_material
+   end subroutine assign_material
 
    !> Add a point to a list
    pure subroutine append_point(point, n, new)

@@ -72,11 +72,11 @@ module dda_cutting
 
       !> Assign materials to blocks: from the last material line that crosses one of their edges, or
       !> that starts inside and crosses none; otherwise the first material (Shi: dc13)
-      pure module subroutine give_materials(model, cut, error)
+      pure module subroutine assign_materials(model, cut, error)
          type(line_model_t), intent(in) :: model
          type(cut_model_t), intent(inout) :: cut
          type(error_t), allocatable, intent(out) :: error  !! Allocated for a line in no block
-      end subroutine give_materials
+      end subroutine assign_materials
 
       !> Drop edges with a free end until there are none (Shi: dc05)
       pure module subroutine cut_trees(network, remarks)
@@ -151,7 +151,7 @@ contains
       if (.not. allocated(error)) call check_areas(loops, cut, model%file, error)
       if (.not. allocated(error)) call remove_holes(model, cut, error)
       if (.not. allocated(error)) call find_wholes(cut)
-      if (.not. allocated(error)) call give_materials(model, cut, error)
+      if (.not. allocated(error)) call assign_materials(model, cut, error)
       if (.not. allocated(error)) call place_points(model, cut, error)
       if (.not. allocated(error)) call place_bolts(model, cut)
    end subroutine cut_blocks

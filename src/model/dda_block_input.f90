@@ -89,7 +89,7 @@ contains
       ! blocks with the same leader are connected; fixed blocks belong to the ground, block 0
       leader = [0, merge(0, [(b, b=1, size(fixed))], fixed)]
       do j = 1, size(pair, 2)
-         call tie(leader, pair(1, j), pair(2, j))
+         call join_groups(leader, pair(1, j), pair(2, j))
       end do
       do unsupported_block = 1, size(fixed)
          b = unsupported_block
@@ -100,7 +100,7 @@ contains
    end function unsupported_block
 
    !> Merge the groups of two blocks; the smaller leader remains
-   pure subroutine tie(leader, first, second)
+   pure subroutine join_groups(leader, first, second)
       !> Next block towards the leader; a leader points to itself: (0:n_block)
       integer, intent(inout) :: leader(0:)
       integer, intent(in) :: first   !! One block
@@ -112,7 +112,7 @@ contains
       call find_leader(leader, a)
       call find_leader(leader, b)
       leader(max(a, b)) = min(a, b)
-   end subroutine tie
+   end subroutine join_groups
 
    !> Find the leader of a block, with path halving (Tarjan 1975)
    pure subroutine find_leader(leader, block)

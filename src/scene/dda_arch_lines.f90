@@ -18,7 +18,7 @@ module dda_arch_lines
    implicit none
    private
 
-   public :: arch_lines, arch_analysis, what_is_lost
+   public :: arch_lines, arch_analysis, lost_keys
 
    !> Overshoot of a joint over its length
    real(wp), parameter :: overshoot = 0.02_wp
@@ -183,7 +183,7 @@ contains
    end function arch_analysis
 
    !> Keys that the Limerick files cannot represent
-   pure function what_is_lost(deck) result(text)
+   pure function lost_keys(deck) result(text)
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: text  !! Keys separated by commas; empty if there are none
 
@@ -197,5 +197,5 @@ contains
       if (deck%value(analysis_collapse_displacement)%given) text = text &
          & //", analysis%collapse_displacement"
       if (len(text) > 0) text = text(3:)
-   end function what_is_lost
+   end function lost_keys
 end module dda_arch_lines

@@ -12,7 +12,7 @@ submodule (dda_deck_scene) dda_blocks_of_deck
    use dda_kinds, only : pi
    use dda_line_scene, only : held_blocks
    use dda_shape_check, only : add_ties
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, lead_springings, &
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, prescribe_springings, &
       & shape_assembly, shape_form
    implicit none
 
@@ -27,7 +27,7 @@ contains
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
       if (has_group(deck, tie_group)) call add_ties(deck, assembly%plan)
-      call lead_springings(deck, assembly%plan)
+      call prescribe_springings(deck, assembly%plan)
       call file_scene(deck, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
       if (deck%value(arch_lune_deg)%given) call add_lune_weights(deck%value(arch_lune_deg)%number, &

@@ -223,7 +223,7 @@ contains
       if (allocated(scene%settings%boundary%bounded)) deallocate (scene%settings%boundary%bounded)
       if (n == 0) return
       if (fill%yields) then
-         call add_yielding(fill, force(:n), height(:n), scene)
+         call add_pressure_bars(fill, force(:n), height(:n), scene)
       else
          allocate (scene%settings%boundary%bounded, source=force(:n))
       end if
@@ -231,7 +231,7 @@ contains
 
    !> Passive pressure that follows the displacement, as long bars without compression: a block that
    !> moves towards the fill elongates its bar
-   pure subroutine add_yielding(fill, force, height, scene)
+   pure subroutine add_pressure_bars(fill, force, height, scene)
       type(fill_t), intent(in) :: fill
       type(bounded_force_t), intent(in) :: force(:)  !! Largest forces of the fill: (n)
       real(wp), intent(in) :: height(:)              !! Heights of the chords: (n) [m]
@@ -260,7 +260,7 @@ contains
       end do
       call move_alloc(bar, scene%settings%boundary%bar)
       call move_alloc(state, scene%system%bar)
-   end subroutine add_yielding
+   end subroutine add_pressure_bars
 
    !> Span whose crown is nearest to the resultant of the live loads on points, negative if the
    !> resultant is on its left; 0 at a crown

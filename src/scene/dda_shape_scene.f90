@@ -20,7 +20,7 @@ module dda_shape_scene
    implicit none
    private
 
-   public :: add_loads, add_lune_weights, find_crown_joint, lead_springings
+   public :: add_loads, add_lune_weights, find_crown_joint, prescribe_springings
    public :: shape_assembly, shape_form
 
    !> Default angle of the skewbacks of a flat arch [deg]
@@ -177,7 +177,7 @@ contains
    end subroutine shape_assembly
 
    !> Prescribe the displacements of &support at both ends of the springing joints
-   pure subroutine lead_springings(deck, plan)
+   pure subroutine prescribe_springings(deck, plan)
       type(deck_t), intent(in) :: deck
       type(block_plan_t), intent(inout) :: plan  !! Blocks of an arch without buttresses
       integer :: block, i, key, n, side
@@ -219,7 +219,7 @@ contains
 
          way = sin(angle)*[-arm(2), arm(1)] - 2.0_wp*sin(0.5_wp*angle)**2*arm
       end function turned
-   end subroutine lead_springings
+   end subroutine prescribe_springings
 
    !> Add loads to those of a scene
    pure subroutine add_loads(more, scene)

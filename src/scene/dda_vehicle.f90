@@ -87,11 +87,11 @@ contains
       road%block = road%block(:n)
       road%moves = system%equation(road%block) > 0
       road%reach = [minval(road%left(1, :), road%moves), maxval(road%right(1, :), road%moves)]
-      call see_highest(road)
+      call find_highest(road)
    end function road_of
 
    !> Find the highest edge of each interval, by a sweep from left to right
-   pure subroutine see_highest(road)
+   pure subroutine find_highest(road)
       type(road_t), intent(inout) :: road
       integer, allocatable :: above(:), order(:)
       real(wp) :: top, y
@@ -129,7 +129,7 @@ contains
             end do
          end associate
       end do
-   end subroutine see_highest
+   end subroutine find_highest
 
    !> Live loads of the axles, without parts that are not above a movable block
    pure function axle_loads(vehicle, road, origin) result(loaded)

@@ -85,7 +85,7 @@ contains
       solution%status = discrete_status%stands_always
       if (size(joint_angle) == 1) return
       if (size(joint_angle) == 2) then
-         if (stands_as_a_line(ring)) return
+         if (needs_no_thickness(ring)) return
       end if
       call search_eta(ring, solution)
    end subroutine discrete_critical
@@ -162,14 +162,14 @@ contains
 
    !> True if a ring of two joints needs no thickness: the straight thrust line between the centres
    !> of the joints causes compression at both and slip at neither
-   pure logical function stands_as_a_line(ring)
+   pure logical function needs_no_thickness(ring)
       type(ring_t), intent(in) :: ring  !! A ring of two joints
       real(wp) :: deficit
 
       deficit = (ring%form(1) - ring%form(2))/(ring%versine(2) - ring%versine(1))
-      stands_as_a_line = deficit >= ring%lowest .and. deficit <= ring%highest
-      stands_as_a_line = stands_as_a_line .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
-   end function stands_as_a_line
+      needs_no_thickness = deficit >= ring%lowest .and. deficit <= ring%highest
+      needs_no_thickness = needs_no_thickness .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
+   end function needs_no_thickness
 
    !> Root in eta of the widest gap: the active joints give an estimate, which a bracket safeguards
    pure subroutine search_eta(ring, solution)

@@ -4,7 +4,7 @@ module dda_step_benchmark
    use dda_assembly, only : new_equations, refresh, solve_faces
    use dda_block_factor, only : factorise, substitute
    use dda_block_inertia, only : assemble_blocks
-   use dda_contact_search, only : look_around, near_joints
+   use dda_contact_search, only : store_near_edges, near_joints
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : joint_t
    use dda_cost_scenes, only : loose_blocks, wall
@@ -142,7 +142,7 @@ contains
          call solve_faces(job%equations, scene%contacts%springs, scene%contacts%springs%cone, &
             & scene%contacts%face, scene%contacts%trial, job%motion)
       end associate
-      call look_around(job%scene%contacts%search, job%scene%system, job%march%reach)
+      call store_near_edges(job%scene%contacts%search, job%scene%system, job%march%reach)
    end subroutine make_job
 
    !> Copy what a run changes
