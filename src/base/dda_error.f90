@@ -56,7 +56,7 @@ contains
       if (error%line == 0) error%line = line
    end subroutine place_error
 
-   !> The line a user sees: FILE:LINE: error: message
+   !> Line on the screen: FILE:LINE: error: message
    pure function error_line(error) result(line)
       type(error_t), intent(in) :: error
       character(len=:), allocatable :: line  !! One line of text
@@ -95,7 +95,7 @@ contains
       call move_alloc(longer, warnings%item)
    end subroutine add_warning
 
-   !> The line a user sees: FILE:LINE: warning: message
+   !> Line on the screen: FILE:LINE: warning: message
    pure function warning_line(warning) result(line)
       type(warning_t), intent(in) :: warning
       character(len=:), allocatable :: line  !! One line of text
