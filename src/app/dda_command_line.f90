@@ -196,6 +196,7 @@ contains
       logical :: ok
 
       name = trim(argument(i)%text)
+      value = ""
       k = findloc(option%name == name, .true., dim=1)
       if (k == 0) then
          call fatal_error(error, "unknown option "//shown(name)//near_one(name, option%name) &

@@ -79,6 +79,7 @@ contains
       character(len=:), allocatable :: text, losses
 
       status = exit_status%bad_input
+      text = ""
       if (source_of(deck) == "shape") then
          call check_form(deck, error)
          if (.not. allocated(error)) text = shape_text(deck)

@@ -137,7 +137,7 @@ contains
       character(len=word_length), allocatable :: list(:)
       integer :: i
 
-      list = listed_words(words)
+      allocate (list, source=listed_words(words))
       text = "'"//trim(list(1))//"'"
       do i = 2, size(list)
          text = text//trim(merge(" or", ",  ", i == size(list)))//" '"//trim(list(i))//"'"

@@ -189,12 +189,12 @@ contains
       integer, intent(in) :: block(:)         !! Edges of the block and of its islands: (n)
       type(crossed_t), intent(in) :: crossed  !! The crossings so far; these are nodes too
       real(wp), allocatable :: x(:)
-      integer, allocatable :: order(:), at(:)
-      integer :: i
+      integer, allocatable :: order(:)
+      integer :: i, inner(2*size(island)), at(2*size(block) + size(crossed%node))
 
-      at = [network%edge(1, island), network%edge(2, island)]
-      associate (low => minval(network%node(1, at)), high => maxval(network%node(1, at)))
-         at = [network%edge(1, block), network%edge(2, block), crossed%node]
+      inner = [network%edge(1, island), network%edge(2, island)]
+      at = [network%edge(1, block), network%edge(2, block), crossed%node]
+      associate (low => minval(network%node(1, inner)), high => maxval(network%node(1, inner)))
          x = pack(network%node(1, at), network%node(1, at) >= low .and. network%node(1, at) <= high)
       end associate
       allocate (order, source=sorted_order(spread(1, 1, size(x)), x))

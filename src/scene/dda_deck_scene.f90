@@ -170,7 +170,7 @@ contains
       else
          ! copy only the values, because there may be many blocks
          deck%file = family%deck%file
-         deck%value = family%deck%value
+         allocate (deck%value, source=family%deck%value)
          call put_value(family, value, deck, error)
          if (.not. allocated(error)) call set_loads(deck, scene%settings)
       end if

@@ -296,7 +296,8 @@ contains
       integer :: i, j
 
       associate (n => size(fill%crown_x))
-         line = [fill%crown_x, 0.5_wp*(fill%crown_x(2:) + fill%crown_x(:n - 1))] - origin(1)
+         allocate (line, source= &
+            & [fill%crown_x, 0.5_wp*(fill%crown_x(2:) + fill%crown_x(:n - 1))] - origin(1))
       end associate
       allocate (share(0))
       do i = 1, size(line)

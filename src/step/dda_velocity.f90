@@ -187,7 +187,7 @@ contains
       real(wp) :: gap(3)
       integer :: j, side
 
-      impact%closed = closed_contacts(run)
+      allocate (impact%closed, source=closed_contacts(run))
       impact%springs = run%contacts%springs
       joint = run%contacts%joint
       place = run%step%place
