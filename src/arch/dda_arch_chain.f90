@@ -64,6 +64,7 @@ contains
       type(arch_rays_t), intent(out) :: rays
       logical, allocatable :: is_joint(:)
       real(wp), allocatable :: length(:)
+      real(wp) :: longest
       integer :: b, i, n
 
       if (numbers%halved) then
@@ -94,8 +95,9 @@ contains
          length(n) = 2.0_wp*length(n)
          rays%direction(:, rays%joint(n + 1)) = [0.0_wp, 1.0_wp]
       end if
+      longest = maxval(length)
       do b = 1, n + 1
-         rays%stiffness(b) = min(stiffest/maxval(length), &
+         rays%stiffness(b) = min(stiffest/longest, &
             & 1.0_wp/max(length(max(1, b - 1)), length(min(b, n))))
       end do
    end subroutine arch_rays
