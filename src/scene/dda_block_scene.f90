@@ -53,6 +53,7 @@ contains
       type(box_tree_t) :: tree
       integer :: b, e, i, k, n, next
 
+      if (size(plan%water) == 0) return
       call edge_boxes(plan, tree)
       do i = 1, size(plan%water)
          call times_of(plan%water(i), time)
