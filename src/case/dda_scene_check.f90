@@ -1,6 +1,7 @@
 !> Checks of a deck that require its scene: modes, stages, widths, supports, units
 module dda_scene_check
    use dda_block_scene, only : floating_block
+   use dda_contact_types, only : near_miss_t
    use dda_contacts, only : joint_search_t
    use dda_deck, only : deck_t, has_group, keeps_velocities
    use dda_deck_check_case, only : check_model
@@ -13,7 +14,7 @@ module dda_scene_check
    use dda_kinds, only : wp
    use dda_limerick_scene, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
-   use dda_near_miss, only : find_near_misses, near_miss_t
+   use dda_near_miss, only : find_near_misses
    use dda_outline, only : outline_of
    use dda_read_deck, only : geometry_file
    use dda_scene, only : scene_t
@@ -250,8 +251,12 @@ contains
       integer :: i
 
       search = scene%contacts%search
-      search%outline = outline_of(scene%system)
-      call find_near_misses(search, scene%system, miss)
+      if (allocated(scene%contacts%near_miss)) then
+         miss = scene%contacts%near_miss
+      else
+         search%outline = outline_of(scene%system)
+         call find_near_misses(search, scene%system, miss)
+      end if
       do i = 1, size(miss)
          fate = "They are not joined"
          if (miss(i)%is_joined) fate = "They are joined"

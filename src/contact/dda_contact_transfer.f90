@@ -49,7 +49,7 @@ contains
       contacts%law = pack(contacts%search%law, .true.)
       closes = .false.
       if (present(closes_gaps)) closes = closes_gaps
-      call drawn_joints(contacts%search, system, closes, joint)
+      call drawn_joints(contacts%search, system, closes, joint, contacts%near_miss)
       do j = 1, size(joint)
          call lock_joint(system%vertex, joint(j))
          call place_joint(system%vertex, joint(j), place, gap)

@@ -17,7 +17,7 @@ module dda_contact_types
 
    public :: contact_t, joint_t, joint_place_t, edge_to_edge_joint, place_joint, same_joint, slip_at
    public :: joint_springs_t, rows_of_joint, new_joint_springs, place_rows
-   public :: mohr_coulomb, unbounded
+   public :: mohr_coulomb, near_miss_t, unbounded
 
    !> A vertex of one block and an edge of another
    type :: contact_t
@@ -47,6 +47,16 @@ module dda_contact_types
       logical :: found = .false.
       integer :: law = 1  !! Number of the joint law, among those of the contacts
    end type joint_t
+
+   !> Two blocks that almost touch
+   type :: near_miss_t
+      type(joint_t) :: joint          !! Joint that they would have
+      real(wp) :: gap = 0.0_wp        !! Widest gap, negative where the blocks overlap [m]
+      real(wp) :: place(2) = 0.0_wp   !! Corner at that gap: (2) [m]
+      real(wp) :: allowed = 0.0_wp    !! Gap that the contact tolerance allows [m]
+      real(wp) :: tilt = 0.0_wp       !! Angle between the edges [rad]
+      logical :: is_joined = .false.  !! True if static runs join the blocks
+   end type near_miss_t
 
    !> Position of a joint
    type :: joint_place_t

@@ -2,7 +2,7 @@
 module dda_contacts
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : edge_to_edge_joint, joint_place_t, joint_springs_t, joint_t, &
-      & mohr_coulomb, new_joint_springs, place_joint
+      & mohr_coulomb, near_miss_t, new_joint_springs, place_joint
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
@@ -69,6 +69,8 @@ module dda_contacts
       logical :: remember = .true.
       !> The search
       type(joint_search_t) :: search
+      !> Blocks that almost touch as they are drawn; unallocated where none are joined: (n)
+      type(near_miss_t), allocatable :: near_miss(:)
    end type contacts_t
 
 contains

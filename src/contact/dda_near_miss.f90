@@ -7,24 +7,14 @@ module dda_near_miss
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
    use dda_contact_search, only : remember_drawn, touching_joints
-   use dda_contact_types, only : joint_place_t, joint_t, place_joint, same_joint
+   use dda_contact_types, only : joint_place_t, joint_t, near_miss_t, place_joint, same_joint
    use dda_contacts, only : joint_search_t
    use dda_kinds, only : wp
    use dda_sort, only : place_in, rising_order
    implicit none
    private
 
-   public :: near_miss_t, drawn_joints, find_near_misses
-
-   !> Two blocks that almost touch
-   type :: near_miss_t
-      type(joint_t) :: joint            !! The possible joint
-      real(wp) :: gap = 0.0_wp          !! Largest gap, negative if the blocks overlap [m]
-      real(wp) :: place(2) = 0.0_wp     !! Corner at that gap: (2) [m]
-      real(wp) :: allowed = 0.0_wp      !! Largest gap within the contact tolerance [m]
-      real(wp) :: tilt = 0.0_wp         !! Angle between its edges [rad]
-      logical :: is_joined = .false.    !! True if static runs join the blocks
-   end type near_miss_t
+   public :: drawn_joints, find_near_misses
 
    !> Largest near miss that is joined, over the contact tolerance
    real(wp), parameter :: joined = 10.0_wp
@@ -34,17 +24,20 @@ module dda_near_miss
 contains
 
    !> Joints of blocks in the reference shape
-   pure subroutine drawn_joints(search, system, closes_gaps, joint)
+   pure subroutine drawn_joints(search, system, closes_gaps, joint, miss)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
       !> True to join near misses
       logical, intent(in) :: closes_gaps
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
-      type(near_miss_t), allocatable :: miss(:)
+      !> Near misses, joined or not; unallocated where none are joined: (n)
+      type(near_miss_t), allocatable, intent(out) :: miss(:)
       type(joint_t), allocatable :: whole(:)
+      type(near_miss_t), allocatable :: joined_miss(:)
       type(joint_search_t) :: both
       integer(int64), allocatable :: key(:)
+      integer(int64) :: wanted
       logical, allocatable :: kept(:)
       integer :: i, j
 
@@ -53,17 +46,22 @@ contains
       call touching_joints(both, system, search%tolerance, joint)
       if (.not. closes_gaps) return
       call add_misses(both, system, joint, miss)
-      miss = pack(miss, miss%is_joined)
-      if (size(miss) == 0) return
+      joined_miss = pack(miss, miss%is_joined)
+      if (size(joined_miss) == 0) return
       ! a touching corner belongs to the joint of its edge
       allocate (kept(size(joint)), source=.true.)
-      do i = 1, size(miss)
-         do j = 1, size(joint)
-            if (joint(j)%n_contact == 1 .and. miss(i)%joint%n_contact == 2) &
-               & kept(j) = kept(j) .and. .not. holds(miss(i)%joint, joint(j))
-         end do
+      key = pair_key(joint, size(system%area))
+      do i = 1, size(joined_miss)
+         associate (edges => joined_miss(i)%joint)
+            if (edges%n_contact < 2) cycle
+            wanted = pair_key(edges, size(system%area))
+            do j = place_in(key, wanted), size(joint)
+               if (key(j) /= wanted) exit
+               if (joint(j)%n_contact == 1) kept(j) = kept(j) .and. .not. holds(edges, joint(j))
+            end do
+         end associate
       end do
-      whole = [pack(joint, kept), miss%joint]
+      whole = [pack(joint, kept), joined_miss%joint]
       key = pair_key(whole, size(system%area))
       joint = whole(rising_order(key))
    end subroutine drawn_joints
