@@ -13,6 +13,8 @@ np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+from matplotlib.text import Text  # noqa: E402
+
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.case_joints import roles_of, thrust_points  # noqa: E402
@@ -22,10 +24,17 @@ from voussoir.plot.case_title import title_of  # noqa: E402
 from voussoir.plot.collapse_animation import FFMpegWriter  # noqa: E402
 from voussoir.plot.collapse_picture import contacts_of, limits, pictures_of, shapes_of  # noqa: E402
 from voussoir.plot.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
-from voussoir.plot.figure_style import house_style  # noqa: E402
+from voussoir.plot.figure_style import house_style, save  # noqa: E402
+from voussoir.plot.sheet import Sheet, renderer_of  # noqa: E402
+from voussoir.plot.sweep_chart import draw_map  # noqa: E402
 from voussoir.plot.units import axis_label, force_text, length_text, rounded  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
+#: Three axles close to one another, two of one weight
+BRIDGE = (
+    "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.5, voussoirs = 15 /\n"
+    "&vehicle axles = 12e3, 12e3, 20e3, spacings = 0.4, 0.4, position = -2 /\n&search parameter = 'load_factor' /\n"
+)
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 
@@ -625,3 +634,41 @@ def test_axles_are_drawn_where_the_vehicle_stands_worst(tmp_path: Path, fill: st
     assert above
     for x, y in above.items():  # the chords of the voussoirs are at most 3 mm below the circle
         assert y == pytest.approx(1.55 - radius + np.sqrt(radius**2 - x**2), abs=3e-3)
+
+
+def test_no_text_is_smaller_than_the_smallest_type(tmp_path: Path) -> None:
+    """Legend, values of loads, scale bar, and contours of a map."""
+    bridge = compute(tmp_path, BRIDGE)
+    (tmp_path / "map").mkdir()
+    field = compute(tmp_path / "map", (
+        "&arch shape = 'segmental', span = 4, rise = 1, thickness = 0.3, voussoirs = 9 /\n"
+        "&fill height = 0.3, unit_weight = 18e3 /\n&vehicle axles = 1e4, position = -1 /\n"
+        "&search parameter = 'load_factor' /\n&sweep parameter = 'height', values = 0.2, 0.3, 0.4 /\n"
+        "&sweep parameter = 'position', values = -1, -0.5, 0 /\n"))
+    with house_style(8.0, 8.0):
+        figures = draw_case(bridge, 1, sheet=Sheet(80 / 25.4)), draw_map(field, ("height", "position"))
+        sizes = {text.get_fontsize() for figure in figures for text in figure.findobj(Text) if text.get_text()}
+    assert min(sizes) >= 8.0
+    with house_style(8.0):
+        small = draw_case(bridge, 1, sheet=Sheet(80 / 25.4))
+        assert min(text.get_fontsize() for text in small.findobj(Text) if text.get_text()) < 8.0
+    assert [axes.get_ylabel() for axes in figures[1].axes][0] == "position of the vehicle [m]"
+    assert figures[1].axes[0].get_xlabel() == "height [m]"
+
+
+def test_values_of_loads_do_not_hide_one_another(tmp_path: Path) -> None:
+    """Two axles of one weight have one value; of two weights, two that lie apart."""
+    run = compute(tmp_path, BRIDGE)
+    with house_style(8.0):
+        figure = draw_case(run, 1, sheet=Sheet(80 / 25.4))
+    values = [text for text in figure.axes[0].texts if text.get_text().endswith("kN/m")]
+    assert sorted(text.get_text() for text in values) == ["12 kN/m", "20 kN/m"]
+    first, second = (text.get_window_extent(renderer_of(figure)) for text in values)
+    assert not first.overlaps(second)
+
+
+def test_pdf_files_embed_letters_that_can_be_searched(arches, tmp_path: Path) -> None:
+    """Type 3 fonts are refused by publishers."""
+    with house_style():
+        (path,) = save(draw_case(arches, 1), tmp_path, "arch", ("pdf",))
+    assert b"/Type3" not in path.read_bytes() and b"/CIDFontType2" in path.read_bytes()

@@ -78,6 +78,9 @@ def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
     parser.add_argument(
         "--font", metavar="P", type=type_size, default=9.0, help="size of the type in points (default: 9)")
     parser.add_argument(
+        "--min-font", metavar="P", type=type_size, default=5.0,
+        help="smallest type of labels and legends in points (default: 5)")
+    parser.add_argument(
         "--no-title", dest="title", action="store_false", default=True,
         help="omit the title (default: draw it)")
     parser.add_argument(

@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.y and not (arguments.x or arguments.map):
         raise ValueError("--y needs --x KEY or --map KEY KEY")
-    with house_style(arguments.font):
+    with house_style(arguments.font, arguments.min_font):
         for name, figure in _figures(arguments):
             out = arguments.out or (Path("plots") if arguments.folder.is_file() else arguments.folder / "plots")
             for path in save(figure, out, name, tuple(arguments.format)):

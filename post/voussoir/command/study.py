@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     out = arguments.out or Path(f"{arguments.deck.stem}_study")
     out.mkdir(parents=True, exist_ok=True)
     print(write_text(out / "study.csv", csv_of(found)))
-    with house_style(arguments.font):
+    with house_style(arguments.font, arguments.min_font):
         sheet = Sheet(arguments.width, arguments.title, arguments.legend)
         for path in save(sheet.resized(draw_study(found, arguments.legend)), out, "study", tuple(arguments.format)):
             print(path)

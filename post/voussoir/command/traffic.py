@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         files.append(write_text(out / f"{stem}.nml", worst.text))
         cases = worst.found.positions
         if cases is not None and "found" in cases["verdict"]:
-            with house_style(arguments.font):
+            with house_style(arguments.font, arguments.min_font):
                 place = worst.found.place
                 figure = draw_positions(worst.found.own, cases, None if math.isnan(place) else place, sheet)
                 files += save(figure, out, stem, tuple(arguments.format))

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from voussoir.deck.assessment import Assessment
 from voussoir.plot.case_picture import draw_blocks, draw_supports
 from voussoir.plot.case_scene import CaseScene, scene_of, view
-from voussoir.plot.figure_style import INK
+from voussoir.plot.figure_style import INK, SMALL, type_of
 from voussoir.plot.sheet import Sheet
 from voussoir.plot.units import quantity
 from voussoir.results import Results
@@ -115,7 +115,7 @@ def draw_scheme(found: Assessment, sheet: Sheet = Sheet()) -> tuple[Figure, str]
         axes.plot([box_low[0], box_high[0]], [surface, surface], color=INK[3], linewidth=pen)
         axes.annotate(
             "surface of the fill", (box_high[0], surface), xytext=(0, 2), textcoords="offset points", ha="right",
-            fontsize="small", color="#555555")
+            fontsize=type_of(SMALL), color="#555555")
     for dimension in measured:
         draw_dimension(axes, dimension, size, pen)
     for place, _ in found.axles:
@@ -123,7 +123,7 @@ def draw_scheme(found: Assessment, sheet: Sheet = Sheet()) -> tuple[Figure, str]
         axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
     for places, weight in axle_groups(found.axles, CLOSE * size):
         words = (f"{len(places)} x " if len(places) > 1 else "") + quantity(weight, "N/m")
-        axes.text(float(np.mean(places)), road + 0.14 * size, words, ha="center", fontsize="small", color=INK[2])
+        axes.text(float(np.mean(places)), road + 0.14 * size, words, ha="center", fontsize=type_of(SMALL), color=INK[2])
     words = ", ".join(f"{dimension.name} {quantity(dimension.length, 'm')}" for dimension in measured)
     return sheet.finish(figure, axes), words[0].upper() + words[1:] + "."
 
@@ -154,6 +154,6 @@ def draw_dimension(axes: Axes, dimension: Dimension, size: float, pen: float) ->
     text = quantity(dimension.length, "m")
     offset, ha, va = ((0, -2), "center", "top") if flat else ((3, 0), "left", "center")
     axes.annotate(
-        text, (middle[0], middle[1]), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize="small",
+        text, (middle[0], middle[1]), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=type_of(SMALL),
         zorder=9,
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85} if short else None)

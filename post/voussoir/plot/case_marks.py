@@ -11,8 +11,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from voussoir.plot.case_scene import CaseScene
-from voussoir.plot.figure_style import INK
+from voussoir.plot.figure_style import INK, SMALL, TINY, type_of
 from voussoir.plot.motion import Motion
+from voussoir.plot.sheet import POINTS, text_size
 from voussoir.plot.source_file import Source
 from voussoir.plot.units import force_text
 
@@ -53,14 +54,33 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
                 "arrowstyle": "-|>", "color": color, "linewidth": 1.5 * pen, "shrinkA": 0, "shrinkB": 0,
                 "mutation_scale": 10 * pen}
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
-            if len(source.loads) <= MOST_VALUES:
-                value = force_text(float(np.hypot(*source.loads[number][1])))
-                axes.annotate(
-                    value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize="small", color=color,
-                    zorder=9)
+        if len(source.loads) <= MOST_VALUES:
+            values = [force_text(float(np.hypot(*source.loads[number][1]))) for number in chosen]
+            draw_values(axes, tails[chosen], values, color)
         if chosen:
             entries.append(entry(words, marker=r"$\downarrow$", markersize=10, color=color))
     return entries
+
+
+def draw_values(axes: Axes, places: np.ndarray, values: list[str], color: str) -> None:
+    """Write values beside their places: equal neighbours once, others above those that they would hide."""
+    figure, size = axes.figure, type_of(SMALL)
+    axes.apply_aspect()
+    points = axes.transData.transform(places) * POINTS / figure.dpi
+    written: list[tuple[np.ndarray, np.ndarray, str]] = []
+    for number in np.lexsort((points[:, 1], points[:, 0])):
+        value, low = values[number], points[number] + (4.0, 3.0)
+        box = np.array(text_size(figure, value, size))
+        hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]
+        if any(other[2] == value for other in hidden):
+            continue
+        while hidden:
+            low = np.array([low[0], max(other[1][1] for other in hidden) + 0.5])
+            hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]
+        written.append((low, low + box, value))
+        axes.annotate(
+            value, places[number], xytext=tuple(low - points[number]), textcoords="offset points", fontsize=size,
+            color=color, zorder=9)
 
 
 def draw_held(axes: Axes, source: Source, motion: Motion, pen: float = 1.0) -> list[Artist]:
@@ -110,8 +130,8 @@ def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None
     for number, shape in placed:
         middle = shape.mean(axis=0)
         axes.text(
-            middle[0], middle[1], str(number), fontsize="x-small", ha="center", va="center", zorder=10, clip_on=True,
-            path_effects=[withStroke(linewidth=2.0, foreground="white")])
+            middle[0], middle[1], str(number), fontsize=type_of(TINY), ha="center", va="center", zorder=10,
+            clip_on=True, path_effects=[withStroke(linewidth=2.0, foreground="white")])
 
 
 def show_coordinates(axes: Axes) -> None:

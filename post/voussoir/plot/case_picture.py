@@ -17,7 +17,7 @@ from voussoir.plot.case_joints import JointMarks
 from voussoir.plot.case_marks import draw_held, draw_loads, draw_numbers, entry, load_arrows, show_coordinates
 from voussoir.plot.case_scene import CaseScene, scene_of, view
 from voussoir.plot.case_title import title_of
-from voussoir.plot.figure_style import INK, TINTS
+from voussoir.plot.figure_style import INK, SMALL, TINTS, type_of
 from voussoir.plot.motion import Motion, motion_of
 from voussoir.plot.sheet import Sheet
 from voussoir.plot.source_file import add_vehicle, source_of
@@ -203,7 +203,7 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], motion: Motion) -
         axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
         axes.plot(*points[-1], marker="D", color=INK[1], markersize=4, zorder=6)
         axes.annotate(
-            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points", fontsize="small",
+            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points", fontsize=type_of(SMALL),
             color=INK[1], zorder=8)
     if not ways:
         return []
@@ -232,4 +232,4 @@ def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray, pen: float = 1.0) 
         clip_on=False, zorder=9)
     axes.annotate(
         length_text(length), (start + length, level), xytext=(4, 0), textcoords="offset points", va="center",
-        fontsize="small", annotation_clip=False)
+        fontsize=type_of(SMALL), annotation_clip=False)

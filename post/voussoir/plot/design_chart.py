@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.field_chart import draw_field
-from voussoir.plot.figure_style import INK, Picture, legend_below
+from voussoir.plot.figure_style import INK, SMALL, Picture, legend_below, type_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Results, Table
@@ -86,7 +86,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
             f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
         )
     if missing:
-        figure.axes[0].set_title(missing, fontsize=9, color="#555555")
+        figure.axes[0].set_title(missing, fontsize=type_of(SMALL), color="#555555")
     return figure
 
 

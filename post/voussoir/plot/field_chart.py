@@ -7,7 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from voussoir.plot.figure_style import Picture
+from voussoir.plot.figure_style import SMALL, Picture, type_of
 from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Table
 
@@ -45,14 +45,14 @@ def draw_field(found: Table, column: str, across: str, panels: str | None, searc
         axes.grid(False)
         axes.pcolormesh(x, y, field, shading="nearest", cmap=scale.cmap, norm=scale.norm, rasterized=True)
         if panels is not None:
-            axes.set_title(value_label(panels, float(chosen[number])), fontsize=10)
-    figure.supxlabel(axis_label(column), fontsize=11)
-    figure.supylabel(axis_label(across), fontsize=11)
+            axes.set_title(value_label(panels, float(chosen[number])), fontsize=type_of(1.0))
+    figure.supxlabel(axis_label(column), fontsize=type_of(1.1))
+    figure.supylabel(axis_label(across), fontsize=type_of(1.1))
     figure.colorbar(scale, ax=grid, label=searched)
     notes = [note] if note else []
     if len(chosen) < len(kept):
         words = axis_label(panels or "").partition(" [")[0]
         notes.insert(0, f"{len(chosen)} of {len(kept)} values of the {words}")
     if notes:
-        figure.suptitle("; ".join(notes), fontsize=9, color="#555555")
+        figure.suptitle("; ".join(notes), fontsize=type_of(SMALL), color="#555555")
     return figure

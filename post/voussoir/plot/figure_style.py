@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +29,16 @@ STONE = "#ececec"
 #: Fill of masonry by its material, that of the deck first
 TINTS = (STONE, "#d9c9ac", "#bccfdd", "#dbbfb6", "#c8d8bd", "#b9b9b9")
 
+#: Sizes of small type, as of legends, and of tiny type, as of contours, over that of the picture
+SMALL, TINY = 0.83, 0.69
+#: Smallest type of the pictures that are drawn [points]
+_SMALLEST: ContextVar[float] = ContextVar("smallest", default=5.0)
+
 _SETTINGS: dict[str, Any] = {
     "figure.dpi": 100, "savefig.dpi": 200, "font.size": 10, "axes.labelsize": 11, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
     "legend.frameon": False, "lines.linewidth": 1.6, "mathtext.fontset": "stix", "font.family": "STIXGeneral",
-    "hatch.linewidth": 0.4, "svg.hashsalt": "voussoir", "svg.fonttype": "path"}
+    "hatch.linewidth": 0.4, "svg.hashsalt": "voussoir", "svg.fonttype": "path", "pdf.fonttype": 42}
 
 
 class Picture(Figure):
@@ -59,7 +65,7 @@ def closer(
     limits = axes.axis()  # the frame of the piece must not change them
     inner = axes.inset_axes(place, xlim=x, ylim=y, zorder=8)
     inner.set_autoscale_on(False)
-    inner.tick_params(labelsize=8)
+    inner.tick_params(labelsize=type_of(SMALL))
     inner.spines[["top", "right"]].set_visible(True)
     axes.indicate_inset_zoom(inner, edgecolor=INK[0], linewidth=0.7)
     axes.axis(limits)
@@ -67,11 +73,20 @@ def closer(
 
 
 @contextmanager
-def house_style(font: float = 10.0) -> Iterator[None]:
-    """Draw within this context, in type of this size [points]."""
-    settings: Any = {**_SETTINGS, "font.size": font, "axes.labelsize": 1.1 * font}
-    with plt.rc_context(settings):
-        yield
+def house_style(font: float = 10.0, smallest: float = 5.0) -> Iterator[None]:
+    """Draw within this context, in type of this size and none below the smallest [points]."""
+    settings: Any = {**_SETTINGS, "font.size": max(font, smallest), "axes.labelsize": max(1.1 * font, smallest)}
+    token = _SMALLEST.set(smallest)
+    try:
+        with plt.rc_context(settings):
+            yield
+    finally:
+        _SMALLEST.reset(token)
+
+
+def type_of(share: float) -> float:
+    """Type of a share of that of the picture, at least the smallest one [points]."""
+    return float(max(_SMALLEST.get(), share * plt.rcParams["font.size"]))
 
 
 def legend_below(axes: Axes, columns: int, entries: list[Artist] | None = None, title: str = "") -> None:
@@ -80,9 +95,9 @@ def legend_below(axes: Axes, columns: int, entries: list[Artist] | None = None, 
     chosen = {"handles": entries} if entries else {}
     legend = axes.legend(
         **chosen, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=axes.transAxes + drop, ncols=columns,
-        fontsize="small", columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
+        fontsize=type_of(SMALL), columnspacing=1.2, handlelength=1.6, borderpad=0.0, borderaxespad=0.0)
     if title:
-        legend.set_title(title, FontProperties(size="small"))
+        legend.set_title(title, FontProperties(size=type_of(SMALL)))
 
 
 #: What files say of their making, left out for equal bytes at every run

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from voussoir.plot.design_chart import ChartError, swept_columns
-from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.figure_style import INK, SMALL, Picture, type_of
 from voussoir.results import Results, Table
 
 #: Swept columns that say how strong a motion is, the first that is there counts
@@ -92,7 +92,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
     axes.legend(loc="best")
     notes = [f"{left} of {len(run.cases)} cases without a verdict"] if left else []
     notes += [] if fit else ["no lognormal fit: all records collapse above one value and none below"]
-    axes.set_title("; ".join(notes), fontsize=9, color="#555555")
+    axes.set_title("; ".join(notes), fontsize=type_of(SMALL), color="#555555")
     return figure, fit
 
 

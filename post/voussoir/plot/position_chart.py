@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from voussoir.plot.case_picture import draw_blocks, draw_supports
 from voussoir.plot.case_scene import scene_of
-from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.figure_style import INK, SMALL, Picture, type_of
 from voussoir.plot.sheet import WIDTH, Sheet
 from voussoir.results import Results, Table
 
@@ -62,12 +62,12 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
     beyond = place > 0.5 * (left + right)
     axes.annotate(
         text, (place, 0.8), xycoords=("data", "axes fraction"), xytext=(-3 if beyond else 3, 0),
-        ha="right" if beyond else "left", textcoords="offset points", color=INK[2], fontsize="small",
+        ha="right" if beyond else "left", textcoords="offset points", color=INK[2], fontsize=type_of(SMALL),
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8})
     axes.set_ylim(0.0, top)
     axes.set_ylabel("load factor [-]")
     if sheet.legend and axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize="small", loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, borderpad=0.1,
+        axes.legend(fontsize=type_of(SMALL), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, borderpad=0.1,
                     handletextpad=0.2, columnspacing=1.0)
     draw_supports(below, [block.corners for block in scene.supports], pen)
     draw_blocks(below, scene, shapes, (), pen)

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
-from voussoir.plot.figure_style import Picture
+from voussoir.plot.figure_style import SMALL, Picture, type_of
 
 #: Width of a picture for which none is given [inch], and points per inch
 WIDTH, POINTS = 5.2, 72.0
@@ -32,8 +32,6 @@ LEAST_COLUMN = 11.0
 LEAST_HEIGHT = 0.16
 #: Room at the edges, and between drawing and texts [points]
 EDGE, GAP = 3.0, 6.0
-#: Smallest type of a legend [points]
-SMALLEST = 5.0
 #: Thinnest pen
 THINNEST = 0.35
 
@@ -120,7 +118,7 @@ class Sheet:
         legend, legend_size = None, (0.0, 0.0)
         if self.legend and entries:
             most = tall + above + below
-            legend, legend_size = make_legend(figure, entries, column, type_size, most, 1 if beside else 3)
+            legend, legend_size = make_legend(figure, entries, column, most, 1 if beside else 3)
         words, title_height = "", 0.0
         if self.title and title:
             words = "\n".join(wrapped(figure, line, full - 4.0 * EDGE, type_size) for line in title.split("\n"))
@@ -184,14 +182,14 @@ def wrapped(figure: Figure, line: str, width: float, type_size: float) -> str:
 
 
 def make_legend(
-    figure: Figure, entries: Sequence[Artist], width: float, type_size: float, height: float, most_columns: int
+    figure: Figure, entries: Sequence[Artist], width: float, height: float, most_columns: int
 ) -> tuple[Legend, tuple[float, float]]:
     """The legend in that number of columns which makes it lowest, and its size [points].
 
     Its type is smaller than that of the picture, and becomes smaller still where it would be higher than the drawing.
     """
     labels = [str(entry.get_label()) for entry in entries]
-    size = 0.85 * type_size
+    size, smallest = type_of(SMALL), type_of(0.0)
     while True:
         best = None
         for columns in range(1, min(most_columns, len(entries)) + 1):
@@ -207,9 +205,9 @@ def make_legend(
                 best = found
             if best is None and columns == 1:
                 best = found
-        if best is None or best[0] <= height or size <= SMALLEST:
+        if best is None or best[0] <= height or size <= smallest:
             break
-        size = max(SMALLEST, 0.9 * size)
+        size = max(smallest, 0.9 * size)
     assert best is not None
     legend = figure.legend(
         handles=entries, labels=best[2], ncols=best[1], fontsize=size, loc="lower left", borderpad=0.0,

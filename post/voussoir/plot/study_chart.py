@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from voussoir.deck.study import Study
-from voussoir.plot.figure_style import INK, Picture, legend_below
+from voussoir.plot.figure_style import INK, SMALL, Picture, legend_below, type_of
 from voussoir.plot.units import axis_label
 
 _MARKERS = "osD^vP*X"
@@ -49,9 +49,9 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_minor_formatter(NullFormatter())
         if len(drawn) < len(study.series):
-            axes.set_title(f"{len(drawn)} of {len(study.series)} results", fontsize="small", color="#555555")
+            axes.set_title(f"{len(drawn)} of {len(study.series)} results", fontsize=type_of(SMALL), color="#555555")
         if legend:
             legend_below(axes, 1 if len(drawn) < 4 else 2)
     else:
-        axes.set_title("no result differs between the runs", fontsize="small", color="#555555")
+        axes.set_title("no result differs between the runs", fontsize=type_of(SMALL), color="#555555")
     return figure

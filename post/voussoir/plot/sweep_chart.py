@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from voussoir.plot.design_chart import MOST_CURVES, ChartError, groups_of, swept_columns
-from voussoir.plot.figure_style import INK, Picture, legend_below
+from voussoir.plot.figure_style import INK, SMALL, TINY, Picture, legend_below, type_of
 from voussoir.plot.units import axis_label, name_of
 from voussoir.results import Results, Table
 
@@ -132,7 +132,7 @@ def draw_contours(axes: Axes, along: np.ndarray, up: np.ndarray, field: np.ndarr
         return
     lines = axes.contour(
         along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
-    axes.clabel(lines, fmt="%.3g", fontsize="x-small")
+    axes.clabel(lines, fmt="%.3g", fontsize=type_of(TINY))
 
 
 def swept(run: Results, key: str) -> str:
@@ -189,4 +189,4 @@ def note(axes: Axes, lost: int, count: int, column: str) -> None:
     """Say above the axes how many cases have no value."""
     if lost:
         words = "critical value" if column == "critical" else f"value of {column}"
-        axes.set_title(f"{lost} of {count} cases have no {words}", fontsize="small", color="#555555")
+        axes.set_title(f"{lost} of {count} cases have no {words}", fontsize=type_of(SMALL), color="#555555")

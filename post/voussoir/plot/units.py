@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
+import subprocess
+from functools import lru_cache
 from typing import TYPE_CHECKING
+
+from voussoir.dda_program import find_dda
 
 if TYPE_CHECKING:
     from voussoir.results import Results
@@ -59,7 +65,20 @@ def name_of(parameter: str) -> tuple[str, str]:
     if known:
         return known
     stem = key.partition("(")[0]
-    return (key.replace("_deg", "").replace("_", " "), "°" if stem.endswith("_deg") else "")
+    unit = "°" if stem.endswith("_deg") else key_units().get(stem, "")
+    return (key.replace("_deg", "").replace("_", " "), unit)
+
+
+@lru_cache(maxsize=1)
+def key_units() -> dict[str, str]:
+    """Units of the keys of decks by their names without groups; none where `dda` is missing."""
+    try:
+        text = subprocess.run([find_dda(), "help", "keys", "--json"], capture_output=True, text=True, check=True).stdout
+    except (FileNotFoundError, subprocess.CalledProcessError):
+        return {}
+    keys = (key for group in json.loads(text)["groups"] for key in group["keys"])
+    powers = {"m2": "m²", "m3": "m³", "s2": "s²"}
+    return {key["name"]: re.sub("[ms][23]", lambda found: powers[found[0]], key.get("unit", "")) for key in keys}
 
 
 def axis_label(parameter: str) -> str:
