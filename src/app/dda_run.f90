@@ -203,7 +203,8 @@ contains
       watch%shown = error_is_terminal() .and. .not. command%quiet
       call read_deck(command%name(number)%text, command%setting, deck, error, watch, &
          & command%cases, command%tight)
-      if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
+      if (.not. allocated(error)) call check_scene(deck, scene, error, watch, &
+         & command%cases)
       call end_watch(watch)
    end subroutine read_and_check
 

@@ -6,7 +6,7 @@ module dda_scene_check
    use dda_deck, only : deck_t, has_group, keeps_velocities
    use dda_deck_check_case, only : check_model
    use dda_deck_scene, only : deck_scene
-   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_deck_sweep, only : choose_cases, n_cases, turn_to_case
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_key_names, only : analysis_flow, analysis_geometry, analysis_mode, analysis_restart, &
       & limerick_dynamic, material_compressive_strength, output_energy, output_reactions, &
@@ -39,8 +39,9 @@ module dda_scene_check
       end subroutine check_start
 
       !> Check that live loads act on blocks that move, and that the load factor has loads
-      pure module subroutine check_live_cases(deck, error)
+      pure module subroutine check_live_cases(deck, chosen, error)
          type(deck_t), intent(in) :: deck
+         logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_live_cases
 
@@ -50,7 +51,7 @@ contains
 
    !> Check that the modes of a deck can run the blocks of its file, and that a run that goes on has
    !> a file; warn of blocks that will fall, and of units that are no metres
-   subroutine check_scene(deck, scene, error, watch)
+   subroutine check_scene(deck, scene, error, watch, cases)
       type(deck_t), intent(inout) :: deck
       !> The scene of the first case, if its blocks are from a file
       type(scene_t), intent(out) :: scene
@@ -58,13 +59,19 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Is told what is done
       class(watch_t), intent(inout), optional :: watch
+      !> Cases that will be computed, as choose_cases reads them: the others are not checked
+      character(len=*), intent(in), optional :: cases
+      logical, allocatable :: chosen(:)
 
+      allocate (chosen(n_cases(deck)), source=.true.)
+      if (present(cases)) call choose_cases(cases, n_cases(deck), chosen, error)
+      if (allocated(error)) return
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
       call cut_lines(deck, error)
       if (.not. allocated(error) .and. deck%value(analysis_restart)%given) &
          & call check_start(deck, error)
-      if (.not. allocated(error)) call check_shapes(deck, error)
-      if (.not. allocated(error)) call check_live_cases(deck, error)
+      if (.not. allocated(error)) call check_shapes(deck, chosen, error)
+      if (.not. allocated(error)) call check_live_cases(deck, chosen, error)
       if (allocated(error) .or. deck%value(scene_kind)%text /= "blocks") return
       call check_modes(deck, scene, error)
    end subroutine check_scene

@@ -38,7 +38,7 @@ contains
       type(deck_place_t) :: place
       type(deck_t) :: work
       type(scene_t) :: scene
-      logical :: points, reshaped
+      logical :: built, points, reshaped
       integer :: number
 
       place = factor_place(deck, load_displacement_factor)
@@ -51,14 +51,17 @@ contains
       if (place%line == 0 .and. .not. points) return
       reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
          & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
-      do number = 1, n_cases(deck)
+      built = .false.
+      do number = 1, size(chosen)
+         if (.not. chosen(number)) cycle
          call turn_to_case(deck, number, work, error)
          if (allocated(error)) return
          if (place%line > 0 .and. .not. bears_live(work)) then
             call deck_error(error, "load%load_factor needs a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
          else if (points) then
-            if (number == 1 .or. reshaped) call deck_scene(work, scene)
+            if (reshaped .or. .not. built) call deck_scene(work, scene)
+            built = .true.
             call check_live_points(work, scene, error)
          end if
          if (allocated(error)) return

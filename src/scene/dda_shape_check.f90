@@ -9,7 +9,7 @@ module dda_shape_check
       & put_number, source_of
    use dda_deck_key, only : full_name
    use dda_deck_keys, only : deck_key
-   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_deck_sweep, only : turn_to_case
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_yields
    use dda_key_names, only : analysis_collapse_displacement, analysis_geometry, analysis_mode, &
@@ -32,18 +32,19 @@ module dda_shape_check
 
 contains
 
-   !> Check every case of a deck, and the ends of its search
-   pure subroutine check_shapes(deck, error)
+   !> Check the chosen cases of a deck, and the ends of its search
+   pure subroutine check_shapes(deck, chosen, error)
       type(deck_t), intent(in) :: deck
+      logical, intent(in) :: chosen(:)                  !! Cases that will be computed: (n)
       type(error_t), allocatable, intent(out) :: error  !! Allocated for an unsupported arch
       type(deck_t) :: work
-      integer :: number, n
+      integer :: number
       logical :: one_kind
 
-      n = n_cases(deck)
       ! all cases have the same given keys
       one_kind = .not. any(deck%sweeps%parameter%key == arch_shape)
-      do number = 1, n
+      do number = 1, size(chosen)
+         if (.not. chosen(number)) cycle
          call turn_to_case(deck, number, work, error)
          if (source_of(work) == "shape") then
             if (.not. allocated(error)) call check_one(work, error)
@@ -51,7 +52,7 @@ contains
             return
          end if
          if (.not. allocated(error)) cycle
-         if (n > 1) error%message = error%message//" (case "//to_text(number)//")"
+         if (size(chosen) > 1) error%message = error%message//" (case "//to_text(number)//")"
          return
       end do
    end subroutine check_shapes

@@ -156,3 +156,16 @@ def test_an_arch_that_falls_unless_both_sides_lean_carries_nothing_where_the_axl
     (worst,) = rows(tmp_path, deck.format("worst = .true.") + SEARCH, head="")
     assert worst["verdict"] == "collapsed"
     assert abs(float(worst["worst_position"])) > 0.1
+
+
+@pytest.mark.parametrize("sweep", ["position', values = 0, 100", "rise', values = 1, 90"])
+def test_cases_that_are_not_computed_are_not_checked(tmp_path: Path, sweep: str) -> None:
+    """A share of a campaign checks its own cases: 2 s for each part of 10 000 were lost."""
+    position = "" if sweep.startswith("position") else ", position = 0"
+    (tmp_path / "x.nml").write_text(
+        "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.5, voussoirs = 9 /\n"
+        f"&vehicle axles = 1{position} /\n{SEARCH}&sweep parameter = '{sweep} /\n")
+    assert run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode == 2
+    assert run_dda("run", "x.nml", "--quiet", "--cases", "2", cwd=tmp_path).returncode == 2
+    done = run_dda("run", "x.nml", "--quiet", "--cases", "1", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
