@@ -41,6 +41,8 @@ contains
       model%file = file
       call split_words(text, file, 1, words)
       call take_number(words, "the edge-node distance ratio e00", model%edge_node_ratio, error)
+      if (allocated(error) .and. index(text, ";") > 0) error%message = error%message// &
+         & "; of a geometry of gmsh import the mesh: voussoir import FILE.msh"
       call check_number(model%edge_node_ratio >= 0.0_wp .and. model%edge_node_ratio <= 0.5_wp, &
          & "the edge-node distance ratio e00 must be from 0 to 0.5", model%edge_node_ratio, file, &
          & words%row(1), error)

@@ -181,3 +181,10 @@ def test_ten_thousand_lines_of_a_wall(tmp_path: Path, offset: float) -> None:
     assert done.returncode == 0, done.stderr
     assert f"{len(lines)} lines, {n * m + n // 2} blocks" in done.stdout
     assert "dropped     nothing" in done.stdout
+
+
+def test_a_geometry_of_gmsh_is_named(tmp_path: Path) -> None:
+    (tmp_path / "arch.geo").write_text("Point(1) = {0, 0, 0, 1.0};\n")
+    done = run_dda("cut", "arch.geo", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.endswith("; of a geometry of gmsh import the mesh: voussoir import FILE.msh\n")

@@ -175,6 +175,7 @@ def test_physical_groups_of_gmsh_are_roles(tmp_path: Path, capsys) -> None:
     assert main(["import", str(tmp_path / "stone.msh"), "--out", str(deck)]) == 0
     printed = capsys.readouterr().out
     assert "2 blocks, 1 of them fixed" in printed and "fixed: 1 of layer ground" in printed
+    assert "warning: each of the 2 elements is one block" in printed
     run = voussoir.run(deck, search="horizontal_coefficient", friction_deg=80)
     assert run.cases["critical"][0] == pytest.approx(0.5, rel=1e-7)
 

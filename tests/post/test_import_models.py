@@ -43,6 +43,7 @@ def read(file: Path, *words: str) -> tuple[int, Path]:
     ("a.wkt", "POLYGON ((0 0, 1 0))", "expected WKT in line 1"),
     ("a.json", '{"dtype": "compas_assembly.datastructures/Assembly", "data": {}}', "meshes or polygons of COMPAS"),
     ("a.json", '[{"dtype": "x/Mesh", "data": {"vertex": {"0": {"x": 0}}, "face": {"0": [0, 1, 2]}}}]', "x, y and z"),
+    ("gmsh.geo", "Point(1) = {0, 0, 0};\n", "a geometry of gmsh is imported as its mesh, FILE.msh"),
     ("missing.msh", None, "expected a file that can be read, got: No such file"),
 ])
 def test_foreign_and_broken_files_are_one_line(tmp_path: Path, capsys, name: str, text: str | None, words: str) -> None:

@@ -53,7 +53,9 @@ def read_shapes(
     """
     ending = file.suffix.lower()
     if ending not in ENDINGS:
-        raise ValueError(f"expected a file of {', '.join(ENDINGS)}, got '{file.suffix}'")
+        cure = "; 'dda cut' reads files of lines, and a geometry of gmsh is imported as its mesh, FILE.msh"
+        raise ValueError(
+            f"expected a file of {', '.join(ENDINGS)}, got '{file.suffix}'" + (cure if ending == ".geo" else ""))
     plain(file).open("rb").close()  # readers of others say less of what cannot be opened
     load("shapely", "an outline")
     content = Content() if content is None else content

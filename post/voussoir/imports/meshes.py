@@ -36,6 +36,9 @@ def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
                 raise ValueError(f"{words}: expected points from 1 to {len(points)}, got others")
             else:
                 used.append((words, corners, groups[number - 1] if number <= len(groups) else ""))
+    if len(used) > 1:
+        notes.warnings.append(
+            f"each of the {len(used)} elements is one block; give a stone one polygon, or it breaks at their sides")
     for words, corners, layer in used:
         yield words, geometry.Polygon(plane.flat(points[corners])), layer
 

@@ -15,6 +15,7 @@ class Notes:
     left_out: list[str] = field(default_factory=list)  #: What is no piece: text, points, a constant coordinate
     repaired: list[str] = field(default_factory=list)
     snapped: list[float] = field(default_factory=list)  #: Distances in units of the file
+    warnings: list[str] = field(default_factory=list)  #: What may not be what the user wants
     short: list[tuple[str, complex, float]] = field(default_factory=list)  #: Layer, end that stops short, its gap
 
     def drop(self, words: str, place: str = "") -> None:
@@ -24,7 +25,7 @@ class Notes:
 
     def lines(self, scale: float) -> list[str]:
         """Remarks, equal ones once; a unit of the file is so many metres."""
-        text = []
+        text = [f"warning: {words}" for words in self.warnings]
         for kind, remarks in (("dropped", self.dropped), ("left out", self.left_out), ("repaired", self.repaired)):
             for words, count in Counter(remarks).items():
                 times = f" ({count} times)" if count > 1 else ""
