@@ -15,6 +15,7 @@ submodule (dda_verbs:dda_check) dda_print_plan
    use dda_scene_check, only : check_lines
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
    use dda_text, only : counted, place_text, short_text, to_text
+   use dda_vehicle_list, only : vehicle_words
    implicit none
 
 contains
@@ -61,6 +62,7 @@ contains
       call tell(screen, "strength", merge("cohesion or tension, until a joint breaks", &
          & "none: friction only                      ", has_strength(scene)))
       call tell(screen, "points", points_text(scene%settings%boundary))
+      if (vehicle_words(deck) /= "") call tell(screen, "vehicle", vehicle_words(deck))
       call print_parts(screen, first, plan, blocks)
       call tell(screen, "other output", tables_text(first))
       if (.not. arch) call print_blocks(screen, scene)

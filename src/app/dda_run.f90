@@ -18,6 +18,7 @@ submodule (dda_verbs) dda_run
    use dda_screen, only : end_watch, print_line, print_warnings, terminal_watch_t
    use dda_table_file, only : remove_file
    use dda_text, only : to_text
+   use dda_vehicle_list, only : vehicle_words
    implicit none
 
    !> Maximum number of concurrent cases
@@ -136,6 +137,8 @@ contains
       call name_tables(deck, folder_of(command, name), tables)
       call begin_tables(command, name, deck, total, tables, finished, error)
       chosen = chosen .and. .not. finished%case
+      if (vehicle_words(deck) /= "" .and. .not. command%quiet) call print_line(command%screen, &
+         & name//": "//vehicle_words(deck))
       call new_case_table(command%screen, deck, chosen, shown)
       next = 0
       !$omp parallel num_threads(min(command%jobs, total, max_jobs)) default(none) &

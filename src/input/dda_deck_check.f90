@@ -5,7 +5,7 @@ submodule (dda_read_deck) dda_deck_check
    use dda_deck_sweep, only : choose_cases, turn_to_case
    use dda_key_names, only : fill_group, fill_passive_share, fill_unit_weight, ground_columns, &
       & ground_record, load_gravity, material_density, material_unit_weight, output_max_cases, &
-      & scene_analysis, support_group, tie_group, vehicle_axles
+      & scene_analysis, support_group, tie_group, vehicle_axles, vehicle_list
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, field_of, n_columns, read_record, &
@@ -272,7 +272,8 @@ contains
          & .and. deck%value(analysis_mode)%text /= "limerick" &
          & .and. .not. any(deck%sweeps%parameter%key == analysis_mode)) then
          why = "analysis%mode is '"//deck%value(analysis_mode)%text//"'; name another key"
-      else if (key%group == "vehicle" .and. .not. is_known(deck, vehicle_axles)) then
+      else if (key%group == "vehicle" .and. .not. (is_known(deck, vehicle_axles) &
+         & .or. deck%value(vehicle_list)%given)) then
          why = "vehicle%axles are not given; give them"
       else if (key%group == "fill" .and. key%name /= "unit_weight" &
          .and. .not. is_known(deck, fill_unit_weight)) then

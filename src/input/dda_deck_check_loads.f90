@@ -12,7 +12,7 @@ module dda_deck_check_loads
       & live_group, live_x, live_y, load_gravity_direction_deg, load_horizontal_coefficient, &
       & load_live_horizontal, load_load_factor, material_compressive_strength, scene_geometry, &
       & scene_kind, search_high, search_low, search_parameter, vehicle_axles, vehicle_group, &
-      & vehicle_position, vehicle_spacings, vehicle_worst
+      & vehicle_list, vehicle_position, vehicle_spacings, vehicle_worst
    use dda_key_value, only : deck_place_t
    use dda_kinds, only : wp
    use dda_text, only : to_text
@@ -251,12 +251,17 @@ contains
       worst = deck%value(vehicle_worst)%flag
       n = size(deck%value(vehicle_axles)%numbers)
       problem = ""
-      if (n == 0) then
-         problem = "&vehicle needs axles, got none; give their weights"
+      if (deck%value(vehicle_list)%given) then
+         continue
+      else if (n == 0) then
+         problem = "&vehicle needs axles, got none; give their weights, or a list and a name"
       else if (size(deck%value(vehicle_spacings)%numbers) /= n - 1) then
          problem = "vehicle%spacings needs one number fewer than there are axles, "// &
             & to_text(n - 1)//", got "//to_text(size(deck%value(vehicle_spacings)%numbers)) &
             & //"; give the distances between axles"
+      end if
+      if (len(problem) > 0) then
+         continue
       else if (.not. (deck%value(vehicle_position)%given .or. worst &
          & .or. deck%searched%key == vehicle_position)) then
          problem = "&vehicle needs a position, got none; give it, or worst = .true."

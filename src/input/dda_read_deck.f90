@@ -17,6 +17,7 @@ module dda_read_deck
    use dda_read_blocks, only : parse_blocks
    use dda_text, only : to_text
    use dda_text_file, only : file_mark, read_text_file, text_mark
+   use dda_vehicle_list, only : read_vehicle
    use dda_watch, only : watch_t
    implicit none
    private
@@ -85,6 +86,7 @@ contains
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error, cases, tight)
       if (.not. allocated(error)) call read_lines(deck, error)
       if (.not. allocated(error)) call read_ground_records(deck, error)
+      if (.not. allocated(error)) call read_vehicle(deck, error)
       if (allocated(error)) return
       if (deck%value(analysis_restart)%given) call add_file_mark(file_mark( &
          & file_beside(deck, deck%value(analysis_restart)%text)), deck)

@@ -88,6 +88,9 @@ def test_no_position_in_either_direction_is_worse_than_the_worst(tmp_path: Path,
         for axles, spacings in ((vehicle.axles, vehicle.spacings), (vehicle.axles[::-1], vehicle.spacings[::-1]))
         for near in (place, mirrored)]
     assert worst.factor == pytest.approx(min(ways), rel=1e-6)
+    turned = Vehicle("turned", vehicle.axles[::-1], vehicle.spacings[::-1], 1.8, 0.3, 0.3)
+    one_way = [pass_over(deck, each, both=False).factor for each in (vehicle, turned)]
+    assert (worst.factor, worst.opposite) == pytest.approx(tuple(sorted(one_way)), rel=1e-8)
 
 
 def test_a_second_vehicle_near_by_changes_the_factor_and_the_worst_gap_counts(tmp_path: Path) -> None:
@@ -155,3 +158,20 @@ def test_given_widths_and_lists_are_used(tmp_path: Path, capsys) -> None:
     assert "axles = 6000.0, 4000.0" in (tmp_path / "out" / "cart.nml").read_text()
     assert main([*words, "--vehicle", "waggon"]) == 2
     assert "expected a vehicle of" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("name", "count"), [("DIN_SLW60", 1), ("EN_LM2", 1), ("AASHTO_truck", 2)])
+def test_keys_of_a_deck_are_what_the_command_computes(tmp_path: Path, name: str, count: int, capsys) -> None:
+    """&vehicle list, name and convoy, in another language; with a proof that verify accepts, and on a page."""
+    passage = worst_convoy(deck_of(tmp_path, ARCH + FILL), read_vehicles(sample_list())[name], count, (3.0,))[0]
+    (tmp_path / "list.csv").write_text(sample_list().read_text())
+    keys = f"list = 'list.csv', name = '{name}', convoy = {count}, convoy_gap = 3, worst = T"
+    deck = deck_of(tmp_path, ARCH + FILL + f"&vehicle {keys} /\n&search parameter = 'load_factor' /\n")
+    run = voussoir.run(deck, out=tmp_path / "out")
+    assert run.cases["critical"][0] == pytest.approx(passage.factor, rel=1e-7)
+    assert float(run.setting("vehicle%effective_width")) == pytest.approx(passage.width, rel=1e-12)
+    assert main(["verify", str(tmp_path / "out")]) == 0
+    assert main(["assess", str(deck)]) == 0
+    page = deck.with_suffix(".html").read_text()
+    assert f"{name} weighs" in page and f"an effective width of {passage.width:.3g} m carries it" in page
+    assert f"{passage.factor:.3g}" in page

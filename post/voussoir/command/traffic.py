@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from voussoir.deck.traffic import Passage
 
 #: Heads of the table, and the columns of traffic.csv
-HEADS = ("vehicle", "weight [kN]", "width [m]", "load [kN/m]", "load factor", "position [m]", "direction")
-COLUMNS = "vehicle,weight_kN,effective_width_m,load_kN_per_m,load_factor,verdict,position_m,direction"
+HEADS = ("vehicle", "weight [kN]", "width [m]", "load [kN/m]", "load factor", "position [m]", "direction", "opposite")
+COLUMNS = (
+    "vehicle,weight_kN,effective_width_m,load_kN_per_m,load_factor,verdict,position_m,direction,opposite_load_factor")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "Moves vehicles of a list over the arch of a deck. Weights [kN] are divided by an effective width to loads per "
         "metre of depth. The rule is printed: w = b + 2 s h + min(t, b + 2 s h), with b the width of a wheel, t the "
         "track, h the depth of fill at the crown and s its spread. Prints load factor, worst position and direction "
-        "per vehicle. Writes traffic.csv, one deck per vehicle, and a chart of load factor against position."
+        "per vehicle, and the load factor in the opposite direction. Writes traffic.csv, one deck per vehicle, and a "
+        "chart of load factor against position."
     )
     parser.add_argument("deck", metavar="DECK", type=Path, help="deck of an arch; its &vehicle is ignored")
     parser.add_argument(
@@ -103,13 +105,15 @@ def row_of(passage: Passage) -> tuple[str, ...]:
 
     row = passage.found.factor or {}
     total = sum(passage.vehicle.axles) / 1e3
-    factor = {math.inf: "unlimited", 0.0: "0"}.get(passage.factor, digits(passage.factor))
+    words = {math.inf: "unlimited", 0.0: "0"}
+    factor, other = (words.get(value, digits(value)) for value in (passage.factor, passage.opposite))
     if math.isnan(passage.factor):
         factor = str(row.get("verdict", "none"))
     place = passage.found.place
     return (
         passage.vehicle.name, digits(total), digits(passage.width), digits(total / passage.width), factor,
-        "-" if math.isnan(place) else digits(place), str(row.get("worst_direction", "")) or "-")
+        "-" if math.isnan(place) else digits(place), str(row.get("worst_direction", "")) or "-",
+        "-" if math.isnan(passage.opposite) else other)
 
 
 def csv_of(passage: Passage) -> str:
@@ -120,4 +124,5 @@ def csv_of(passage: Passage) -> str:
     numbers = [total, passage.width, total / passage.width, passage.factor]
     cells = ["" if math.isnan(number) else repr(number) for number in numbers]
     place = "" if math.isnan(passage.found.place) else repr(float(passage.found.place))
-    return ",".join([name, *cells, str(row.get("verdict", "")), place, str(row.get("worst_direction", ""))])
+    other = "" if math.isnan(passage.opposite) else repr(passage.opposite)
+    return ",".join([name, *cells, str(row.get("verdict", "")), place, str(row.get("worst_direction", "")), other])

@@ -15,7 +15,7 @@ import numpy as np
 
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.deck.run import run as run_deck
-from voussoir.deck.text import merged
+from voussoir.deck.text import deck_text, merged
 from voussoir.deck.thickness import dead_groups, thickness_safety
 from voussoir.results import Results, Table
 
@@ -26,6 +26,8 @@ POSITIONS, MOST_POSITIONS = 41, 121
 SMALLER = 1e-6
 #: Columns of a row that say its load factor
 _OF_FACTOR = ("verdict", "critical", "critical_low", "critical_high", "collapses_at", "exact_low", "exact_high")
+#: Name of a list of vehicles
+_LIST = re.compile(r"(\blist\s*=\s*)('[^']*'|\"[^\"]*\")", re.IGNORECASE)
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
@@ -91,8 +93,10 @@ class Assessment:
 
 def assess(text: str, deck: Path, full: bool = True) -> Assessment:
     """Compute what the page of a deck says; without `full` neither the critical thickness nor the dead load alone."""
-    bare = without(text, "search")
+    bare = _LIST.sub(lambda match: f"{match[1]}'{(deck.parent / match[2][1:-1]).absolute()}'", without(text, "search"))
     found, factor = load_search(bare)
+    if found is not None and any(found.setting(f"vehicle%{name}") for name in ("effective_width", "convoy")):
+        bare = axles_alone(bare, found)
     place = math.nan if factor is None else factor.get("worst_position", math.nan)
     fixed, way = _at_position(bare, place), _turned(found)
     own = run_deck(fixed, **way)
@@ -113,10 +117,22 @@ def assess(text: str, deck: Path, full: bool = True) -> Assessment:
     return Assessment(deck, text, own, dead, found, factor, safety, axles, cases)
 
 
+def axles_alone(text: str, run: Results) -> str:
+    """A deck whose vehicle is that of its run: axles per metre of depth, without list, convoy and width."""
+    keys: dict[str, Any] = {
+        name: [float(word) for word in run.settings(f"vehicle%{name}")] for name in ("axles", "spacings")}
+    keys |= {name: float(run.setting(f"vehicle%{name}") or "nan") for name in ("length", "position")}
+    keys = {name: value for name, value in keys.items() if value and value == value}
+    keys |= {name: str(run.setting(f"vehicle%{name}")).strip() == ".true." for name in ("worst", "both_directions")
+             if run.setting(f"vehicle%{name}")}
+    return without(text, "vehicle") + "\n" + deck_text({"vehicle": keys})
+
+
 def without(text: str, *groups: str) -> str:
-    """A deck without some of its groups, whose texts have no slashes."""
+    """A deck without some of its groups."""
     for group in groups:
-        text = re.sub(rf"&{group}\b[^/]*/", lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
+        whole = rf"&{group}\b(?:[^/'\"]|'[^']*'|\"[^\"]*\")*/"
+        text = re.sub(whole, lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
     return text
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from voussoir.deck.assessment import Assessment, assess, defaults, without
+from voussoir.deck.assessment import Assessment, Row, assess, defaults, without
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.text import deck_text
 from voussoir.dda_program import find_dda, find_input
@@ -86,21 +86,28 @@ class Passage:
         The deck that was computed.
     found : Assessment
         Its worst position, its factor, and the factors along the road.
+    opposite : float
+        Least load factor of the better direction of travel, NaN where only one is tried.
     """
 
     vehicle: Vehicle
     width: float
     text: str
     found: Assessment
+    opposite: float = math.nan
 
     @property
     def factor(self) -> float:
         """Load factor at the worst position: infinite where none makes it collapse, 0 where the dead loads do."""
-        row = self.found.factor or {}
-        verdict = str(row.get("verdict"))
-        if verdict == "found":
-            return float(row["critical"])
-        return {"stable": math.inf, "collapsed": 0.0}.get(verdict, math.nan)
+        return factor_of(self.found.factor or {})
+
+
+def factor_of(row: Row) -> float:
+    """Load factor of a search: infinite where none makes it collapse, 0 where the dead loads do."""
+    verdict = str(row.get("verdict"))
+    if verdict == "found":
+        return float(row["critical"])
+    return {"stable": math.inf, "collapsed": 0.0}.get(verdict, math.nan)
 
 
 def read_vehicles(file: Path) -> dict[str, Vehicle]:
@@ -183,9 +190,21 @@ def pass_over(
         "both_directions": both}
     if vehicle.spacings:
         keys["spacings"] = list(vehicle.spacings)
-    text = f"{text.rstrip()}\n! {vehicle.name}: loads over an effective width of {effective:.6g} m\n"
+    bare_text = f"{text.rstrip()}\n"
+    text = f"{bare_text}! {vehicle.name}: loads over an effective width of {effective:.6g} m\n"
     text += deck_text({"vehicle": keys})
-    return Passage(vehicle, effective, text, assess(text, deck, full=False))
+    found = assess(text, deck, full=False)
+    passage = Passage(vehicle, effective, text, found)
+    if not both:
+        return passage
+    if (vehicle.axles, vehicle.spacings) == (vehicle.axles[::-1], vehicle.spacings[::-1]):
+        return replace(passage, opposite=passage.factor)
+    backward = (found.factor or {}).get("worst_direction") == "backward"
+    other = keys | {"both_directions": False}
+    for name in () if backward else ("axles", "spacings"):
+        other[name] = other[name][::-1]  # type: ignore[index]
+    row = run_deck(bare_text + deck_text({"vehicle": other, "search": {"parameter": "load_factor"}})).case(1)
+    return replace(passage, opposite=factor_of(row))
 
 
 def worst_convoy(

@@ -39,6 +39,12 @@ def assumptions_of(found: Assessment) -> list[str]:
     weight = value("material%unit_weight")
     unit = float(weight) if weight else float(value("material%density") or 0.0) * float(value("load%gravity") or 0.0)
     lines.append(f"Unit weight of the masonry {quantity(unit, 'N/m³')}.")
+    if found.found is not None and (width := found.found.setting("vehicle%effective_width")):
+        load = sum(float(word) for word in found.found.settings("vehicle%axles"))
+        name = found.found.setting("vehicle%name") or "The vehicle"
+        lines.append(
+            f"{name} weighs {quantity(load * float(width), 'N')}; an effective width of {quantity(float(width), 'm')} "
+            "carries it.")
     return lines + fill_of(found)
 
 
