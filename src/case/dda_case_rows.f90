@@ -15,6 +15,7 @@ module dda_case_rows
    use dda_settings, only : verdict
    use dda_step_context, only : contact_note_t
    use dda_text, only : counted, short_text, to_text
+   use dda_turned_rows, only : turn_rows
    use dda_verdict, only : largest_displacement, outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
@@ -41,10 +42,8 @@ contains
       type(result_row_t), intent(out) :: row
       !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
       type(joint_row_t), allocatable, intent(out) :: joint_row(:)
-      !> Its blocks; nothing is allocated if there is nothing to tell
-      type(told_blocks_t), intent(out) :: blocks
-      !> What the user should know beside the row; empty if nothing
-      character(len=:), allocatable, intent(out) :: remark
+      type(told_blocks_t), intent(out) :: blocks            !! Its blocks; unallocated without any
+      character(len=:), allocatable, intent(out) :: remark  !! For the user, beside the row
 
       remark = ""
       allocate (joint_row(0))
@@ -57,6 +56,7 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
+      if (source_of(this%family%deck) == "shape") call turn_rows(this%scene%system, joint_row)
       if (this%has_worst) then
          row%worst_position = some_number(this%family%deck%value(vehicle_position)%number)
          row%worst_direction = merge("backward", "forward ", this%drives_backward)

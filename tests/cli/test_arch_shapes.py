@@ -92,6 +92,32 @@ def test_a_semicircle_of_one_ring_is_the_circular_arch(tmp_path: Path) -> None:
     assert float(found["critical"]) == pytest.approx(ratio, rel=1e-8)
 
 
+@pytest.mark.parametrize("loads", ["&live x = -2, y = 2, fy = -1e5 /\n", "&load horizontal_coefficient = 9 /\n"])
+def test_hinges_of_a_shape_are_named_as_those_of_its_ring(tmp_path: Path, loads: str) -> None:
+    """Ends of joints by their distance from the centre, at both springings too; hinges by where their force acts."""
+    deck = "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.5, voussoirs = 12 /\n" + loads
+    factor = SEARCH if "live" in loads else ""
+    (found,) = rows(tmp_path, deck + "&joint friction_deg = 60 /\n" + factor, head="")
+    assert found["collapse_mode"] == "rotational"
+    joints = [{name: joint[name] if name in ("state", "mechanism") else float(joint[name] or "nan") for name in joint}
+              for joint in table(str(tmp_path / "x" / "joints.csv"))]
+    assert len(joints) == 13
+    hinges = []
+    for joint in joints:
+        inner, outer, acts = (math.hypot(joint[f"x{end}"], joint[f"y{end}"] + 3.0) for end in
+                              ("_intrados", "_extrados", ""))
+        assert (inner, outer) == pytest.approx((5.0, 5.5), abs=1e-9)
+        if joint["mechanism"].startswith("hinge"):
+            side = "intrados" if acts < 5.25 else "extrados"
+            hinges.append(side)
+            assert joint["mechanism"] == f"hinge_{side}"
+            assert joint["eccentricity_ratio"] == pytest.approx(1.0 if side == "intrados" else -1.0, abs=1e-6)
+            opens = "extrados" if side == "intrados" else "intrados"
+            assert joint[f"opening_{opens}"] >= joint[f"opening_{side}"]
+    # along the arch they take turns
+    assert len(hinges) == 4 and sum(side == "intrados" for side in hinges) == 2
+
+
 def test_an_undecided_search_says_its_bracket(tmp_path: Path) -> None:
     """A catenary so thin that its rounded corners hide how it falls: the exact value, of 40 digits, is near."""
     deck = "&arch shape = 'catenary', span = 20.541, rise = 4.905, right_rise = 3.758, voussoirs = 43 /\n"
