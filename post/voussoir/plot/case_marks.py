@@ -64,7 +64,8 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
 
 def draw_values(axes: Axes, places: np.ndarray, values: list[str], color: str) -> None:
     """Write values beside their places: equal neighbours once, others above those that they would hide."""
-    figure, size = axes.figure, type_of(SMALL)
+    figure: Any = axes.figure
+    size = type_of(SMALL)
     axes.apply_aspect()
     points = axes.transData.transform(places) * POINTS / figure.dpi
     written: list[tuple[np.ndarray, np.ndarray, str]] = []
