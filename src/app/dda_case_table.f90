@@ -250,7 +250,7 @@ contains
       case (source%verdict)
          text = trim(row%verdict)
       case (source%searched)
-         text = shown_number(row%critical, column%width)
+         if (row%critical%known) text = rounded(row%critical%value, column%width, known_digits(row))
       case (source%swept)
          text = shown_value(trim(swept(column%sweep)), column)
       case (source%error)
@@ -278,17 +278,32 @@ contains
       if (number%known) text = rounded(number%value, width)
    end function shown_number
 
+   !> Digits of the critical value of a search, one more than its bracket tells
+   pure integer function known_digits(row)
+      type(result_row_t), intent(in) :: row
+      real(wp) :: half
+
+      known_digits = most_digits
+      half = 0.5_wp*(row%critical_high%value - row%critical_low%value)
+      if (.not. (row%critical_low%known .and. row%critical_high%known)) return
+      if (.not. (half > 0.0_wp .and. half < abs(row%critical%value))) return
+      known_digits = min(most_digits, 2 + floor(log10(abs(row%critical%value)/half)))
+   end function known_digits
+
    !> Text of a number with as many digits as fit
-   pure function rounded(value, width) result(text)
-      real(wp), intent(in) :: value  !! The number
+   pure function rounded(value, width, most) result(text)
+      real(wp), intent(in) :: value          !! The number
       integer, intent(in) :: width
+      integer, intent(in), optional :: most  !! Largest number of its digits
       character(len=:), allocatable :: text
       character(len=30) :: buffer
       character(len=12) :: form
       real(wp) :: near
-      integer :: digits, stat
+      integer :: digits, first, stat
 
-      do digits = most_digits, 1, -1
+      first = most_digits
+      if (present(most)) first = most
+      do digits = first, 1, -1
          write (form, "(a, i0, a)") "(es30.", digits - 1, "e3)"
          write (buffer, form) value
          read (buffer, "(f30.0)", iostat=stat) near

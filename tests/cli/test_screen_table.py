@@ -108,6 +108,22 @@ def test_values_of_any_size_are_shown_with_their_digits(tmp_path: Path, cohesion
     assert critical == pytest.approx(cohesion, rel=1e-6)
 
 
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+def test_a_critical_value_has_the_digits_of_its_bracket(tmp_path: Path, tolerance: float) -> None:
+    """One more than half of the bracket tells: 62.3046875 was printed for 62.0 to 62.6."""
+    spread = (
+        "&arch shape = 'segmental', span = 6, rise = 1.5, thickness = 0.45, voussoirs = 9 /\n"
+        "&support right_dx = 0.01 /\n&analysis geometry = 'current' /\n"
+        f"&search parameter = 'displacement_factor', low = 0, high = 100, tolerance = {tolerance} /\n")
+    shown = table_of(tmp_path, spread)[1].split()[1]
+    with (tmp_path / "deck" / "results.csv").open(newline="") as lines:
+        (row,) = csv.DictReader(lines)
+    value, low, high = (float(row[name]) for name in ("critical", "critical_low", "critical_high"))
+    digits = len(shown.replace(".", "").lstrip("0"))
+    assert 10.0 ** (digits - 2) <= value / (0.5 * (high - low)) * 1.0001
+    assert abs(float(shown) - value) <= 0.5 * (high - low)
+
+
 @pytest.mark.parametrize("jobs", ["1", "2", "7"])
 def test_cases_are_shown_in_order_whoever_computes_them(tmp_path: Path, jobs: str) -> None:
     """The first case of each pair takes a hundred times as long as the second."""

@@ -653,7 +653,7 @@ def test_no_text_is_smaller_than_the_smallest_type(tmp_path: Path) -> None:
         small = draw_case(bridge, 1, sheet=Sheet(80 / 25.4))
         assert min(text.get_fontsize() for text in small.findobj(Text) if text.get_text()) < 8.0
     assert [axes.get_ylabel() for axes in figures[1].axes][0] == "position of the vehicle [m]"
-    assert figures[1].axes[0].get_xlabel() == "height [m]"
+    assert figures[1].axes[0].get_xlabel() == "height of the fill [m]"
 
 
 def test_values_of_loads_do_not_hide_one_another(tmp_path: Path) -> None:

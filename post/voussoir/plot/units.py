@@ -48,6 +48,7 @@ PARAMETERS = {
     "displacement_factor": ("factor of prescribed displacements", ""),
     "water_rise": ("rise of the water", "m"),
     "position": ("position of the vehicle", "m"),
+    "height": ("height of the fill", "m"),
     "depth": ("depth of the fill over the crown", "m"),
     "amplitude": ("peak acceleration of the ground", "m/s²"),
     "scale": ("scale of the ground's motion", ""),
