@@ -140,7 +140,8 @@ def test_titles_and_legends_are_left_out(arch, tmp_path: Path) -> None:
     with house_style():
         figure = draw_case(arch, 1, sheet=Sheet(title=False, legend=False))
     assert figure._suptitle is None and not figure.legends
-    words = ["plot", str(arch.folder), "--no-title", "--no-legend", "--forces", "--out", str(tmp_path)]
+    words = ["plot", str(arch.folder), "--no-title", "--no-legend", "--forces", "--out", str(tmp_path),
+             "--min-font", "6"]
     assert main(words) == 0
 
 

@@ -107,8 +107,8 @@ def test_command_prints_writes_and_draws(tmp_path: Path, capsys, monkeypatch: py
     exact = theory.discrete_critical(8, math.pi / 2)
     words = [
         "study", "arch.nml", "--double", "young", "2", "--y", "critical", "--exact", repr(float(exact)), "--set",
-        "poisson=0.1", "--jobs", "1", "--width", "80mm", "--font", "8", "--no-legend", "--no-title", "--format", "png",
-        "--out", "out"]
+        "poisson=0.1", "--jobs", "1", "--width", "80mm", "--font", "8", "--min-font", "6", "--no-legend", "--no-title",
+        "--format", "png", "--out", "out"]
     assert main(words) == 0
     printed = capsys.readouterr().out
     assert "observed order 1.00" in printed and "error" in printed

@@ -134,7 +134,7 @@ def test_command_prints_the_rule_and_writes_decks_that_give_the_same(tmp_path: P
     deck, out = deck_of(tmp_path, ARCH + FILL), tmp_path / "out"
     words = ["traffic", str(deck), "--vehicle", "single_axle_11.5t", "--rule", "cs454", "--barrel-width", "1.7",
              "--convoy", "2", "--gap", "1.3", "4", "--one-direction", "--out", str(out), "--format", "png", "--width",
-             "80mm", "--font", "8", "--no-title", "--no-legend"]
+             "80mm", "--font", "8", "--min-font", "6", "--no-title", "--no-legend"]
     assert main(words) == 0
     printed = capsys.readouterr().out
     assert "effective width: w = 1.5 m + h" in printed and "load [kN/m]" in printed
