@@ -174,7 +174,7 @@ def test_import_runs_draws_and_says_what_is_missing(tmp_path: Path, capfd) -> No
     deck = tmp_path / "pier.nml"
     words = ["import", str(file), "--out", str(deck), "--run", "--search", "horizontal_coefficient"]
     assert main(words) == 2  # nothing holds it
-    assert "nothing is fixed" in capfd.readouterr().out
+    assert "no block is fixed" in capfd.readouterr().out
     assert main(["import", str(file), "--out", str(deck), "--hold", "3"]) == 2
     assert "expected numbers of blocks from 1 to 2 to hold, got 3" in capfd.readouterr().err
     pytest.importorskip("matplotlib")
@@ -230,7 +230,7 @@ def test_what_is_exported_is_read_back_and_falls_as_before(tmp_path: Path, capsy
     assert main(["import", str(file), "--out", str(again)]) == 0
     blocks = [block.corners for block in first.blocks_of(1)]
     if package == "meshio":  # what is fixed is lost, and said
-        assert "nothing is fixed" in capsys.readouterr().out
+        assert "no block is fixed" in capsys.readouterr().out
         assert again.with_suffix(".blocks").read_text().count("block") == len(blocks)
         return
     assert horizontal(again) == pytest.approx(float(first.cases["critical"][0]), rel=1e-7)
