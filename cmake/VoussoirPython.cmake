@@ -60,10 +60,11 @@ function(voussoir_find_python)
   set(VOUSSOIR_PYTHON "${chosen}" PARENT_SCOPE)
 endfunction()
 
-# Symlinks of the package's files in <build>/python/voussoir, where the extension is put as well
-function(voussoir_link_package folder)
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${VOUSSOIR_SOURCE_ROOT}/post/voussoir"
-    "${VOUSSOIR_SOURCE_ROOT}/post/voussoir/*")
+# Symlinks of the files of all packages of post/ in <build>/python, where the extension is put as well. Those
+# beside voussoir, which test the program and repeat the paper, are not installed.
+function(voussoir_link_packages folder)
+  set(post "${VOUSSOIR_SOURCE_ROOT}/post")
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${post}" "${post}/*")
   list(FILTER files EXCLUDE REGEX "(^|/)__pycache__/|\\.pyc$")
   file(GLOB_RECURSE links "${folder}/*.py")
   foreach(link IN LISTS links)  # of files that have moved: a module must not hide a package
@@ -74,8 +75,7 @@ function(voussoir_link_package folder)
   foreach(file IN LISTS files)
     get_filename_component(subfolder "${folder}/${file}" DIRECTORY)
     file(MAKE_DIRECTORY "${subfolder}")
-    file(CREATE_LINK "${VOUSSOIR_SOURCE_ROOT}/post/voussoir/${file}" "${folder}/${file}"
-      COPY_ON_ERROR SYMBOLIC)
+    file(CREATE_LINK "${post}/${file}" "${folder}/${file}" COPY_ON_ERROR SYMBOLIC)
   endforeach()
 endfunction()
 
@@ -135,7 +135,7 @@ function(voussoir_add_python)
     return()
   endif()
   set(package "${CMAKE_BINARY_DIR}/python/voussoir")
-  voussoir_link_package("${package}")
+  voussoir_link_packages("${CMAKE_BINARY_DIR}/python")
   # The generator expression keeps generators of several configurations from adding a subfolder.
   set_target_properties(_theory PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${package}$<0:>")
   add_custom_target(voussoir_python ALL DEPENDS _theory)

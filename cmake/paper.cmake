@@ -15,7 +15,7 @@ else()
       ${decks}/table4.nml --out ${OUT}
     RESULT_VARIABLE status OUTPUT_QUIET)
   execute_process(
-    COMMAND ${PYTHON} ${SOURCE}/post/voussoir/paper/tables.py ${OUT} ${decks}/paper_tables.csv
+    COMMAND ${PYTHON} ${SOURCE}/post/voussoir_paper/tables.py ${OUT} ${decks}/paper_tables.csv
     COMMAND_ERROR_IS_FATAL ANY)
 endif()
 if(NOT status EQUAL 0)

@@ -27,5 +27,6 @@ def test_types_are_complete() -> None:
     if not has_typed_packages():
         pytest.skip("mypy with numpy 2.2 and matplotlib 3.8 is not installed")
     words = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", "/dev/null"]
-    done = subprocess.run([*words, "-p", "voussoir"], cwd=POST, capture_output=True, text=True)
+    packages = [word for package in POST.iterdir() for word in ("-p", package.name)]
+    done = subprocess.run([*words, *packages], cwd=POST, capture_output=True, text=True)
     assert [line for line in done.stdout.splitlines() if ": error: " in line] == []

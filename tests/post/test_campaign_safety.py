@@ -70,7 +70,7 @@ def test_deck_whose_name_begins_with_a_dash_is_a_deck(tmp_path: Path, monkeypatc
 
 
 def test_decks_of_the_paper_in_a_folder_with_a_dash_are_decks(tmp_path: Path, monkeypatch) -> None:
-    paper = pytest.importorskip("voussoir.paper.campaign", reason="the theory is not built: skipped")
+    paper = pytest.importorskip("voussoir_paper.campaign", reason="the theory is not built: skipped")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "-decks").mkdir()
     sweep(tmp_path / "-decks")

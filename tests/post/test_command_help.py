@@ -16,7 +16,10 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import __version__  # noqa: E402
-from voussoir.command.main import COMMANDS, build_parser, main  # noqa: E402
+from voussoir.command import main as command_line  # noqa: E402
+from voussoir.command.main import build_parser, main  # noqa: E402
+
+COMMANDS = {**command_line.COMMANDS, **command_line.SOURCE_COMMANDS}
 
 TESTS = Path(__file__).parents[1]
 sys.path.insert(0, str(TESTS / "lint"))
@@ -86,6 +89,18 @@ def test_verbs_of_dda_are_named(verb: str, capsys) -> None:
     assert capsys.readouterr().err == (
         f"voussoir: error: expected a command of voussoir, got '{verb}', which dda has; write 'dda {verb}'\n")
     assert "'dda run DECK'" in " ".join(help_of(["help"], capsys).split())
+
+
+@pytest.mark.parametrize("command", command_line.SOURCE_COMMANDS)
+def test_commands_that_are_not_installed_are_named(command: str) -> None:
+    package = Path(command_line.__file__).parents[1]  # without the packages beside it
+    code = f"""import sys, types; voussoir = types.ModuleType("voussoir"); voussoir.__path__ = [{str(package)!r}]
+sys.modules["voussoir"], voussoir.__version__ = voussoir, ""
+from voussoir.command.main import main; sys.exit(main([{command!r}, "--quiet"]))"""
+    done = subprocess.run([sys.executable, "-I", "-c", code], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (2, (
+        f"voussoir: error: expected an installed command, got '{command}', which a build of the source has; write "
+        f"'build/bin/voussoir {command}' there\n"))
 
 
 def words_of_calls() -> Iterator[set[str]]:

@@ -15,7 +15,7 @@ pytest.importorskip("voussoir.theory", reason="PYTHONPATH wants the build's pyth
 
 import voussoir  # noqa: E402
 from voussoir import theory  # noqa: E402
-from voussoir.bench.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
+from voussoir_benches.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input" / "gallery"

@@ -51,9 +51,14 @@ def test_installed_command_finds_its_package_through_a_link(prefix: Path, tmp_pa
 
 
 def test_installed_command_finds_program_and_decks(prefix: Path, tmp_path: Path) -> None:
-    words = ["validation", "--scenes", "incline", "--out", str(tmp_path)]
-    assert "incline" in run(prefix / "bin/voussoir", *words)
-    assert (tmp_path / "validation.csv").read_text().count("incline") > 0
+    (deck,) = (prefix / "share/voussoir/input").rglob("table4.nml")
+    assert "input/paper/table4.nml" in run(prefix / "bin/voussoir", "examples")
+    run(prefix / "bin/voussoir", "campaign", str(deck), "--workers", "1", "--out", str(tmp_path / "out"))
+    assert (tmp_path / "out/results.csv").read_text().count("\n") > 1
+
+
+def test_benches_and_paper_are_not_installed(prefix: Path) -> None:
+    assert [path.name for path in (prefix / "lib/voussoir/python").iterdir()] == ["voussoir"]
 
 
 def test_decks_are_found_where_pip_puts_them(tmp_path: Path) -> None:

@@ -17,9 +17,9 @@ pytest.importorskip("matplotlib", reason="figures want matplotlib")
 from voussoir import results, theory  # noqa: E402
 from voussoir.command import main as command_line  # noqa: E402
 from voussoir.dda_program import find_dda, find_input  # noqa: E402
-from voussoir.paper import figures as paper_figures, report as paper_report, tables as paper_tables  # noqa: E402
-from voussoir.paper.campaign import Campaign, Clock, Timing  # noqa: E402
-from voussoir.paper.findings import exact_threshold, least_friction  # noqa: E402
+from voussoir_paper import figures as paper_figures, report as paper_report, tables as paper_tables  # noqa: E402
+from voussoir_paper.campaign import Campaign, Clock, Timing  # noqa: E402
+from voussoir_paper.findings import exact_threshold, least_friction  # noqa: E402
 
 DECKS = find_input("paper")
 PAPER = paper_tables.read_table(DECKS / "paper_tables.csv")

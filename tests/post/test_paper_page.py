@@ -16,7 +16,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
 from voussoir.dda_program import find_input  # noqa: E402
-from voussoir.paper.campaign import Campaign  # noqa: E402
+from voussoir_paper.campaign import Campaign  # noqa: E402
 
 DECKS = find_input("paper")
 FIGURES = [f"figure{number}" for number in range(1, 21)]

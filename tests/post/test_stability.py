@@ -9,9 +9,11 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
-from voussoir.bench.checks import Check  # noqa: E402
-from voussoir.bench.deck_runs import Finished  # noqa: E402
-from voussoir.bench.expectations import (  # noqa: E402
+from voussoir_benches import stability  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
+from voussoir_benches.checks import Check  # noqa: E402
+from voussoir_benches.deck_runs import Finished  # noqa: E402
+from voussoir_benches.expectations import (  # noqa: E402
     Critical,
     Measured,
     Refused,
@@ -20,11 +22,9 @@ from voussoir.bench.expectations import (  # noqa: E402
     Warned,
     judge,
 )
-from voussoir.bench.scene import Scene  # noqa: E402
-from voussoir.bench.stability_random import tower_push  # noqa: E402
-from voussoir.bench.stability_scenes import catalogue, random_scenes  # noqa: E402
-from voussoir.command import stability  # noqa: E402
-from voussoir.command.main import main  # noqa: E402
+from voussoir_benches.scene import Scene  # noqa: E402
+from voussoir_benches.stability_random import tower_push  # noqa: E402
+from voussoir_benches.stability_scenes import catalogue, random_scenes  # noqa: E402
 
 
 @pytest.fixture(autouse=True)

@@ -9,7 +9,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
 from voussoir import theory  # noqa: E402
-from voussoir.theory import arch_sketch, curve_figures as theory_curve_figures, figures as theory_figures  # noqa: E402
+from voussoir_paper import arch_sketch, theory_curves, theory_figures  # noqa: E402
 
 
 def test_seven_figures_in_two_formats_alike_at_every_run(tmp_path):
@@ -50,7 +50,7 @@ def test_drawn_critical_thrust_stays_in_the_arch():
 
 @pytest.mark.parametrize("alpha_deg", [90.0, 140.0])
 def test_compared_curves_print_the_critical_values(alpha_deg):
-    (axes,) = theory_curve_figures.compared_curves(alpha_deg).axes
+    (axes,) = theory_curves.compared_curves(alpha_deg).axes
     labels = " ".join(text.get_text() for text in axes.get_legend().get_texts())
     for name in theory.THEORIES:
         assert f"{float(theory.critical(math.radians(alpha_deg), name)[1]):.6f}" in labels

@@ -14,21 +14,21 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 np = pytest.importorskip("numpy")
 
-from voussoir.bench import validation_page  # noqa: E402
-from voussoir.bench.checks import Check  # noqa: E402
-from voussoir.bench.expectations import Measured  # noqa: E402
-from voussoir.bench.scene import Scene  # noqa: E402
-from voussoir.bench.validation_assemblies import roof_wedge, snap_load  # noqa: E402
-from voussoir.bench.validation_impact import next_amplitude, quarter_period  # noqa: E402
-from voussoir.bench.validation_motion import stick_slip  # noqa: E402
-from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E402
-from voussoir.bench.validation_plot import diagonal, has_diagonal, has_history, history  # noqa: E402
-from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
-from voussoir.bench.validation_sketch import Shape, sketch  # noqa: E402
-from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
-from voussoir.command.validation import titles_of  # noqa: E402
 from voussoir.dda_program import find_input  # noqa: E402
+from voussoir_benches import validation_page  # noqa: E402
+from voussoir_benches.checks import Check  # noqa: E402
+from voussoir_benches.expectations import Measured  # noqa: E402
+from voussoir_benches.scene import Scene  # noqa: E402
+from voussoir_benches.validation import titles_of  # noqa: E402
+from voussoir_benches.validation_assemblies import roof_wedge, snap_load  # noqa: E402
+from voussoir_benches.validation_impact import next_amplitude, quarter_period  # noqa: E402
+from voussoir_benches.validation_motion import stick_slip  # noqa: E402
+from voussoir_benches.validation_plot import diagonal, has_diagonal, has_history, history  # noqa: E402
+from voussoir_benches.validation_rest import ONSETS, foot_acceleration  # noqa: E402
+from voussoir_benches.validation_run import Line, all_scenes, run_scene  # noqa: E402
+from voussoir_benches.validation_sketch import Shape, sketch  # noqa: E402
+from voussoir_benches.validation_strain import chain_frequency  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DECKS = REPOSITORY / "input" / "benchmarks"
@@ -137,7 +137,7 @@ def test_miss_is_reported_and_is_the_exit_status(tmp_path: Path, monkeypatch, ca
     (scene,) = [scene for scene in SCENES if scene.name == "column"]
     wrong = dataclasses.replace(scene.expectation.checks[0], exact=0.25)
     false_scene = dataclasses.replace(scene, expectation=Measured((wrong,)))
-    monkeypatch.setattr("voussoir.command.validation.all_scenes", lambda: (false_scene,))
+    monkeypatch.setattr("voussoir_benches.validation.all_scenes", lambda: (false_scene,))
     words = ["validation", "--quiet", "--out", str(tmp_path), "--scenes", "column"]
     assert main(words) == 1
     assert "0.25 | 0.2 | 2.0e-01 **MISSED** |" in (tmp_path / "validation.md").read_text()

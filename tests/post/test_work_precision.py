@@ -10,15 +10,15 @@ import pytest
 voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import theory  # noqa: E402
-from voussoir.bench import limit_lp  # noqa: E402
-from voussoir.bench.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
-from voussoir.bench.work_precision_fronts import Panel, Point, front  # noqa: E402
-from voussoir.bench.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
-from voussoir.bench.work_precision_page import answer_words, draw, front_table, motion_table, race_table  # noqa: E402
-from voussoir.bench.work_precision_runs import Arch, Race  # noqa: E402
-from voussoir.bench.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.deck.run import Deck  # noqa: E402
+from voussoir_benches import limit_lp  # noqa: E402
+from voussoir_benches.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
+from voussoir_benches.work_precision_fronts import Panel, Point, front  # noqa: E402
+from voussoir_benches.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
+from voussoir_benches.work_precision_page import answer_words, draw, front_table, motion_table, race_table  # noqa: E402
+from voussoir_benches.work_precision_runs import Arch, Race  # noqa: E402
+from voussoir_benches.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall  # noqa: E402
 
 needs_scipy = pytest.mark.skipif(limit_lp.scipy_version() is None, reason="scipy is missing")
 needs_dda = pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")

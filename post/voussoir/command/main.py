@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import importlib
+import importlib.util
 import os
 import re
 import sys
@@ -22,16 +22,19 @@ COMMANDS = {
     "examples": ("voussoir.command.examples", "decks of the package"),
     "export": ("voussoir.command.export_file", "blocks of a case as a drawing, GeoJSON, WKT or a mesh"),
     "import": ("voussoir.command.import_file", "deck of blocks from a drawing, GeoJSON, WKT or a mesh"),
-    "paper": ("voussoir.command.paper", "tables and figures of the paper, and a report"),
     "plot": ("voussoir.command.plot", "pictures and charts of a folder of results"),
     "theory": ("voussoir.command.theory", "three analytic solutions at given half angles"),
-    "work-precision": ("voussoir.command.work_precision", "error against run time"),
     "view": ("voussoir.command.view", "blocks of a case in a window"),
     "verify": ("voussoir.verify.command", "check of the proofs in a folder of results"),
-    "stability": ("voussoir.command.stability", "stiff and extreme scenes with exact answers"),
     "study": ("voussoir.command.study", "order of convergence of a deck as one key is halved"),
     "traffic": ("voussoir.command.traffic", "load factors and worst positions of vehicles on an arch"),
-    "validation": ("voussoir.command.validation", "verification: results beside exact answers"),
+}
+#: Subcommands of a build of the source. Their packages are not installed: they test the program and repeat the paper
+SOURCE_COMMANDS = {
+    "paper": ("voussoir_paper.command", "tables and figures of the paper, and a report"),
+    "stability": ("voussoir_benches.stability", "stiff and extreme scenes with exact answers"),
+    "validation": ("voussoir_benches.validation", "verification: results beside exact answers"),
+    "work-precision": ("voussoir_benches.work_precision", "error against run time"),
 }
 #: Verbs of dda that voussoir does not have
 DDA_VERBS = ("run", "check", "cut")
@@ -60,10 +63,11 @@ def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="voussoir", description="Pictures, proofs, studies and drawings for results of dda.",
         epilog="'voussoir help COMMAND' lists its options. Decks are computed by 'dda run DECK': see 'dda help'. "
-        + EXIT_STATUS)
+        f"A build of the source has more commands: {', '.join(SOURCE_COMMANDS)}. {EXIT_STATUS}")
     parser.add_argument("--version", action="version", version=f"voussoir {__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, (module, summary) in COMMANDS.items():
+    named = {**COMMANDS, **{name: home for name, home in SOURCE_COMMANDS.items() if name == chosen}}
+    for name, (module, summary) in named.items():
         subparser = subparsers.add_parser(
             name, help=summary, description=summary[0].upper() + summary[1:] + ".", epilog=EXIT_STATUS,
             formatter_class=Formatter)
@@ -87,9 +91,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"voussoir: error: expected a command of voussoir, got '{words[0]}', which dda has; write "
                          f"'dda {words[0]}'\n")
         return 2
+    module, _ = {**COMMANDS, **SOURCE_COMMANDS}.get(words[0], ("", ""))
+    if words[0] in SOURCE_COMMANDS and not importlib.util.find_spec(module.partition(".")[0]):
+        sys.stderr.write(f"voussoir: error: expected an installed command, got '{words[0]}', which a build of the "
+                         f"source has; write 'build/bin/voussoir {words[0]}' there\n")
+        return 2
     chosen = build_parser(words[0]).parse_args(words)
     try:
-        return int(importlib.import_module(COMMANDS[chosen.command][0]).run(chosen))
+        return int(importlib.import_module(module).run(chosen))
     except BrokenPipeError:  # who reads the output, such as head, has enough of it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
