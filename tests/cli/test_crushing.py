@@ -92,12 +92,12 @@ def test_an_arch_carries_what_a_programme_of_tangents_has(
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
     verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
     from live_assemblies import programme
-    from voussoir.verify.deck import read_record
+    from voussoir.verify.deck import read_deck
 
     (row,) = rows(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4), head="")
     (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}
     blocks = verify.read_table(folder / "blocks.csv")[1]
-    scene = verify.scene_of(read_record(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
+    scene = verify.scene_of(read_deck(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
     assert float(row["critical"]) == pytest.approx(programme(scene, crushes=True), rel=1e-7)
 
 

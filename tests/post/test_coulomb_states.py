@@ -14,7 +14,7 @@ pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/"
 
 from voussoir.command.main import main  # noqa: E402
 from voussoir.verify import command as verify_command  # noqa: E402
-from voussoir.verify.deck import read_record  # noqa: E402
+from voussoir.verify.deck import read_deck  # noqa: E402
 from voussoir.verify.proofs import Scene  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
@@ -39,7 +39,7 @@ def search(folder: Path, blocks: str, friction: str) -> tuple[dict[str, str], Sc
     assert main(["verify", str(folder / "x"), "--quiet"]) == 0
     tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in ("results", "blocks")}
     (found,) = tables["results"][1]
-    deck = read_record(folder / "x").with_value("load_factor", "1")
+    deck = read_deck(folder / "x").with_value("load_factor", "1")
     return found, verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding())
 
 

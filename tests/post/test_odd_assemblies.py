@@ -14,7 +14,7 @@ pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/"
 
 from voussoir.command.main import main  # noqa: E402
 from voussoir.verify import command as verify_command  # noqa: E402
-from voussoir.verify.deck import read_record  # noqa: E402
+from voussoir.verify.deck import read_deck  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
@@ -65,7 +65,7 @@ def compare_with_programme(folder: Path, row: dict[str, str]) -> None:
     """The associated limit is that of a linear programme of the joints that the checker finds."""
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
     tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in verify_command.TABLES}
-    deck = read_record(folder / "x").with_value("load_factor", "1")
+    deck = read_deck(folder / "x").with_value("load_factor", "1")
     scene = verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding())
     limit = programme(scene)
     if row["verdict"] == "found" and float(row["critical"]) > 0.0:

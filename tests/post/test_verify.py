@@ -15,7 +15,7 @@ pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/"
 
 from voussoir.verify import command as verify_command  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
-from voussoir.verify.deck import read_record  # noqa: E402
+from voussoir.verify.deck import read_deck  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
@@ -288,7 +288,7 @@ def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path:
     assert main(["verify", str(folder), "--quiet"]) == 0
     (row,) = rows_of(folder / "results.csv")
     tables = {name: verify_command.read_table(folder / f"{name}.csv") for name in verify_command.TABLES}
-    deck = read_record(folder).with_value("load_factor", "1")
+    deck = read_deck(folder).with_value("load_factor", "1")
     scene = verify_command.scene_of(deck, tables["blocks"][1], [tmp_path], verify_command.Finding())
     factor = programme(scene)
     assert factor is not None and row["verdict"] == "found"

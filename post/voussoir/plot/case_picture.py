@@ -13,6 +13,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from voussoir.dda_program import DdaError
+from voussoir.deck.thickness import thickness_safety
 from voussoir.plot.case_joints import JointMarks
 from voussoir.plot.case_marks import draw_held, draw_loads, draw_numbers, entry, load_arrows, show_coordinates
 from voussoir.plot.case_scene import CaseScene, scene_of, view
@@ -90,9 +92,6 @@ def draw_case(
 
 def row_with_safety(run: Results, number: int) -> dict[str, Any]:
     """Row of a case; of an arch that stands at rest, with the geometrical safety, where dda is there to find it."""
-    from voussoir.dda_program import DdaError
-    from voussoir.deck.thickness import thickness_safety
-
     row = run.case(number)
     stands = row["verdict"] == "stable" and (row["mode"], row["geometry"]) == ("static", "reference")
     if not stands or run.kind not in ("arch", "shape") or run.searched:

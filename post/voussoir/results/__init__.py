@@ -13,6 +13,9 @@ from __future__ import annotations
 
 from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +23,7 @@ import numpy as np
 
 from voussoir.extras import advice
 from voussoir.files import read_text
-from voussoir.plot.shape_rings import is_shape
+from voussoir.record import Record, read_record
 from voussoir.results import _table_view
 from voussoir.results._tables import Choice, DamagedTable, read_columns
 
@@ -188,10 +191,20 @@ class Results:
     reactions: Table | None = None
 
     def __repr__(self) -> str:
-        return _table_view.summary(self)
+        title = self.setting("scene%title")
+        return f"Results of {title + ': ' if title else ''}{self._summary()}"
 
     def _repr_html_(self) -> str:
-        return f"<p>{_table_view.summary(self, as_html=True)}</p>{self.cases._repr_html_()}"
+        title = escape(self.setting("scene%title") or "")
+        return f"<p>{title and f'<b>{title}</b>: '}{escape(self._summary())}</p>{self.cases._repr_html_()}"
+
+    def _summary(self) -> str:
+        """Verdicts and tables, in one line."""
+        verdicts, counts = np.unique(self.cases["verdict"], return_counts=True)
+        ends = ", ".join(f"{count} {verdict}" for verdict, count in zip(verdicts, counts))
+        there = ", ".join(name for name in ("cases", "joints", "blocks", "points", "frames", "frame_joints")
+                          if getattr(self, name) is not None)
+        return f"{len(self.cases)} case{'s' * (len(self.cases) != 1)} ({ends}); tables {there}"
 
     def plot(self, case: int = 1, **options: Any) -> Picture:
         """Draw a case as `voussoir plot` does.
@@ -208,9 +221,7 @@ class Results:
         Picture
             A figure of matplotlib that notebooks show; `savefig` writes it.
         """
-        from voussoir.plot.case_picture import draw_case
-
-        return _drawn(draw_case, self, case, **options)
+        return _drawn("case_picture", "draw_case", self, case, **options)
 
     def chart(self, column: str | None = None) -> Picture:
         """Draw the critical values of a sweep against one of its columns, as `voussoir plot --chart`.
@@ -225,51 +236,40 @@ class Results:
         Picture
             As of `plot`.
         """
-        from voussoir.plot.design_chart import draw_chart
+        return _drawn("design_chart", "draw_chart", self, column)
 
-        return _drawn(draw_chart, self, column)
+    @cached_property
+    def record(self) -> Record:
+        """What the deck asks for: deck.record."""
+        return read_record(self.folder)
 
     def setting(self, name: str) -> str | None:
         """What the deck says of a key such as "arch%radius"; None if it leaves it out."""
-        lines = self._record()
-        return lines[lines.index(name) + 1].strip() if name in lines else None
+        return self.record.setting(name)
 
     def settings(self, name: str) -> list[str]:
         """All that the deck says of a key with a list, such as "vehicle%axles"; empty if it leaves it out."""
-        lines, found = self._record(), []
-        for line in lines[lines.index(name) + 1 :] if name in lines else []:
-            if not line.startswith("  "):
-                break
-            found.append(line.strip())
-        return found
+        return self.record.values.get(name, [])
 
     @property
     def kind(self) -> str:
         """Kind of the scene: "arch", "shape" for arches that are no circular ring, "lines" or "blocks"."""
-        kind = self.setting("scene%kind") or "arch"
-        return "shape" if kind == "arch" and is_shape(self._record(), self.searched) else kind
+        return "shape" if self.record.is_shape() else self.setting("scene%kind") or "arch"
 
     @property
     def searched(self) -> str | None:
         """Parameter that was searched, None if none was."""
-        if "&search" not in self._record():
-            return None
-        return self.setting("search%parameter") or "thickness_ratio"
+        return self.record.searched
 
     @property
     def swept(self) -> list[str]:
         """Parameters that were swept, in the order of the deck."""
-        return [line.split()[1] for line in self._record() if line.startswith("&sweep ")]
+        return [sweep.name for sweep in self.record.sweeps]
 
     @property
     def given(self) -> list[str]:
         """Names of the keys that the deck gives, such as "arch%radius"."""
-        return [line for line in self._record() if "%" in line and not line.startswith((" ", "&", "dda "))]
-
-    def _record(self) -> list[str]:
-        """Lines of deck.record: what the deck asks for."""
-        record = self.folder / "deck.record"
-        return read_text(record).splitlines() if record.is_file() else []
+        return [name for name in self.record.values if "%" in name]
 
     def case(self, number: int) -> dict[str, Any]:
         """Row of one case; KeyError if there is no such case."""
@@ -358,11 +358,10 @@ def read(folder: str | Path, choice: Choice | None = None) -> Results:
     return Results(folder, cases, **{name: _read_table(folder / f"{name}.csv") for name in others})
 
 
-def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:
-    """A picture in the style of all figures."""
-    from voussoir.plot.figure_style import house_style
-
-    with house_style():
+def _drawn(module: str, function: str, *arguments: Any, **options: Any) -> Picture:
+    """A picture in the style of all figures, by a function of `voussoir.plot`, which is loaded when it is needed."""
+    draw = getattr(import_module(f"voussoir.plot.{module}"), function)
+    with import_module("voussoir.plot.figure_style").house_style():
         picture: Picture = draw(*arguments, **options)
     return picture
 

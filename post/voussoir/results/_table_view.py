@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import html
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from voussoir.results import Results
 
 #: Rows that are shown of a long table, and the width of its text
 MOST_ROWS, WIDTH = 12, 100
@@ -66,17 +63,3 @@ def as_html(columns: dict[str, np.ndarray], rows: int) -> str:
         f'<div style="overflow-x:auto"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody>'
         f"</table></div><p>{rows} row{'s' * (rows != 1)}, {len(columns)} columns</p>"
     )
-
-
-def summary(run: Results, as_html: bool = False) -> str:
-    """What a folder of results holds, in one line."""
-    verdicts, counts = np.unique(run.cases["verdict"], return_counts=True)
-    ends = ", ".join(f"{count} {verdict}" for verdict, count in zip(verdicts, counts))
-    title = run.setting("scene%title") or ""
-    tables = ("cases", "joints", "blocks", "points", "frames", "frame_joints")
-    there = ", ".join(name for name in tables if getattr(run, name) is not None)
-    total = len(run.cases)
-    words = f"{total} case{'s' * (total != 1)} ({ends}); tables {there}"
-    if as_html:
-        return (f"<b>{html.escape(title)}</b>: " if title else "") + html.escape(words)
-    return f"Results of {title + ': ' if title else ''}{words}"

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from voussoir.files import read_text
+from voussoir.record import SUPPORTS
 from voussoir.verify.contacts import depth, make_block
-from voussoir.verify.deck import SUPPORTS, Deck, VerifyError
+from voussoir.verify.deck import Deck, VerifyError
 from voussoir.verify.water import Water
 
 Point = tuple[float, float]

@@ -12,7 +12,7 @@ import numpy as np
 
 from voussoir.verify.blocks import Source, arch_corners, led_springings, read_blocks
 from voussoir.verify.contacts import TOUCH, Block, find_joints, make_block
-from voussoir.verify.deck import LENGTHS, Deck, VerifyError, read_record
+from voussoir.verify.deck import LENGTHS, Deck, VerifyError, read_deck
 from voussoir.verify.exact import MOST_JOINTS, check_exactly
 from voussoir.verify.lines import read_lines
 from voussoir.verify.loads import loads_on
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check_folder(arguments: argparse.Namespace) -> dict[int, Finding]:
     """Check every case of a folder: what was found of each."""
-    deck = read_record(arguments.folder)
+    deck = read_deck(arguments.folder)
     tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
     places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
     found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}

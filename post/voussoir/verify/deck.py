@@ -4,78 +4,27 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
-from voussoir.files import read_text
+from voussoir.record import SHAPES, SUPPORTS, Record, read_record
 from voussoir.verify.rational import sine_cosine
 
-#: Groups of the keys that matter here, and their defaults
-DEFAULTS: dict[str, str] = {
-    "scene%kind": "arch",
-    "scene%geometry": "",
-    "scene%contact_tolerance": "1e-4",
-    "arch%radius": "10",
-    "arch%thickness_ratio": "0.15",
-    "arch%half_angle_deg": "90",
-    "arch%voussoirs": "36",
-    "arch%facet_deg": "0",
-    "arch%springing": "frictional",
-    "material%density": "2240",
-    "joint%friction_deg": "50",
-    "joint%cohesion": "0",
-    "joint%tension": "0",
-    "load%gravity": "9.81",
-    "load%gravity_direction_deg": "-90",
-    "load%horizontal_coefficient": "0",
-    "load%load_factor": "1",
-    "load%live_horizontal": ".false.",
-    "load%water_rise": "0",
-    "arch%rings": "1",
-    "arch%spans": "1",
-    "fill%height": "0",
-    "fill%unit_weight": "0",
-    "fill%spread": "0.5",
-    "fill%passive_coefficient": "0",
-    "vehicle%length": "0.3",
-}
+#: Keys that matter here, and their defaults
+DEFAULTS = dict(pair.split("=") for pair in """
+scene%kind=arch scene%geometry= scene%contact_tolerance=1e-4 arch%radius=10 arch%thickness_ratio=0.15
+arch%half_angle_deg=90 arch%voussoirs=36 arch%facet_deg=0 arch%springing=frictional arch%rings=1 arch%spans=1
+material%density=2240 joint%friction_deg=50 joint%cohesion=0 joint%tension=0 load%gravity=9.81
+load%gravity_direction_deg=-90 load%horizontal_coefficient=0 load%load_factor=1 load%live_horizontal=.false.
+load%water_rise=0 fill%height=0 fill%unit_weight=0 fill%spread=0.5 fill%passive_coefficient=0 vehicle%length=0.3
+""".split())
 #: Keys without a default
-OTHERS = (
-    "analysis%mode",
-    "analysis%geometry",
-    "arch%joints_deg",
-    "material%unit_weight",
-    "material%compressive_strength",
-    "scene%analysis",
-    "live%x",
-    "live%y",
-    "live%fx",
-    "live%fy",
-    "vehicle%axles",
-    "vehicle%spacings",
-    "vehicle%position",
-    "fill%friction_deg",
-    "fill%passive_share",
-    "fill%backing_height",
-    "fill%backing_unit_weight",
-    "tie%strength",
-    "tie%x1",
-    "tie%y1",
-    "tie%x2",
-    "tie%y2",
-    "search%parameter",
-)
-
-
-#: Keys that make an arch more than a circular ring of voussoirs; an assembly of blocks then
-SHAPES = tuple(f"arch%{name}" for name in (
-    "shape", "span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "joint_direction",
-    "rings", "spans", "pier_width", "pier_height", "pier_courses", "buttress_width", "buttress_height", "lune_deg",
-))
-
-#: Keys of the displacements of the left and the right springing, which make an arch one, too
-SUPPORTS = tuple(f"support%{side}_{name}" for side in ("left", "right") for name in ("dx", "dy", "rotation_deg"))
+OTHERS = tuple("""
+analysis%mode analysis%geometry arch%joints_deg material%unit_weight material%compressive_strength scene%analysis
+live%x live%y live%fx live%fy vehicle%axles vehicle%spacings vehicle%position fill%friction_deg fill%passive_share
+fill%backing_height fill%backing_unit_weight tie%strength tie%x1 tie%y1 tie%x2 tie%y2 search%parameter
+""".split())
 #: Lengths of an arch of any shape
 LENGTHS = tuple(f"arch%{name}" for name in (
     "span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "pier_width", "pier_height",
@@ -88,20 +37,9 @@ class VerifyError(ValueError):
 
 
 @dataclass
-class Sweep:
-    """A parameter and the values that it takes."""
+class Deck(Record):
+    """The record of a deck, and whether numbers are the decimals themselves."""
 
-    name: str
-    linked: bool
-    values: list[str] = field(default_factory=list)
-
-
-@dataclass
-class Deck:
-    """Values by group%key, as texts, the sweeps, and whether numbers are the decimals themselves."""
-
-    values: dict[str, list[str]]
-    sweeps: list[Sweep]
     exact: bool = False
 
     def text(self, key: str) -> str:
@@ -143,16 +81,6 @@ class Deck:
         """Whether a key is given."""
         return key in self.values
 
-    def is_shape(self) -> bool:
-        """Whether it is an arch of any shape: blocks that are taken as blocks.csv has them."""
-        given = [key for key in SHAPES if self.gives(key) and self.text(key).lower() != "circular"]
-        searched = (self.searched or "").split("%")[-1]
-        more = ("&fill", "fill%", "&tie", "tie%", "support%", "material%compressive_strength")
-        given += [key for key in self.values if key.startswith(more)]
-        given += [key for key in (f"arch%{searched}", searched) if key in (*SHAPES, "compressive_strength")]
-        given += [key for key in SUPPORTS if key == f"support%{searched}"]
-        return self.text("scene%kind") == "arch" and bool(given)
-
     def with_value(self, name: str, value: str) -> Deck:
         """A deck with another value of a parameter, such as friction_deg, arch%radius or x(2)."""
         match = re.fullmatch(r"(?:(\w+)%)?(\w+)(?:\((\d+)\))?", name.strip())
@@ -190,13 +118,6 @@ class Deck:
         return deck
 
     @property
-    def searched(self) -> str | None:
-        """Name of the searched parameter."""
-        if "&search" not in self.values:
-            return None
-        return self.text("search%parameter") if self.gives("search%parameter") else "thickness_ratio"
-
-    @property
     def voussoirs(self) -> int:
         """Number of voussoirs of an arch of any shape, which come before its supports."""
         return round(math.prod(float(self.number(f"arch%{name}")) for name in ("voussoirs", "rings", "spans")))
@@ -223,26 +144,9 @@ class Deck:
         return self.number("material%density") * self.number("load%gravity")
 
 
-def read_record(folder: Path) -> Deck:
+def read_deck(folder: Path) -> Deck:
     """The deck of a folder of results: its given keys and sweeps."""
-    path = folder / "deck.record"
-    if not path.exists():
+    if not (folder / "deck.record").exists():
         raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written")
-    first, *lines = read_text(path).split("\n")
-    if not first.startswith("dda "):
-        raise VerifyError(f"{path}:1: error: expected the version of dda, got {first[:40]!r}")
-    values: dict[str, list[str]] = {}
-    sweeps: list[Sweep] = []
-    target: list[str] | None = None
-    for number, line in enumerate(lines, 2):
-        words = line.split()
-        if line.startswith("&sweep ") and len(words) > 1:
-            sweeps.append(Sweep(words[1], words[-1] == "linked"))
-            target = sweeps[-1].values
-        elif line.startswith("  ") and target is not None:
-            target.append(line.strip())
-        elif re.fullmatch(r"&(?!sweep)\w+|\w+%\w+", line):
-            values[line] = target = []
-        elif line and not line.startswith("files"):
-            raise VerifyError(f"{path}:{number}: error: expected a group, a key or its value, got {line[:40]!r}")
-    return Deck(values, sweeps)
+    record = read_record(folder)
+    return Deck(record.values, record.sweeps)
