@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
+
+
+#: Exit status of `dda run` that leaves results: all decided, or a case undecided
+LEAVE_RESULTS = (0, 3)
 
 
 class DdaError(Exception):
@@ -51,9 +58,38 @@ def find_input(name: str) -> Path:
     raise DdaError(f"expected the decks input/{name}, got none; name their folder with --decks")
 
 
+def call(
+    *words: Any, dda: Path | None = None, accepted: Container[int] | None = (0,), **options: Any
+) -> subprocess.CompletedProcess[str]:
+    """Run `dda` with one thread of BLAS; DdaError with its message if its exit status is not accepted (None: all are).
+
+    Options are those of `subprocess.run`, which captures the output unless they say otherwise.
+    """
+    settings = {"capture_output": True, "env": {**os.environ, "OPENBLAS_NUM_THREADS": "1"}, **options}
+    command = [str(dda or find_dda()), *map(str, words)]
+    done = subprocess.run(command, text=True, errors="surrogateescape", **settings)
+    if accepted is not None and done.returncode not in accepted:
+        raise DdaError((done.stderr or "").strip() or f"dda {words[0]} ended with status {done.returncode}",
+                       done.returncode)
+    return done
+
+
 def version_of(dda: Path) -> str:
     """What `dda --version` prints, such as "dda 0.2.0"."""
-    return subprocess.run([dda, "--version"], capture_output=True, text=True).stdout.strip()
+    return call("--version", dda=dda).stdout.strip()
+
+
+@lru_cache(maxsize=4)
+def keys_of(dda: Path) -> dict[str, dict[str, Any]]:
+    """Groups of all keys, and in each the properties of its keys, as `dda help keys --json` lists them."""
+    groups = json.loads(call("help", "keys", "--json", dda=dda).stdout)["groups"]
+    return {group["name"]: {key["name"]: key for key in group["keys"]} for group in groups}
+
+
+def defaults(dda: Path) -> dict[str, str]:
+    """Defaults of all keys that have one, by their names with groups."""
+    return {f"{group}%{name}": str(key["default"]).strip("'")
+            for group, keys in keys_of(dda).items() for name, key in keys.items() if "default" in key}
 
 
 @dataclass(frozen=True)
@@ -70,13 +106,12 @@ class Asked:
 
 def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:
     """Check a deck; DdaError has the program's own message if it is bad input."""
-    words = [str(dda), "check", path_word(deck), "--record", *set_options(settings)]
-    done = subprocess.run(words, capture_output=True, text=True, errors="surrogateescape")
+    done = call("check", path_word(deck), "--record", *set_options(settings), dda=dda)
     plan, _, rest = done.stdout.partition("\ntables:\n")
     tables, _, record = rest.partition("\ndeck.record:\n")
     cases = re.search(r"^ +cases +(\d+)$", plan, flags=re.MULTILINE)
-    if done.returncode != 0 or not cases:
-        raise DdaError(done.stderr.strip() or f"dda check ended with status {done.returncode}")
+    if not cases:
+        raise DdaError("dda check printed no number of cases")
     lines = [line.strip().partition(" ") for line in tables.splitlines()]
     return Asked(int(cases[1]), record, {name: header for name, _, header in lines})
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import os
 import re
 import resource
 import shutil
@@ -14,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from voussoir.dda_program import find_dda, set_options
+from voussoir.dda_program import call, set_options
 from voussoir.files import read_text, write_text
 
 #: A row of results.csv: its columns as text
@@ -54,12 +53,10 @@ def run_deck(
         (folder / word).write_bytes(deck if isinstance(deck, bytes) else deck.encode())
     for name, text in (files or {}).items():
         write_text(folder / name, text)
-    command = [str(find_dda()), "run", word, "--out", "out", "--jobs", str(jobs), *set_options(settings)]
     start = time.monotonic()
     try:
-        done = subprocess.run(
-            command, cwd=folder, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
-            timeout=timeout, check=False)
+        done = call("run", word, "--out", "out", "--jobs", jobs, *set_options(settings), accepted=None, cwd=folder,
+                    timeout=timeout)
     except subprocess.TimeoutExpired:
         return Finished(None, message=f"stopped after {timeout:g} s")
     seconds, out = time.monotonic() - start, folder / "out"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import platform
-import subprocess
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import numpy as np
 
 import voussoir
 from voussoir import theory
+from voussoir.dda_program import version_of
 from voussoir.files import read_text
 from voussoir_paper import findings, tables
 from voussoir_paper.campaign import FIGURES, TOGETHER, Campaign, Timing
@@ -251,12 +251,11 @@ def _version_of(package: str) -> str:
 def _run(page: Page, timings: list[Timing], dda: Path) -> None:
     """Versions and times."""
     page.section("Versions and run times", "run")
-    version = subprocess.run([dda, "--version"], capture_output=True, text=True, check=False)
     page.table(
         "Versions",
         ["program", "version"],
         [
-            ["dda", escape(version.stdout.removeprefix("dda").strip())],
+            ["dda", escape(version_of(dda).removeprefix("dda").strip())],
             ["voussoir (Python)", voussoir.__version__],
             ["Python", platform.python_version()],
             ["NumPy", np.__version__],

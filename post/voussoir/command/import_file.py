@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,7 +11,7 @@ from typing import Optional
 
 from voussoir.command import plot
 from voussoir.command.options import magnification, whole_number
-from voussoir.dda_program import DdaError, find_dda, path_word
+from voussoir.dda_program import LEAVE_RESULTS, DdaError, call, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import ENDINGS, Content, ImportedShape, read_shapes
 from voussoir.files import write_text
@@ -173,8 +172,9 @@ def _nothing(dropped: Optional[list[str]]) -> str:
 def _run_deck(deck: Path) -> int:
     """Run a deck as the program does, and draw its cases; the exit status."""
     folder = deck.with_suffix("")
-    status = subprocess.run([str(find_dda()), "run", path_word(deck), "--out", path_word(folder)]).returncode
-    if status not in (0, 3):
+    words = "run", path_word(deck), "--out", path_word(folder)
+    status = call(*words, accepted=None, capture_output=False).returncode
+    if status not in LEAVE_RESULTS:
         return status
     parser = argparse.ArgumentParser()
     plot.add_arguments(parser)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import subprocess
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from voussoir.dda_program import DdaError, find_dda
+from voussoir.dda_program import DdaError, defaults, find_dda
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.text import deck_text, merged
 from voussoir.deck.thickness import dead_groups, thickness_safety
@@ -165,14 +162,6 @@ def least_of(factor: Row | None, cases: Table | None) -> Row | None:
 def slides(run: Results) -> bool:
     """Return true if rings slide on one another: a loading path for every position would take too long."""
     return int(run.setting("arch%rings") or 1) > 1
-
-
-@lru_cache(maxsize=4)
-def defaults(dda: Path) -> dict[str, str]:
-    """Defaults of all keys that have one, by their names with groups."""
-    text = subprocess.run([str(dda), "help", "keys", "--json"], capture_output=True, text=True, check=True).stdout
-    return {f"{group['name']}%{key['name']}": str(key["default"]).strip("'")
-            for group in json.loads(text)["groups"] for key in group["keys"] if "default" in key}
 
 
 def _at_position(text: str, place: float) -> str:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
 import tempfile
 import weakref
 from collections.abc import Mapping
@@ -14,12 +12,10 @@ from pathlib import Path
 from typing import Any, Union
 
 from voussoir import results
-from voussoir.dda_program import DdaError, find_dda, path_word, set_options
+from voussoir.dda_program import LEAVE_RESULTS, call, find_dda, path_word, set_options
 from voussoir.deck.text import Groups, checked, deck_text, groups_of, merged, value_text
 from voussoir.files import write_text
 
-#: Exit status of `dda run` that leaves results: all decided, or a case undecided
-_LEAVES_RESULTS = (0, 3)
 #: What the text of a deck has and the name of a file has not
 _GROUP = re.compile(r"^\s*&\w+", re.MULTILINE)
 
@@ -104,13 +100,8 @@ def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set
     place = Path(tempfile.mkdtemp(prefix="voussoir-")) if out is None else Path(out)
     try:
         file, settings = _as_file(deck, place, changes)
-        words = [str(dda), "run", path_word(file), "--out", path_word(place), "--quiet"]
-        done = subprocess.run(
-            [*words, "--jobs", str(jobs), *set_options(settings)], env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-            capture_output=True, text=True, errors="surrogateescape")
-        if done.returncode not in _LEAVES_RESULTS:
-            words_of = done.stderr.strip() or f"dda run ended with status {done.returncode}"
-            raise DdaError(words_of, done.returncode)
+        call("run", path_word(file), "--out", path_word(place), "--quiet", "--jobs", jobs, *set_options(settings),
+             dda=dda, accepted=LEAVE_RESULTS)
         found = results.read(place)
     except BaseException:
         if out is None:
@@ -132,15 +123,15 @@ def _as_file(deck: Runnable, place: Path, changes: Groups) -> tuple[Path, list[s
         place.mkdir(parents=True, exist_ok=True)
         file = place / "deck.nml"
         write_text(file, deck + "\n" + deck_text(sweeps))
-        return file, _settings({name: changes[name] for name in changes if name != "sweep"})
+        return file, settings_of({name: changes[name] for name in changes if name != "sweep"})
     if not isinstance(deck, (str, Path)):
         raise ValueError(f"expected a deck's file, text or groups, got {deck!r}")
     if "sweep" in changes:
         raise ValueError(f"expected &sweep in {deck}, got it as an argument; sweep a dict or a text")
-    return Path(deck), _settings(changes)
+    return Path(deck), settings_of(changes)
 
 
-def _settings(changes: Groups) -> list[str]:
+def settings_of(changes: Groups) -> list[str]:
     """Values of --set."""
     given = []
     for group, keys in changes.items():

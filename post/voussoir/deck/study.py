@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from voussoir.dda_program import find_dda, path_word, set_options
-from voussoir.deck.run import run
+from voussoir.dda_program import ask, find_dda, keys_of
+from voussoir.deck.run import run, settings_of
 from voussoir.deck.text import groups_of
+from voussoir.record import record_of
 from voussoir.results import Results
 
 #: Keys whose larger values are the finer ones
@@ -215,29 +214,16 @@ def _named(dda: Path, key: str) -> tuple[str, str]:
 
 def _start(dda: Path, deck: Path, group: str, name: str, set: dict[str, Any]) -> dict[str, Any]:
     """The value that a deck has for a key, and whether it is a whole number."""
-    keys = json.loads(subprocess.run(
-        [str(dda), "help", "keys", "--json"], capture_output=True, text=True, check=True).stdout)["groups"]
-    known = next((each for one in keys if one["name"] == group for each in one["keys"] if each["name"] == name), None)
+    known = keys_of(dda).get(group, {}).get(name)
     if known is None or known["kind"] not in ("number", "whole"):
         raise StudyError(f"expected a key with one number, got {group}%{name}")
-    given = {f"{owner}%{word}": value for owner, words in groups_of(dda, set).items() for word, value in words.items()}
-    value = given.get(f"{group}%{name}", known.get("default"))
-    for line in _record(dda, deck):
-        if line[0].startswith("&sweep ") and line[0].split()[1].rpartition("%")[2] == name:
-            raise StudyError(f"expected {name} in one group, got a &sweep of it; remove the sweep")
-        if line[0] == f"{group}%{name}" and f"{group}%{name}" not in given:
-            value = line[1]
+    record = record_of(ask(dda, deck, settings_of(groups_of(dda, set))).record.split("\n"), deck)
+    if name in (sweep.name.rpartition("%")[2] for sweep in record.sweeps):
+        raise StudyError(f"expected {name} in one group, got a &sweep of it; remove the sweep")
+    value = record.setting(f"{group}%{name}") or known.get("default")
     if value is None:
         raise StudyError(f"{name} has no default; put {group}%{name} into the deck, or --set {group}%{name}=VALUE")
     return {"value": float(value), "whole": known["kind"] == "whole"}
-
-
-def _record(dda: Path, deck: Path) -> list[tuple[str, str]]:
-    """Lines of the record of a deck, each with the next one."""
-    done = subprocess.run([str(dda), "check", path_word(deck), "--record", *set_options([])],
-                          capture_output=True, text=True, errors="surrogateescape")
-    lines = done.stdout.partition("\ndeck.record:\n")[2].splitlines()
-    return list(zip(lines, [*lines[1:], ""]))
 
 
 def _followed(

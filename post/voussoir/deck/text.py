@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import difflib
-import json
 import re
-import subprocess
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Union
+
+from voussoir.dda_program import keys_of
 
 #: Groups of a deck: a mapping of keys each; of &sweep a list of such mappings will do
 Groups = Mapping[str, Union[Mapping[str, Any], list[Any]]]
@@ -86,16 +86,14 @@ def _as_list(keys: Any) -> list[Any]:
 @lru_cache(maxsize=4)
 def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
     """Which groups a key's name means, as in &sweep, or else have it; a group's own name, with its mark, is its own."""
-    done = subprocess.run([dda, "help", "keys", "--json"], capture_output=True, text=True, check=True)
-    groups = json.loads(done.stdout)["groups"]
     owners: dict[str, tuple[str, ...]] = {}
     meant: dict[str, tuple[str, ...]] = {}
-    for group in groups:
-        owners["&" + group["name"]] = (group["name"],)
-        for key in group["keys"]:
-            owners[key["name"]] = (*owners.get(key["name"], ()), group["name"])
+    for group, keys in keys_of(dda).items():
+        owners["&" + group] = (group,)
+        for name, key in keys.items():
+            owners[name] = (*owners.get(name, ()), group)
             if key["sweep"] and key.get("bare", True):
-                meant[key["name"]] = (*meant.get(key["name"], ()), group["name"])
+                meant[name] = (*meant.get(name, ()), group)
     return owners | meant
 
 

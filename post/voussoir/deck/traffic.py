@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from voussoir.deck.assessment import Assessment, Row, assess, defaults, without
+from voussoir.deck.assessment import Assessment, Row, assess, without
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.text import deck_text
-from voussoir.dda_program import find_dda, find_input
+from voussoir.dda_program import defaults, find_dda, find_input
 from voussoir.files import read_text
 
 #: Columns of a list of vehicles; the others may be missing

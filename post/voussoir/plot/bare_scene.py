@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from voussoir.dda_program import DdaError, find_dda, path_word
+from voussoir.dda_program import DdaError, call, path_word
 from voussoir.files import plain, read_text
 from voussoir.plot.case_marks import draw_held, draw_loads, entry, load_arrows
 from voussoir.plot.case_picture import draw_blocks, draw_guides, draw_supports
@@ -88,9 +87,10 @@ def read_blocks(file: Path) -> tuple[list[Block], Source]:
         deck = Path(folder) / "deck.nml"
         name = str(file.absolute()).replace("'", "''")
         deck.write_text(f"&scene kind = 'blocks', geometry = '{name}' /\n", encoding="utf-8")
-        done = subprocess.run([str(find_dda()), "check", str(deck)], capture_output=True, text=True)
-    if done.returncode != 0:
-        raise DdaError(done.stderr.replace(str(file.absolute()), str(file)).strip())
+        try:
+            call("check", deck)
+        except DdaError as error:
+            raise DdaError(str(error).replace(str(file.absolute()), str(file))) from error
     text = read_text(file)
     blocks: list[Block] = []
     for words, rows in entries_of(text):
@@ -105,10 +105,7 @@ def cut_blocks(file: Path) -> tuple[list[Block], list[int], str]:
     """Blocks that `dda cut` makes of lines, their materials, and their number in words."""
     with tempfile.TemporaryDirectory(prefix="voussoir-") as folder:
         table = Path(folder) / "blocks.csv"
-        done = subprocess.run(
-            [str(find_dda()), "cut", "--quiet", path_word(file), "--out", str(table)], capture_output=True, text=True)
-        if done.returncode != 0:
-            raise DdaError(done.stderr.strip())
+        call("cut", "--quiet", path_word(file), "--out", table)
         rows = list(csv.DictReader(read_text(table).splitlines()))
     blocks: list[Block] = []
     materials: list[int] = []
