@@ -157,8 +157,8 @@ contains
       row = this_row(words)
       call take_number(words, what, value, error)
       if (.not. allocated(error) .and. .not. (value >= 0.0_wp .and. value <= most)) &
-         & call fatal_error(error, "expected "//what//" from 0 to 1e30, got "//short_text(value), &
-         & words%file, row)
+         & call fatal_error(error, "expected "//what//" from 0 to 1e30, got "//short_text(value) &
+         & //"; correct it", words%file, row)
    end subroutine take_property
 
    !> Take an integer within bounds; 3.0 is accepted

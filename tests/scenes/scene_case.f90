@@ -13,7 +13,7 @@ module scene_case
    use dda_scene_check, only : check_scene
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    use scene_deck, only : lines_of
-   use scratch_folder, only : scratch
+   use scratch_folder, only : scratch, write_text
    implicit none
    private
 
@@ -110,15 +110,4 @@ contains
       told%remark = ""
       told%warnings = ""
    end subroutine begin_anew
-
-   !> Write a text to a file of the scratch folder, where the deck stands
-   subroutine write_text(file, text)
-      character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: text
-      integer :: unit
-
-      open (newunit=unit, file=scratch(file), access="stream", form="unformatted", status="replace")
-      write (unit) text
-      close (unit)
-   end subroutine write_text
 end module scene_case

@@ -3,7 +3,7 @@ module scratch_folder
    implicit none
    private
 
-   public :: scratch
+   public :: scratch, write_text
 
 contains
 
@@ -19,4 +19,15 @@ contains
       call get_command_argument(0, path)
       path = path(:index(path, "/", back=.true.))//"../scratch/"//file
    end function scratch
+
+   !> Write a text to a file of the scratch folder
+   subroutine write_text(file, text)
+      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: text
+      integer :: unit
+
+      open (newunit=unit, file=scratch(file), access="stream", form="unformatted", status="replace")
+      write (unit) text
+      close (unit)
+   end subroutine write_text
 end module scratch_folder
