@@ -2,142 +2,57 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from dda_command import run_dda
 
 GOOD = "&arch thickness_ratio = 0.12 /\n"
 
-# name: (line of the mistake, deck, what the message must speak of)
-GRAMMAR = {
-    "only-blank-lines": (1, "\n\n\n", "group"),
-    "only-a-comment": (1, "! nothing here\n", "group"),
+#: What is expected or wrong; what it got; after the semicolon, what to do, as an order
+MESSAGE = re.compile(r"(?P<file>[^:\n]+):(?P<line>\d+): error: (?P<fault>[^\n]+?); (?P<advice>[^;\n]+)\n")
+FAULT = re.compile(
+    r"(expected|must \w+|needs)\b.+\bgot\b|needs|unknown|there is no such file|is repeated"
+    r"|exclude one another|, but |is no key|cannot be|is swept|is both|has no item|is a list|is not yet there"
+    r"|is empty|is blank|is not well-formed"
+)
+ORDER = re.compile(
+    r"(change|check|choose|close|copy|correct|give|join|leave|make|move|name|number|put|raise"
+    r"|remove|rename|save|shorten|sort|split|sweep|write|add)\b"
+    r"|'dda help( \w+)?' (lists|says|shows)"
+)
+
+
+def assert_whole(text: str) -> re.Match[str]:
+    """Check that a message says all it has to, and take it apart."""
+    parts = MESSAGE.fullmatch(text)
+    assert parts, text
+    assert FAULT.search(parts["fault"]), text
+    assert ORDER.match(parts["advice"]), text
+    return parts
+
+
+#: Name: line of the mistake, deck, what the message must speak of. The unit tests of decks have many more
+MISTAKES = {
     "text-before-the-first-group": (2, "\nhello\n&arch /\n", "hello"),
-    "text-between-groups": (2, "&arch /\nhello\n&joint /\n", "hello"),
-    "text-after-the-last-group": (3, "&arch /\n&joint /\nhello", "hello"),
-    "text-behind-a-group": (1, "&arch / hello\n", "hello"),
     "unknown-group": (3, "! arches\n&scene /\n&arhc /\n", "arhc"),
-    "repeated-group": (4, "&arch\n/\n\n&arch /\n", "arch"),
-    "repeated-search": (2, "&search /\n&search /\n", "search"),
     "unknown-key": (3, "&arch\n radius = 10.0\n radios = 5.0\n/\n", "radios"),
-    "key-of-another-group": (2, "&arch\n title = 'x' /\n", "title"),
-    "repeated-key": (3, "&arch\n radius = 5\n radius = 6\n/\n", "radius"),
     "repeated-key-with-the-same-value": (3, "&arch\n radius = 5\n radius = 5\n/\n", "radius"),
-    "repeated-key-in-other-letters": (3, "&arch\n radius = 5\n RADIUS = 5\n/\n", "radius"),
-    "key-without-equals": (2, "&arch\n radius\n/\n", "radius"),
-    "key-without-value": (2, "&arch\n radius =\n/\n", "radius"),
-    "value-without-key": (2, "&arch\n = 5\n/\n", "="),
-    "group-not-closed-at-the-end": (1, "&arch\n radius = 5\n", "arch"),
     "group-not-closed-before-the-next": (1, "&arch\n radius = 5\n&joint /\n", "arch"),
-    "ampersand-without-name": (2, "&arch /\n& /\n", "&"),
     "quote-not-closed": (2, "&scene\n title = 'no end\n/\n", "quote"),
     "control-character": (2, "&arch\n radius = 5\x07 /\n", "character"),
-    "two-values-for-one": (2, "&arch\n radius = 5, 6\n/\n", "radius"),
     "decimal-comma": (2, "&arch\n radius = 0,12\n/\n", "radius"),
-    "empty-item-of-a-list": (2, "&arch\n joints_deg = 0, , 90\n/\n", "joints_deg"),
-}
-
-TYPES = {
-    "word-for-a-number": (2, "&arch\n radius = ten\n/\n", "ten"),
-    "quoted-number": (2, "&arch\n radius = '5'\n/\n", "5"),
-    "flag-for-a-number": (2, "&arch\n radius = .true.\n/\n", "radius"),
-    "number-with-a-unit": (2, "&arch\n radius = 5m\n/\n", "5m"),
-    "fraction-for-a-count": (2, "&arch\n voussoirs = 3.5\n/\n", "3.5"),
-    "huge-count": (2, "&arch\n voussoirs = 99999999999\n/\n", "99999999999"),
-    "word-without-quotes": (2, "&arch\n springing = frictional\n/\n", "quotes"),
-    "unknown-word": (2, "&arch\n springing = 'glued'\n/\n", "glued"),
-    "number-for-a-word": (2, "&material\n plane = 1\n/\n", "plane"),
-    "number-for-a-flag": (2, "&output\n joints = 1\n/\n", "joints"),
-    "word-for-a-flag": (2, "&output\n joints = 'maybe'\n/\n", "maybe"),
-    "unknown-mode": (2, "&analysis\n mode = 'quick'\n/\n", "quick"),
-    "unknown-kind": (2, "&scene\n kind = 'bridge'\n/\n", "bridge"),
-    "nan": (3, "&arch\n voussoirs = 36\n radius = NaN\n/\n", "NaN"),
-    "infinity": (3, "&arch\n voussoirs = 36\n radius = Inf\n/\n", "Inf"),
-    "minus-infinity": (2, "&load\n horizontal_coefficient = -Infinity\n/\n", "Infinity"),
-    "overflow": (2, "&arch\n radius = 1e400\n/\n", "1e400"),
     "nan-in-a-list": (2, "&arch\n joints_deg = 0, NaN, 90\n/\n", "NaN"),
-    "nan-in-a-sweep": (3, "&sweep\n parameter = 'radius'\n values = 1, NaN\n/\n", "NaN"),
-}
-
-# group, key and values that are refused
-RANGES = [
-    ("arch", "radius", ["0", "-10", "1e300"]),
-    ("arch", "thickness_ratio", ["0", "-0.1", "2", "2.0", "3"]),
-    ("arch", "half_angle_deg", ["0", "-90", "180", "200"]),
-    ("arch", "voussoirs", ["0", "-4"]),
-    ("arch", "facet_deg", ["0", "-1"]),
-    ("arch", "joints_deg", ["0", "0, 50, 180", "-10, 0, 90", "0, -50, 90"]),
-    ("material", "density", ["0", "-2240"]),
-    ("material", "unit_weight", ["0", "-1"]),
-    ("material", "young", ["0", "-5e9"]),
-    ("material", "poisson", ["0.5", "0.7", "-1"]),
-    ("joint", "friction_deg", ["-1", "90.5", "180"]),
-    ("joint", "cohesion", ["-1"]),
-    ("joint", "tension", ["-1"]),
-    ("load", "gravity", ["-9.81", "0"]),
-    ("analysis", "steps", ["0", "-1"]),
-    ("analysis", "max_displacement_ratio", ["0", "-0.1"]),
-    ("analysis", "time_step", ["0", "-1"]),
-    ("analysis", "penalty_ratio", ["0", "-1"]),
-    ("analysis", "collapse_displacement", ["0", "-1"]),
-    ("analysis", "unknowns", ["0", "4", "5", "7"]),
-    ("search", "tolerance", ["0", "-1e-8", "1"]),
-]
-
-JOINTS = {
-    "not-starting-at-0": (2, "&arch\n joints_deg = 5, 50, 90\n/\n", "0"),
-    "not-increasing": (2, "&arch\n joints_deg = 0, 60, 50\n/\n", "increasing"),
-    "twice-the-same": (2, "&arch\n joints_deg = 0, 50, 50, 90\n/\n", "increasing"),
-    "with-voussoirs": (3, "&arch\n joints_deg = 0, 50, 90\n voussoirs = 4\n/\n", "voussoirs"),
-    "with-another-half-angle": (3, "&arch\n joints_deg = 0, 50, 90\n half_angle_deg = 80\n/\n", "half_angle_deg"),
-    "after-another-half-angle": (3, "&arch\n half_angle_deg = 80\n joints_deg = 0, 50, 90\n/\n", "half_angle_deg"),
-}
-
-SWEEPS_AND_SEARCHES = {
-    "search-of-nothing-known": (2, "&search\n parameter = 'thikness_ratio'\n/\n", "thikness_ratio"),
-    "search-of-a-count": (2, "&search\n parameter = 'voussoirs'\n/\n", "voussoirs"),
-    "search-of-a-word": (2, "&search\n parameter = 'springing'\n/\n", "springing"),
-    "search-without-ends": (2, "&search\n parameter = 'radius'\n/\n", "low"),
+    "joints-not-increasing": (2, "&arch\n joints_deg = 0, 60, 50\n/\n", "increasing"),
+    "weightless": (2, "&load\n gravity = 0\n/\n", "gravity"),
     "search-low-above-high": (3, "&search\n low = 0.5\n high = 0.2\n/\n", "0.5"),
-    "search-low-equals-high": (3, "&search\n low = 0.2\n high = 0.2\n/\n", "0.2"),
-    "search-low-negative": (2, "&search\n low = -0.1\n/\n", "-0.1"),
-    "search-high-above-2": (2, "&search\n high = 2.5\n/\n", "2.5"),
-    "search-of-a-missing-joint": (
-        3, "&arch\n joints_deg = 0, 50, 90 /\n&search parameter='joints_deg(9)', low=1, high=5 /\n", "joints_deg"),
-    "sweep-without-parameter": (1, "&sweep\n values = 1, 2\n/\n", "parameter"),
-    "sweep-of-nothing-known": (2, "&sweep\n parameter = 'raduis'\n values = 1\n/\n", "raduis"),
-    "sweep-without-values": (1, "&sweep\n parameter = 'radius'\n/\n", "values"),
-    "sweep-with-values-and-texts": (1, "&sweep\n parameter = 'radius'\n values = 1\n texts = 'a'\n/\n", "values"),
-    "sweep-first-without-count": (1, "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n/\n", "count"),
-    "sweep-count-0": (5, "&sweep\n parameter = 'radius'\n first = 1\n last = 2\n count = 0\n/\n", "count"),
     "sweep-value-out-of-range": (3, "&sweep\n parameter = 'thickness_ratio'\n values = 0.1, 2.0\n/\n", "2"),
-    "sweep-fraction-for-a-count": (3, "&sweep\n parameter = 'voussoirs'\n values = 12, 12.5\n/\n", "12.5"),
-    "sweep-words-for-numbers": (3, "&sweep\n parameter = 'radius'\n texts = 'a'\n/\n", "radius"),
-    "sweep-numbers-for-words": (3, "&sweep\n parameter = 'springing'\n values = 1\n/\n", "texts"),
-    "sweep-unknown-word": (3, "&sweep\n parameter = 'springing'\n texts = 'glued'\n/\n", "glued"),
-    "sweep-same-parameter-twice": (
-        2, "&sweep parameter='radius', values=1 /\n&sweep parameter='radius', values=2 /\n", "radius"),
-    "sweep-of-what-is-searched": (
-        2, "&search /\n&sweep parameter='thickness_ratio', values=0.1, 0.2 /\n", "thickness_ratio"),
-    "sweep-of-a-joint-not-there": (
-        2, "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(4)', values=60 /\n", "joints_deg"),
-    "sweep-of-joints-out-of-order": (
-        2, "&arch joints_deg = 0, 50, 90 /\n&sweep parameter='joints_deg(2)', values=60, 95 /\n", "95"),
-    "first-sweep-linked": (1, "&sweep parameter='radius', values=1, 2, linked=.true. /\n", "linked"),
     "linked-sweep-of-another-length": (
-        2, "&sweep parameter='radius', values=1, 2 /\n" "&sweep parameter='young', values=1e9, linked=.true. /\n", "2"),
-    "nine-sweeps": (
-        9,
-        "".join(
-            f"&sweep parameter='{key}', values=0.5 /\n"
-            for key in ("radius thickness_ratio facet_deg density young cohesion tension gravity time_step").split()
-        ),
-        "8",
-    ),
-    "dynamic-associated": (
-        1, "&analysis mode='dynamic', flow='associated', steps=10 /\n", "needs mode = 'static', got 'dynamic'"),
+        2, "&sweep parameter='radius', values=1, 2 /\n&sweep parameter='young', values=1e9, linked=.true. /\n", "2"),
     "limerick-associated": (
         1, "&analysis mode='limerick', flow='associated' /\n", "needs mode = 'static', got 'limerick'"),
     "too-many-cases": (
@@ -148,12 +63,38 @@ SWEEPS_AND_SEARCHES = {
     ),
 }
 
-RANGED = {
-    f"{group}-{key}={value}": (2, f"&{group}\n {key} = {value}\n/\n", key)
-    for group, key, values in RANGES
-    for value in values
-}
-MISTAKES = GRAMMAR | TYPES | RANGED | JOINTS | SWEEPS_AND_SEARCHES
+
+def wrong_values(key: dict[str, Any]) -> Iterator[str]:
+    """Values that a key of `dda help keys --json` does not take: of other kinds, and just beyond its range."""
+    kind = key["kind"]
+    if kind in ("word", "words"):
+        yield from ("nonsense", "1", *(["'nonsense'"] if "words" in key else []))
+    elif kind == "flag":
+        yield from ("1", "'maybe'")
+    elif kind != "text":
+        yield from ("ten", "'5'", ".true.", "5m", "NaN", "-Inf", "1e400")
+        step = 1.0 if kind == "whole" else 1e-6
+        yield from (f"{key[end] + way * step * max(abs(key[end]), 1.0):.10g}"
+                    for end, way in (("from", -1), ("to", 1)) if abs(key.get(end, 1e300)) < 1e9)
+        yield from (f"{key[end]:.10g}" for end in ("above", "below") if end in key)
+    if kind == "whole":
+        yield from ("3.5", "99999999999")
+
+
+def keys() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Groups and keys of a deck."""
+    for group in json.loads(run_dda("help", "keys", "--json").stdout)["groups"]:
+        yield from ((group["name"], key) for key in group["keys"])
+
+
+@pytest.mark.parametrize(("group", "key"), keys(), ids=lambda value: value if isinstance(value, str) else value["name"])
+def test_values_that_a_key_does_not_take_are_refused(tmp_path: Path, group: str, key: dict[str, Any]) -> None:
+    for value in wrong_values(key):
+        (tmp_path / "deck.nml").write_text(f"&{group}\n {key['name']} = {value}\n/\n")
+        done = run_dda("check", "deck.nml", cwd=tmp_path)
+        assert (done.returncode, done.stdout) == (2, ""), value
+        parts = assert_whole(done.stderr)
+        assert (parts["file"], parts["line"]) == ("deck.nml", "2") and key["name"] in parts["fault"], done.stderr
 
 
 def assert_refused(folder: Path, name: str, line: int, wanted: str, *options: str) -> None:
@@ -177,8 +118,8 @@ def assert_refused(folder: Path, name: str, line: int, wanted: str, *options: st
         done = run_dda(verb, name, *options, cwd=folder)
         assert done.returncode == 2, done.stderr
         assert done.stdout == ""
-        assert done.stderr.startswith(f"{name}:{line}: error: ")
-        assert done.stderr.count("\n") == 1
+        parts = assert_whole(done.stderr)
+        assert (parts["file"], parts["line"]) == (name, str(line))
         assert wanted.lower() in done.stderr.split("error: ", 1)[1].lower()
     assert sorted(folder.iterdir()) == before
 
@@ -197,23 +138,15 @@ def test_lines_are_counted_whatever_their_ends(tmp_path: Path, line_end: str) ->
     assert_refused(tmp_path, "deck.nml", 3, "radius")
 
 
-def test_missing_file_is_refused(tmp_path: Path) -> None:
-    assert_refused(tmp_path, "missing.nml", 1, "no such file")
-
-
 def test_folder_in_place_of_a_deck_is_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.nml").mkdir()
     assert_refused(tmp_path, "folder.nml", 1, "folder")
 
 
-def test_empty_file_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "empty.nml").write_text("")
-    assert_refused(tmp_path, "empty.nml", 1, "empty")
-
-
-def test_binary_file_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "binary.nml").write_bytes(bytes(range(256)) * 10)
-    assert_refused(tmp_path, "binary.nml", 1, "character")
+@pytest.mark.parametrize(("content", "words"), [(b"", "empty"), (bytes(range(256)) * 10, "control character")])
+def test_files_without_text_are_refused(tmp_path: Path, content: bytes, words: str) -> None:
+    (tmp_path / "deck.nml").write_bytes(content)
+    assert_refused(tmp_path, "deck.nml", 1, words)
 
 
 def test_link_to_nowhere_is_refused(tmp_path: Path) -> None:
@@ -275,21 +208,12 @@ def test_only_good_cases_are_computed_or_none(tmp_path: Path) -> None:
     assert_refused(tmp_path, "deck.nml", 3, "180")
 
 
+#: The unit test of decks has more
 SETTINGS = {
     "without-value": ("arch%radius", "arch%radius"),
-    "empty-value": ("arch%radius=", "radius"),
-    "without-group": ("radius=5", "radius=5"),
-    "unknown-group": ("arc%radius=5", "arc"),
     "unknown-key": ("arch%raduis=5", "raduis"),
-    "wrong-type": ("arch%radius=ten", "ten"),
     "nan": ("arch%radius=NaN", "nan"),
-    "out-of-range": ("arch%thickness_ratio=2", "thickness_ratio"),
-    "two-values-for-one": ("arch%radius=5,6", "radius"),
     "unknown-word": ("arch%springing=glued", "glued"),
-    "item-not-there": ("arch%joints_deg(2)=45", "joints_deg"),
-    "sweep-values": ("sweep%values=1,2", "sweep"),
-    "sweep-parameter": ("sweep%parameter=radius", "sweep"),
-    "more-than-a-value": ("arch%radius=5 /", "5 /"),
     "against-the-deck": ("arch%joints_deg=10,50,90", "0"),
 }
 
@@ -302,7 +226,7 @@ def test_errors_of_set_name_set(tmp_path: Path, setting: str) -> None:
         done = run_dda(verb, "deck.nml", "--set", value, cwd=tmp_path)
         assert done.returncode == 2
         assert done.stdout == ""
-        assert re.match(r"--set:\d+: error: ", done.stderr), done.stderr
+        assert assert_whole(done.stderr)["file"] == "--set"
         assert wanted.lower() in done.stderr.lower()
     assert not (tmp_path / "deck").exists()
 
@@ -315,7 +239,7 @@ def test_second_set_is_distinguished_from_the_first(tmp_path: Path) -> None:
     assert done.stderr.startswith("--set:2: error: ")
 
 
-@pytest.mark.parametrize("cases", ["0", "2", "1-2", "1-", "-1", "1--1", "2-1", "x", "1,,1", "1, 1", "1.0", "1-1-1"])
+@pytest.mark.parametrize("cases", ["2", "1--1", "x", "1, 1", "1.0", "1-1-1"])
 def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
     done = run_dda("run", "deck.nml", "--cases", cases, cwd=tmp_path)
@@ -358,7 +282,7 @@ def test_bad_command_line_is_refused(tmp_path: Path, arguments: list[str]) -> No
     (tmp_path / "deck.nml").write_text(GOOD)
     done = run_dda(*arguments, cwd=tmp_path)
     assert done.returncode == 2
-    assert "error: " in done.stderr
-    assert done.stderr.count("\n") == 1
+    parts = assert_whole(done.stderr)
+    assert parts["file"] == "dda" and 1 <= int(parts["line"]) <= len(arguments)
     assert done.stdout == ""
     assert [path.name for path in tmp_path.iterdir()] == ["deck.nml"]

@@ -23,7 +23,7 @@ contains
       if (allocated(error)) deck%file = error%message
    end function deck_of
 
-   !> What a deck is refused with instead of some words; empty if it is with them, in their line
+   !> What a deck is refused with instead of some words and advice; empty if it is with them, in their line
    pure function said(text, line, words) result(other)
       !> Its lines, parted by |
       character(len=*), intent(in) :: text
@@ -40,7 +40,7 @@ contains
       call parse_deck(lines_of(text), "a.nml", none, deck, error)
       if (.not. allocated(error)) then
          if (line > 0) other = "accepted: "//text
-      else if (error%line /= line .or. index(error%message, words) == 0) then
+      else if (error%line /= line .or. index(error%message, words) == 0 .or. index(error%message, "; ") == 0) then
          other = text//": line "//to_text(error%line)//": "//error%message
       end if
    end function said
