@@ -91,20 +91,7 @@ SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]
 
 
 def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
-    """Make a text from a good one by a change or more; sometimes it stays good.
-
-    Parameters
-    ----------
-    rng
-        Source of all choices
-    seeds
-        Good texts of one form
-
-    Returns
-    -------
-    bytes
-        The text
-    """
+    """Make a text from a good one by a change or more; sometimes it stays good."""
     text = rng.choice(seeds)
     for _ in range(rng.choice([0, 1, 1, 1, 2, 4])):
         if rng.random() < 0.3:
@@ -117,22 +104,7 @@ def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
 
 
 def complaint(status: int | None, lines: list[str], folder: Path) -> str:
-    """What the outcome of a call breaks; empty if all is well.
-
-    Parameters
-    ----------
-    status
-        Exit status; None for a hang
-    lines
-        What was printed
-    folder
-        Where the files are
-
-    Returns
-    -------
-    str
-        The complaint
-    """
+    """What the outcome of a call breaks, empty if all is well; a hang has no status."""
     if status not in (0, 2, 3):
         return "hang" if status is None else f"status {status}: " + " | ".join(lines[-5:])
     errors = 0
@@ -152,22 +124,7 @@ def complaint(status: int | None, lines: list[str], folder: Path) -> str:
 
 
 def write_mutant(rng: random.Random, folder: Path, number: int) -> Path:
-    """Write a file of blocks and its deck, one or both of them changed.
-
-    Parameters
-    ----------
-    rng
-        Source of all choices
-    folder
-        Where they go
-    number
-        Number of the mutant
-
-    Returns
-    -------
-    Path
-        The deck
-    """
+    """Write a file of blocks and its deck, one or both of them changed."""
     which = rng.randrange(3)
     blocks = rng.choice(BLOCKS) if which == 1 else mutant(rng, BLOCKS)
     groups = rng.choice(GROUPS) if which == 0 else mutant(rng, GROUPS)
@@ -184,22 +141,7 @@ def is_small(text: bytes) -> bool:
 
 
 def compute(dda: str, deck: Path, folder: Path) -> str:
-    """Compute a deck that was accepted.
-
-    Parameters
-    ----------
-    dda
-        The program
-    deck
-        The deck
-    folder
-        Where the files are
-
-    Returns
-    -------
-    str
-        What is broken; empty if nothing is
-    """
+    """Compute a deck that was accepted."""
     status, lines = run([dda, "run", *SHORT, "--out", str(folder / "out")], [deck], 60.0)
     broken = complaint(status, lines, folder)
     if not broken and status in (0, 3):

@@ -69,22 +69,7 @@ WORDS += [b"\n", b"\r", b"\r\n", b"\t", b" ", b"\n\n"]
 
 
 def mutate_once(rng: random.Random, text: bytes, seeds: list[bytes]) -> bytes:
-    """Change a file once.
-
-    Parameters
-    ----------
-    rng
-        Source of all choices
-    text
-        The file
-    seeds
-        Good files of the same form
-
-    Returns
-    -------
-    bytes
-        The changed file
-    """
+    """Change a file once."""
     first, last = cut(rng, text)
     kind = rng.randrange(22)
     if kind == 0:
@@ -125,20 +110,7 @@ def mutate_once(rng: random.Random, text: bytes, seeds: list[bytes]) -> bytes:
 
 
 def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
-    """Make a file from a good one by one change or more.
-
-    Parameters
-    ----------
-    rng
-        Source of all choices
-    seeds
-        Good files of one form
-
-    Returns
-    -------
-    bytes
-        The file
-    """
+    """Make a file from a good one by one change or more."""
     text = rng.choice(seeds)
     for _ in range(rng.choice([1, 1, 2, 3, 6, 12])):
         text = mutate_once(rng, text, seeds)
@@ -146,22 +118,7 @@ def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
 
 
 def complaint(status: int | None, lines: list[str], files: list[Path]) -> tuple[str, int]:
-    """Judge the outcome of a call.
-
-    Parameters
-    ----------
-    status
-        Exit status; None for a hang
-    lines
-        What was printed
-    files
-        The mutants
-
-    Returns
-    -------
-    tuple
-        What is broken (empty if nothing is), and how many files were refused
-    """
+    """What the outcome of a call breaks, empty if nothing, and how many files were refused; a hang has no status."""
     if status is None:
         return "hang", 0
     if status not in (0, 2):
@@ -188,24 +145,7 @@ def complaint(status: int | None, lines: list[str], files: list[Path]) -> tuple[
 
 
 def try_files(dda: str, form: str, files: list[Path], timeout: float) -> tuple[str, int]:
-    """Run the program on mutants of one form and judge it.
-
-    Parameters
-    ----------
-    dda
-        The program
-    form
-        A key of SEEDS
-    files
-        The mutants
-    timeout
-        Seconds that a call may take
-
-    Returns
-    -------
-    tuple
-        As `complaint`
-    """
+    """Run the program on mutants of a form of SEEDS for so many seconds a call: as `complaint`."""
     if form.endswith(".geo"):
         return complaint(*run([dda, "cut"], files, timeout), files)
     decks = [path.with_suffix(".nml") for path in files]

@@ -48,13 +48,7 @@ def random_arch(source: random.Random) -> str:
 
 
 def random_assembly(seed: int) -> tuple[str, float]:
-    """A file of blocks and its friction angle.
-
-    Parameters
-    ----------
-    seed
-        The same seed gives the same assembly.
-    """
+    """A file of blocks and its friction angle."""
     source = random.Random(seed)
     text = (random_wall if source.random() < 0.6 else random_arch)(source)
     return text, math.degrees(math.atan(source.uniform(0.35, 0.9)))

@@ -114,13 +114,7 @@ def post(pick: random.Random) -> Shapes:
 
 
 def odd_assembly(seed: int) -> tuple[str, float]:
-    """A file of blocks and its friction angle [deg].
-
-    Parameters
-    ----------
-    seed
-        The same seed gives the same assembly.
-    """
+    """A file of blocks and its friction angle [deg]."""
     pick = random.Random(seed)
     kind = pieces if pick.random() < 0.6 else pick.choice([stool, wedge, ladder, beam, post])
     fixed, blocks = kind(pick)

@@ -98,21 +98,7 @@ def test_values_that_a_key_does_not_take_are_refused(tmp_path: Path, group: str,
 
 
 def assert_refused(folder: Path, name: str, line: int, wanted: str, *options: str) -> None:
-    """Check that run and check refuse a deck with one line and leave nothing behind.
-
-    Parameters
-    ----------
-    folder
-        Where the program runs
-    name
-        Name of the deck
-    line
-        Line that the message must name
-    wanted
-        What the message must speak of
-    options
-        Options beside the name
-    """
+    """Check that run and check refuse a deck with one line and leave nothing behind."""
     before = sorted(folder.iterdir())
     for verb in ("run", "check"):
         done = run_dda(verb, name, *options, cwd=folder)

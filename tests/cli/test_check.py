@@ -12,22 +12,7 @@ PAPER = Path(__file__).parents[2] / "input" / "paper"
 
 
 def check(folder: Path, text: str, *options: str) -> str:
-    """What dda check prints about a good deck.
-
-    Parameters
-    ----------
-    folder
-        Where deck.nml goes; checked to hold nothing else afterwards
-    text
-        The deck
-    options
-        Options of the command
-
-    Returns
-    -------
-    str
-        The plan, blanks and line ends turned into single blanks
-    """
+    """What dda check prints about a good deck, blanks and line ends turned into single blanks."""
     (folder / "deck.nml").write_text(text)
     done = run_dda("check", "deck.nml", *options, cwd=folder)
     assert done.returncode == 0, done.stderr

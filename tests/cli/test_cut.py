@@ -11,20 +11,7 @@ from limerick_files import HAS_XML, HELD, INPUT, SQUARE
 
 
 def blocks_of(path: Path, folder: Path) -> list[dict[str, str]]:
-    """Rows of the table of blocks that a file is cut into.
-
-    Parameters
-    ----------
-    path
-        The file of lines
-    folder
-        Where the table goes
-
-    Returns
-    -------
-    list of dict
-        A row a block
-    """
+    """Rows of the table of blocks that a file is cut into."""
     done = run_dda("cut", path, "--out", folder / "blocks.csv", "--quiet")
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""

@@ -40,18 +40,7 @@ def common_points(one: Line, other: Line) -> set[Point]:
 
 
 def exact_areas(lines: list[Line]) -> list[Fraction]:
-    """Cut lines into blocks without rounding.
-
-    Parameters
-    ----------
-    lines
-        Segments with rational ends
-
-    Returns
-    -------
-    list
-        Areas of the blocks, sorted
-    """
+    """Cut lines into blocks without rounding."""
     nodes = [set() for _ in lines]
     for i, one in enumerate(lines):
         for j in range(i):

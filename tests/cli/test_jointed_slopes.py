@@ -14,17 +14,7 @@ from jointed_slope import geometry  # noqa: E402
 
 
 def decide(folder: Path, lines: str, groups: str) -> dict[str, str]:
-    """The row of results of a slope.
-
-    Parameters
-    ----------
-    folder
-        Where its files go
-    lines
-        Text of the geometry file
-    groups
-        Groups of the deck beside the scene
-    """
+    """The row of results of a slope."""
     (folder / "slope.geo").write_text(lines)
     (folder / "slope.nml").write_text(f"&scene kind = 'lines', geometry = 'slope.geo' /\n{groups}\n")
     done = run_dda("run", "slope.nml", cwd=folder)

@@ -19,22 +19,7 @@ DYNAMIC = "&analysis mode = 'dynamic', geometry = 'current' /\n"
 
 
 def check(folder: Path, blocks: str, groups: str = DYNAMIC) -> subprocess.CompletedProcess[str]:
-    """Check a file of blocks.
-
-    Parameters
-    ----------
-    folder
-        Where the file and its deck go
-    blocks
-        The file
-    groups
-        Groups of the deck
-
-    Returns
-    -------
-    subprocess.CompletedProcess
-        Status and what was printed
-    """
+    """Check a file of blocks."""
     return run_dda("check", write(folder, blocks, groups), timeout=PATIENCE)
 
 

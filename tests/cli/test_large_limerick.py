@@ -37,22 +37,7 @@ pytestmark = pytest.mark.skipif(not HAS_XML, reason="the program was built witho
 
 
 def check(folder: Path, geometry: str = GEOMETRY, analysis: str = ANALYSIS) -> subprocess.CompletedProcess[str]:
-    """Check a model of lines under Shi's scheme.
-
-    Parameters
-    ----------
-    folder
-        Where its files go
-    geometry
-        Lines and points
-    analysis
-        Materials and loads
-
-    Returns
-    -------
-    subprocess.CompletedProcess
-        Status and what was printed
-    """
+    """Check a model of lines under Shi's scheme."""
     (folder / "long.geo").write_text(geometry)
     (folder / "long.ana").write_text(analysis)
     (folder / "long.nml").write_text("&scene kind = 'lines', geometry = 'long.geo', analysis = 'long.ana' /\n"

@@ -29,22 +29,7 @@ MODE = "&analysis mode = 'limerick', steps = 20000, collapse_displacement = 0.5 
 
 
 def results_of(folder: Path, text: str, *options: str) -> list[dict[str, str]]:
-    """Rows of results.csv of a deck, by case.
-
-    Parameters
-    ----------
-    folder
-        Where deck.nml and its results go
-    text
-        The deck
-    options
-        Options of the command
-
-    Returns
-    -------
-    list of dict
-        One row a case
-    """
+    """Rows of results.csv of a deck, by case."""
     (folder / "deck.nml").write_text(text)
     done = run_dda("run", "deck.nml", "--out", "out", "--quiet", *options, cwd=folder)
     assert done.returncode == 0, done.stderr
@@ -190,20 +175,7 @@ def test_plan_says_the_half_size_that_all_is_compared_with(tmp_path: Path) -> No
 
 
 def block_on_slope(folder: Path, friction: float) -> str:
-    """Write a block on a slope of 20 degrees as files of lines.
-
-    Parameters
-    ----------
-    folder
-        Where slope.geo and slope.ana go
-    friction
-        Friction angle [deg]
-
-    Returns
-    -------
-    str
-        The group &scene of a deck that names them
-    """
+    """Write a block on a slope of 20 degrees as files of lines; gives the group &scene that names them."""
     turn = complex(math.cos(math.radians(20)), math.sin(math.radians(20)))
 
     def line(*ends: complex) -> str:

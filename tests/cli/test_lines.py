@@ -12,22 +12,7 @@ from limerick_files import HAS_XML, HELD, INPUT, SQUARE
 
 
 def row_of(folder: Path, name: str, text: str) -> dict[str, str]:
-    """Run a deck of one case.
-
-    Parameters
-    ----------
-    folder
-        Where the deck goes
-    name
-        Name of the deck without its ending
-    text
-        The deck
-
-    Returns
-    -------
-    dict
-        Its row of results
-    """
+    """Run a deck of one case."""
     (folder / f"{name}.nml").write_text(text)
     done = run_dda("run", f"{name}.nml", cwd=folder)
     assert done.returncode == 0, done.stderr

@@ -32,22 +32,7 @@ def read_table(file: Path) -> tuple[list[str], list[Row]]:
 
 
 def run_deck(folder: Path, text: str, status: int = 0) -> list[Row]:
-    """Run a deck.
-
-    Parameters
-    ----------
-    folder
-        Where deck.nml and the folder deck of its results go
-    text
-        The deck
-    status
-        Exit status that is wanted
-
-    Returns
-    -------
-    list of dict
-        Rows of results.csv
-    """
+    """Run a deck."""
     (folder / "deck.nml").write_text(text)
     done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
     assert done.returncode == status, done.stderr

@@ -22,15 +22,7 @@ FILES = sorted(["deck.record", "disk.record", "run.lock", "sizes.record", *TABLE
 
 
 def write_decks(folder: Path, **texts: str) -> None:
-    """Write decks into a folder.
-
-    Parameters
-    ----------
-    folder
-        Where they go
-    texts
-        Text of each deck by its name without .nml
-    """
+    """Write decks into a folder."""
     for name, text in texts.items():
         (folder / f"{name}.nml").write_text(text)
 

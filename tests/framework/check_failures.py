@@ -19,18 +19,7 @@ CLOSING = (re.compile(r"FAILED  \((?P<failed>\d+) of (?P<run>\d+) tests\)"),
 
 
 def announced(path: Path) -> dict[tuple[str, int], list[str]]:
-    """List the failures that a .pf file announces.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    dict
-        Texts to be found in the report, for each file name and line.
-    """
+    """List the failures that a .pf file announces: texts to be found in the report, by file name and line."""
     found = {}
     for number, line in enumerate(path.read_text("utf-8").split("\n"), start=1):
         if match := ANNOUNCEMENT.fullmatch(line):
@@ -40,40 +29,14 @@ def announced(path: Path) -> dict[tuple[str, int], list[str]]:
 
 
 def reported(output: str) -> list[tuple[tuple[str, int], str]]:
-    """List the failures of a report.
-
-    Parameters
-    ----------
-    output : str
-        What the executable wrote.
-
-    Returns
-    -------
-    list of tuple
-        Place and text of each failure; the text ends where the next failure begins.
-    """
+    """List the failures of a report: place and text of each, up to the next one."""
     places = list(PLACE.finditer(output))
     ends = [place.start() for place in places[1:]] + [len(output)]
     return [((place[1], int(place[2])), output[place.end():end].replace(",", " ")) for place, end in zip(places, ends)]
 
 
 def disagreements(output: str, status: int, sources: list[Path]) -> list[str]:
-    """Compare a report with what was announced.
-
-    Parameters
-    ----------
-    output : str
-        What the executable wrote.
-    status : int
-        Its exit status.
-    sources : list of Path
-        Its .pf files.
-
-    Returns
-    -------
-    list of str
-        A sentence for each disagreement.
-    """
+    """Compare a report with what its .pf files announced: a sentence for each disagreement."""
     wanted = {place: texts for path in sources for place, texts in announced(path).items()}
     found = reported(output)
     tests = sum(line.strip().lower() == "@test" for path in sources for line in path.read_text("utf-8").split("\n"))

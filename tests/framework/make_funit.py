@@ -47,62 +47,19 @@ FAIL = """
 
 
 def declare(kind: str, name: str, rank: int = 0, attribute: str = "") -> str:
-    """Declare a dummy argument.
-
-    Parameters
-    ----------
-    kind, name : str
-        Kind, one of TYPES, and name of the argument.
-    rank : int
-        Its rank.
-    attribute : str
-        More attributes.
-
-    Returns
-    -------
-    str
-        One line of Fortran.
-    """
+    """Declare a dummy argument."""
     shape = f"({', '.join(':' * rank)})" if rank else ""
     return f"      {TYPES[kind]}, intent(in){attribute} :: {name}{shape}"
 
 
 def as_list(kind: str, name: str, rank: int) -> str:
-    """Write an argument as a list of the widest kind, in array element order.
-
-    Parameters
-    ----------
-    kind, name : str
-        Kind and name of the argument.
-    rank : int
-        Its rank.
-
-    Returns
-    -------
-    str
-        A Fortran expression of rank 1.
-    """
+    """Write an argument as a list of the widest kind, in array element order."""
     wide = WIDEN.get(kind, "{}").format(name)
     return {0: f"[{wide}]", 1: wide, 2: f"reshape({wide}, [size({name})])"}[rank]
 
 
 def comparison(assertion: str, kinds: tuple[str, str], ranks: tuple[int, int], tolerance: str = "") -> tuple[str, str]:
-    """Write an assertion on two arguments.
-
-    Parameters
-    ----------
-    assertion : str
-        Its name without the leading Assert.
-    kinds, ranks : tuple
-        Kind and rank of the first and of the second argument.
-    tolerance : str
-        Kind of the tolerance; empty if there is none.
-
-    Returns
-    -------
-    tuple of str
-        Name and text of the subroutine.
-    """
+    """Write an assertion on two arguments."""
     name = f"{assertion.lower()}_{'_'.join(kinds)}_{ranks[0]}{ranks[1]}_{tolerance}".rstrip("_")
     names = "expected, actual"
     declarations = [declare(kinds[0], "expected", ranks[0]), declare(kinds[1], "actual", ranks[1])]
@@ -119,20 +76,7 @@ def comparison(assertion: str, kinds: tuple[str, str], ranks: tuple[int, int], t
 
 
 def condition(assertion: str, rank: int) -> tuple[str, str]:
-    """Write AssertTrue or AssertFalse.
-
-    Parameters
-    ----------
-    assertion : str
-        True or False.
-    rank : int
-        Rank of the condition.
-
-    Returns
-    -------
-    tuple of str
-        Name and text of the subroutine.
-    """
+    """Write AssertTrue or AssertFalse."""
     name = f"{assertion.lower()}_{rank}"
     judge = (f'judge_truth(claim("Assert{assertion}", message, location), '
              f'{as_list("truth", "condition", rank)}, .{assertion.lower()}.)')
@@ -141,13 +85,7 @@ def condition(assertion: str, rank: int) -> tuple[str, str]:
 
 
 def assertions() -> dict[str, list[tuple[str, str]]]:
-    """List every overload of every assertion.
-
-    Returns
-    -------
-    dict
-        Name and text of the subroutines of each assertion.
-    """
+    """List every overload of every assertion."""
     overloads = {}
     for assertion in ("Equal", "RelativelyEqual", *ORDERS):
         reals = itertools.product(("int", "single", "double"), RANKS, ("single", "double"))
@@ -165,13 +103,7 @@ def assertions() -> dict[str, list[tuple[str, str]]]:
 
 
 def module_text() -> str:
-    """Write the whole module.
-
-    Returns
-    -------
-    str
-        Fortran source.
-    """
+    """Write the whole module."""
     text = HEAD + "".join(f"   integer, parameter, public :: {word} = 0\n" for word in TAKEN)
     overloads = assertions()
     for assertion, procedures in overloads.items():

@@ -55,20 +55,7 @@ class Suite:
 
 
 def split_arguments(text: str, line: int) -> list[str]:
-    """Split what follows the name of an assertion at its commas.
-
-    Parameters
-    ----------
-    text : str
-        From the opening parenthesis to the end of the line.
-    line : int
-        Number of the line, for errors.
-
-    Returns
-    -------
-    list of str
-        The arguments without the blanks around them.
-    """
+    """Split what follows the name of an assertion at its commas."""
     pieces, open_brackets, quote = [""], [], ""
     for place, letter in enumerate(text):
         if quote:
@@ -97,22 +84,7 @@ def split_arguments(text: str, line: int) -> list[str]:
 
 
 def translate_assertion(statement: str, path: Path, line: int) -> list[str]:
-    """Translate one @assert.
-
-    Parameters
-    ----------
-    statement : str
-        The line without the blanks around it.
-    path : Path
-        The file.
-    line : int
-        Number of the line.
-
-    Returns
-    -------
-    list of str
-        Lines of Fortran that call the assertion and leave the test if it failed.
-    """
+    """Translate one @assert."""
     found = re.fullmatch(r"@assert(\w+)\s*(\(.*)", statement, re.I)
     names = {name.lower(): name for name in ASSERTIONS}
     if not found or found[1].lower() not in names:
@@ -140,19 +112,7 @@ def translate_assertion(statement: str, path: Path, line: int) -> list[str]:
 
 
 def take_subroutine(text: str, directive: str, line: int, suite: Suite) -> None:
-    """Note the subroutine that a directive speaks of.
-
-    Parameters
-    ----------
-    text : str
-        The line after the directive.
-    directive : str
-        test, before or after.
-    line : int
-        Number of the line.
-    suite : Suite
-        Where to note it.
-    """
+    """Note the subroutine that a directive speaks of."""
     found = SUBROUTINE.fullmatch(text)
     if not found:
         raise PfError(line, f"the line after @{directive} is a subroutine without arguments, "
@@ -169,20 +129,7 @@ def take_subroutine(text: str, directive: str, line: int, suite: Suite) -> None:
 
 
 def translate(source: str, path: Path) -> str:
-    """Translate a .pf file.
-
-    Parameters
-    ----------
-    source : str
-        Its text.
-    path : Path
-        Its name, for the lines that errors and failures speak of.
-
-    Returns
-    -------
-    str
-        Fortran: the module of the tests and the function that lists them.
-    """
+    """Translate a .pf file."""
     suite, out, directive, line = Suite(), [f'#line 1 "{path.as_posix()}"'], "", 0
     for line, text in enumerate(source.rstrip("\n").split("\n"), start=1):
         statement = text.strip()
@@ -218,16 +165,6 @@ def suite_function(suite: Suite) -> list[str]:
 
     It imports and declares the names that pFUnit's own function does, so that a test module
     which makes such a name public compiles under neither.
-
-    Parameters
-    ----------
-    suite : Suite
-        What the file declares.
-
-    Returns
-    -------
-    list of str
-        Lines of Fortran.
     """
     name = f"{suite.module}_suite"
     around = "".join(f", {keyword}={suite.around[directive]}" for directive, keyword
@@ -241,18 +178,7 @@ def suite_function(suite: Suite) -> list[str]:
 
 
 def driver(modules: list[str]) -> str:
-    """Write the program that runs the tests of some modules.
-
-    Parameters
-    ----------
-    modules : list of str
-        Names of the test modules, in the order of the run.
-
-    Returns
-    -------
-    str
-        Fortran source.
-    """
+    """Write the program that runs the tests of some modules."""
     heads = "".join(f"""      function {module}_suite() result(suite)
          import :: TestSuite
          type(TestSuite) :: suite
@@ -272,18 +198,7 @@ end program run_test_suites
 
 
 def read(path: Path) -> str:
-    """Text of a .pf file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        Its text; bytes that are not UTF-8 are an error with their line.
-    """
+    """Text of a .pf file."""
     content = path.read_bytes()
     try:
         return content.decode("utf-8").replace("\r\n", "\n")
@@ -293,15 +208,7 @@ def read(path: Path) -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Write a file if that changes it: what is as it was is not compiled again.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    text : str
-        Its text.
-    """
+    """Write a file if that changes it: what is as it was is not compiled again."""
     if not path.exists() or path.read_text("utf-8") != text:
         path.write_text(text, "utf-8")
 

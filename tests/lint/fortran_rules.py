@@ -56,18 +56,7 @@ def statements(lines: list[str]) -> Iterator[Statement]:
 
 
 def offences(path: Path) -> list[str]:
-    """What a source breaks.
-
-    Parameters
-    ----------
-    path : Path
-        The source.
-
-    Returns
-    -------
-    list of str
-        FILE:LINE: rule.
-    """
+    """List what a source breaks: FILE:LINE: rule."""
     lines = path.read_text(encoding="utf-8").splitlines()
     of_this = list(statements(lines))
     explained: set[tuple[str, str]] = set()
@@ -174,18 +163,7 @@ class Part:
 
 
 def names_twice(paths: Collection[Path]) -> dict[str, list[str]]:
-    """Public names that more than one module exports, with those modules.
-
-    Parameters
-    ----------
-    paths : collection of Path
-        Fortran sources; of two with one name the first counts.
-
-    Returns
-    -------
-    dict of list of str
-        The modules of each name.
-    """
+    """Public names that more than one module exports, with those modules."""
     exports: dict[str, list[str]] = {}
     for path in {path.stem: path for path in reversed(list(paths))}.values():
         text = re.sub(r"&\s*\n\s*&", "", path.read_text(encoding="utf-8"))
@@ -200,16 +178,6 @@ def lost_memory(paths: Collection[Path]) -> list[str]:
 
     GCC 12 leaves components undefined that a structure constructor takes from strided sections, and
     loses the memory of elements that an array constructor copies.
-
-    Parameters
-    ----------
-    paths : collection of Path
-        The sources, with all types that they use.
-
-    Returns
-    -------
-    list of str
-        FILE:LINE: what is lost.
     """
     texts = {path: list(statements(path.read_text().splitlines())) for path in paths}
     parts = _parts([one.text for text in texts.values() for one in text])

@@ -13,20 +13,9 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def offences(path: Path, strict: bool) -> list[str]:
-    """What a source breaks.
+    """List what a source breaks: FILE:LINE: rule.
 
-    Parameters
-    ----------
-    path : Path
-        The source.
-    strict : bool
-        Whether every function has type hints and every public one says what it does: so in the
-        package, while tests speak by their names.
-
-    Returns
-    -------
-    list of str
-        FILE:LINE: rule.
+    With `strict`, as in the package, every function has type hints and every public one says what it does.
     """
     text = path.read_text(encoding="utf-8")
     tree = ast.parse(text)

@@ -58,18 +58,7 @@ WORDS = (
 
 
 def messages(source: str) -> Iterator[tuple[int, str]]:
-    """Texts of a Fortran source with their lines; literals joined by `//` alone are one text.
-
-    Parameters
-    ----------
-    source : str
-        The source.
-
-    Yields
-    ------
-    tuple of int and str
-        Line of the first literal, and the text.
-    """
+    """Texts of a Fortran source with their lines; literals joined by `//` alone are one text."""
     text, begin, line = "", 0, 1
     for piece in (match[0] for match in _PIECE.finditer(source)):
         if piece[0] in "\"'":

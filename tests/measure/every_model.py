@@ -49,24 +49,7 @@ def is_used(key: str, mode: str, geometry: str) -> bool:
 
 
 def variant(text: str, folder: Path, mode: str, geometry: str, quick: bool) -> str:
-    """A deck with another mode and geometry, and all that it can write.
-
-    Parameters
-    ----------
-    text : str
-        The deck.
-    folder : Path
-        The folder of its files.
-    mode, geometry : str
-        What it is run with.
-    quick : bool
-        Whether few steps are enough.
-
-    Returns
-    -------
-    str
-        The other deck.
-    """
+    """A deck with another mode and geometry, and all that it can write."""
     groups = [(name, dict(KEY.findall(body))) for name, body in GROUP.findall(re.sub(r"^!.*$", "", text, flags=re.M))]
     own: dict[str, str] = {}
     kept = []
@@ -106,24 +89,7 @@ def is_own(text: str, mode: str, geometry: str) -> bool:
 
 
 def finding(dda: str, deck: Path, own: bool, quick: bool) -> str:
-    """Run a deck and say what is wrong with how it ends; empty if nothing is.
-
-    Parameters
-    ----------
-    dda : str
-        The program.
-    deck : Path
-        The deck.
-    own : bool
-        Whether it must not be refused.
-    quick : bool
-        Whether one case is enough.
-
-    Returns
-    -------
-    str
-        What is wrong.
-    """
+    """Run a deck and say what is wrong with how it ends; empty if nothing is."""
     out = deck.with_suffix("")
     try:
         done = subprocess.run([dda, "run", deck, "--out", out, "--quiet", *(["--cases", "1"] if quick else [])],
@@ -142,13 +108,7 @@ def finding(dda: str, deck: Path, own: bool, quick: bool) -> str:
 
 
 def main() -> int:
-    """Run the decks and tell.
-
-    Returns
-    -------
-    int
-        1 if something was found.
-    """
+    """Run the decks and tell: 1 if something was found."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--dda", required=True)
     parser.add_argument("--quick", action="store_true")

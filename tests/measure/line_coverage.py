@@ -22,20 +22,7 @@ Counts = dict[Path, dict[int, int]]
 
 
 def count_lines(source: Path, build: Path) -> Counts:
-    """Sum the counts of all objects that hold a line.
-
-    Parameters
-    ----------
-    source : Path
-        Folder of the sources.
-    build : Path
-        Folder of the build.
-
-    Returns
-    -------
-    Counts
-        By source and number of line; lines that hold no code are left out.
-    """
+    """Sum the counts of all objects that hold a line, by source and number; lines without code are left out."""
     counts: Counts = defaultdict(lambda: defaultdict(int))
     notes = sorted(path for path in build.rglob("*.gcno") if ".pf" not in str(path))
     for start in range(0, len(notes), 50):

@@ -48,20 +48,7 @@ CALLS = (
 
 
 def check(words: list[str], folder: Path) -> bool:
-    """Run a command under valgrind and tell what was found.
-
-    Parameters
-    ----------
-    words : list of str
-        The command.
-    folder : Path
-        Where it runs.
-
-    Returns
-    -------
-    bool
-        Whether all is well.
-    """
+    """Run a command under valgrind and tell what was found."""
     done = subprocess.run([*VALGRIND, *words], cwd=folder, capture_output=True, text=True)
     told = [line for line in done.stderr.splitlines() if line.startswith(("==", "valgrind:"))]
     name = " ".join([Path(words[0]).name, *(Path(word).name for word in words[1:])])

@@ -123,19 +123,7 @@ def faults_of(path: Path, root: Path) -> list[Fault]:
 
 
 def draw_faults(root: Path, rooms: list[str], count: int, seed: int) -> list[Fault]:
-    """As many faults, every room and in it every kind in turn, for the same seed the same.
-
-    Parameters
-    ----------
-    root
-        Folder of the project.
-    rooms
-        Folders of `src/`.
-    count
-        How many.
-    seed
-        Where the random numbers begin.
-    """
+    """As many faults, every room and in it every kind in turn, for the same seed the same."""
     chance = random.Random(seed)
     drawn: list[Fault] = []
     by_room = {}

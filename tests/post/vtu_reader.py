@@ -46,24 +46,7 @@ class Grid:
 
 
 def read_column(element: ElementTree.Element, data: bytes, order: str, length: str) -> Column:
-    """Read one array.
-
-    Parameters
-    ----------
-    element : ElementTree.Element
-        Its DataArray.
-    data : bytes
-        The appended data.
-    order : str
-        ``<`` or ``>``, the order of bytes.
-    length : str
-        Letter of struct of the number before the array that tells its length.
-
-    Returns
-    -------
-    Column
-        The array.
-    """
+    """Read one array."""
     assert element.get("format") == "appended"
     start = int(element.get("offset", ""))
     (n_byte,) = struct.unpack_from(order + length, data, start)
@@ -79,18 +62,7 @@ def read_column(element: ElementTree.Element, data: bytes, order: str, length: s
 
 
 def read_vtu(path: Path) -> Grid:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        Its name.
-
-    Returns
-    -------
-    Grid
-        What it holds.
-    """
+    """Read a file."""
     head, data = path.read_bytes().split(MARK, 1)
     data, tail = data[:data.rindex(b"</AppendedData>")], data[data.rindex(b"</AppendedData>"):]
     # without its data the file is XML from its first to its last line
