@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
+from voussoir.block_file import entries_of
 from voussoir.dda_program import DdaError, call, path_word
 from voussoir.files import plain, read_text
 from voussoir.plot.case_marks import draw_held, draw_loads, entry, load_arrows
@@ -19,7 +20,7 @@ from voussoir.plot.case_scene import CaseScene, view
 from voussoir.plot.figure_style import INK
 from voussoir.plot.motion import motion_of
 from voussoir.plot.sheet import Sheet
-from voussoir.plot.source_file import Source, entries_of, read_source, source_of_lines
+from voussoir.plot.source_file import Source, read_source, source_of_lines
 from voussoir.results import Block
 
 #: Endings of files that are drawn without a run
@@ -95,7 +96,7 @@ def read_blocks(file: Path) -> tuple[list[Block], Source]:
     blocks: list[Block] = []
     for words, rows in entries_of(text):
         if words[0] == "block":
-            corners = np.array([row[:2] for row in rows])
+            corners = np.array([[float(word.replace("d", "e")) for word in row[:2]] for row in rows])
             state = "fixed" if "fixed" in words else "free"
             blocks.append(Block(len(blocks) + 1, state, corners, np.full_like(corners, np.nan)))
     return blocks, read_source(text)

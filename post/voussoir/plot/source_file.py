@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from voussoir.block_file import entries_of
 from voussoir.files import read_text
 from voussoir.plot.case_scene import CaseScene
 from voussoir.results import Results
@@ -114,22 +114,6 @@ def source_of_lines(text: str) -> Source:
     return Source(bars=[((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7])
 
 
-def entries_of(text: str) -> Iterator[tuple[list[str], list[list[float]]]]:
-    """Entries of a file of blocks: the words of each, and the numbers of the rows below it."""
-    words: list[str] = []
-    rows: list[list[float]] = []
-    for line in text.splitlines():
-        found = line.partition("!")[0].lower().split()
-        if found and found[0][0] in "0123456789+-.":
-            rows.append(_numbers(found))
-        elif found:
-            if words:
-                yield words, rows
-            words, rows = found, []
-    if words:
-        yield words, rows
-
-
 def read_source(text: str) -> Source:
     """Contents of a file of blocks."""
     source = Source()
@@ -140,7 +124,7 @@ def read_source(text: str) -> Source:
 def _read(text: str, source: Source) -> None:
     """Take in the entries of a file of blocks."""
     for words, rows in entries_of(text):
-        _take(words, rows[-1] if rows else [], source)
+        _take(words, _numbers(rows[-1]) if rows else [], source)
 
 
 def _numbers(words: list[str]) -> list[float]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.block_file import entries_of
 from voussoir.files import read_text
 from voussoir.record import SUPPORTS
 from voussoir.verify.contacts import depth, make_block
@@ -113,18 +114,8 @@ def read_blocks(path: Path, deck: Deck) -> Source:
     except OSError as error:
         raise VerifyError(f"cannot read {path}: name its folder by --decks") from error
     source = Source()
-    entry: list[str] = []
-    rows: list[list[float]] = []
-    for line in [*text.splitlines(), "end"]:
-        words = line.split("!")[0].lower().split()
-        if not words:
-            continue
-        if words[0][0] in "0123456789+-.":
-            rows.append([deck.read(word) for word in words])
-            continue
-        if entry:
-            _take(entry, rows, source, deck)
-        entry, rows = words, []
+    for entry, rows in entries_of(text):
+        _take(entry, [[deck.read(word) for word in row] for row in rows], source, deck)
     return source
 
 
