@@ -58,13 +58,6 @@ def test_warnings_name_file_and_line(tmp_path: Path) -> None:
         assert line.endswith("x.blocks:6: warning: corners given twice are merged (and 1 more like it)")
 
 
-def test_corners_may_run_either_way_and_nothing_is_said(tmp_path: Path) -> None:
-    clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
-    for text in (BASE + BLOCK, BASE + clockwise):
-        done = run_dda("run", write(tmp_path, text), "--out", tmp_path / str(len(text)))
-        assert done.returncode == 0 and done.stderr == ""
-
-
 @pytest.mark.parametrize("share, verdict", [(0.99, "stable"), (1.01, "collapsed")])
 def test_a_load_on_a_joint_acts_on_the_block_that_is_named(tmp_path: Path, share: float, verdict: str) -> None:
     """A block of weight 2 w slides under a force of 2 w tan(friction) at its foot; its base does not."""
@@ -78,30 +71,13 @@ def test_a_load_on_a_joint_acts_on_the_block_that_is_named(tmp_path: Path, share
     assert done.stderr == "" and table(tmp_path / "out/results.csv")[0]["verdict"] == "stable"
 
 
-def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
-    deck = write(tmp_path, BASE + BLOCK + "load 0 0 1 0\n")
-    for command in ("check", "run"):
-        (message,) = run_dda(command, deck, cwd=tmp_path).stderr.splitlines()
-        assert message.endswith(
-            "x.blocks:11: warning: the point lies on block 1, which it is taken for, and on block 2; "
-            "write 'load block N x y' to say which"
-        )
-
-
 @pytest.mark.parametrize(
     "blocks, line, words",
     [
         (BASE + BLOCK.replace("0 0\n1 0", "0 0.1\n1 0.1"), 6, "block 2 has no support"),
         (BLOCK, 1, "block 1 has no support"),
-        (BASE + BLOCK.replace("0 0\n", "0 -0.2\n"), 6, "blocks 1 and 2 overlap"),
-        (BASE + "block\n0 -0.8\n1 -0.8\n1 -0.2\n", 6, "block 2 lies inside block 1"),
         (BASE + "block\n0 0\n1 1\n1 0\n0 1\n", 6, "its edges 1 and 3 meet at"),
-        (BASE + BLOCK + "fix 5 5\n", 11, "lies in none"),
-        (BASE + BLOCK + "load block 2 0.5 -0.5 1 0\n", 11, "(0.5, -0.5), which lies outside it"),
-        (BASE + BLOCK + "load block 3 0.5 0.5 1 0\n", 11, "a block from 1 to 2, got '3'"),
-        (BASE + BLOCK + "material 2 density 0\n", 11, "from 1e-12 to 1e30, got 0"),
         (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
-        (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "conflicts with the other fixed or"),
     ],
 )
 def test_bad_blocks_are_refused_with_file_and_line(tmp_path: Path, blocks: str, line: int, words: str) -> None:
