@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import statistics
 from collections import Counter
 from collections.abc import Sequence
@@ -10,6 +9,7 @@ from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 
 from voussoir.files import write_text
+from voussoir.html_page import cell, document, escape, table
 from voussoir_benches.expectations import RIGHT, UNDECIDED, WRONG
 from voussoir_benches.report_tables import markdown, write_csv
 
@@ -125,49 +125,36 @@ def write_page(lines: Sequence[Line], file: Path) -> None:
     """Write a page: the kinds, what is not right, then every scene by kind, folded."""
     bad = " class='bad'" if any(line.result == WRONG for line in lines) else ""
     doubtful = [line for line in lines if line.result != RIGHT]
-    text = [
-        "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>",
-        "<meta name='viewport' content='width=device-width, initial-scale=1'>",
-        f"<title>Stiff and extreme scenes</title><style>{_STYLE}</style></head><body>",
-        f"<h1{bad}>{html.escape(headline(lines))}</h1>", *_kind_table(lines)]
+    text = [f"<h1{bad}>{escape(headline(lines))}</h1>", _kind_table(lines)]
     if doubtful:
         text += ["<h2>What is not right, and why</h2>"]
-        text += _scene_table(doubtful, ("group", "scene", "result", "found", "reason"))
+        text += [_scene_table(doubtful, ("group", "scene", "result", "found", "reason"))]
     text += ["<h2>Every scene, by kind</h2>"]
     for kind in kinds(lines)[:-1]:
         own = [line for line in lines if line.group == kind.name]
-        text += [f"<details><summary>{html.escape(kind.name)}: {len(own)} scenes</summary>"]
-        text += [*_scene_table(own, _SHOWN), "</details>"]
-    write_text(file, "\n".join([*text, "</body></html>"]) + "\n")
+        text += [f"<details><summary>{escape(kind.name)}: {len(own)} scenes</summary>"]
+        text += [_scene_table(own, _SHOWN), "</details>"]
+    write_text(file, document("Stiff and extreme scenes", _STYLE, "\n".join(text)))
 
 
-def _kind_table(lines: Sequence[Line]) -> list[str]:
+def _kind_table(lines: Sequence[Line]) -> str:
     """A row a kind; what is undecided or WRONG has its colour."""
-    number = " class='number'"
-    heads = "".join(f"<th{number if place else ''}>{name}</th>" for place, name in enumerate(_HEADS))
-    text = [f"<div class='wide'><table><thead><tr>{heads}</tr></thead><tbody>"]
+    number = ["", *["number"] * (len(_HEADS) - 1)]
+    rows = []
     for kind in kinds(lines):
         colour = {3: UNDECIDED if kind.count[UNDECIDED] else "", 4: WRONG if kind.count[WRONG] else ""}
-        cells = "".join(
-            f"<td class='{'number' if place else ''} {colour.get(place, '')}'>{html.escape(cell)}</td>"
-            for place, cell in enumerate(kind.cells())
-        )
-        text.append(f"<tr>{cells}</tr>")
-    return [*text, "</tbody></table></div>"]
+        rows.append([cell(escape(word), f"{side} {colour.get(place, '')}".strip())
+                     for place, (word, side) in enumerate(zip(kind.cells(), number))])
+    heads = [cell(name, side, "th") for name, side in zip(_HEADS, number)]
+    return f"<div class='wide'>{table(heads, rows)}</div>"
 
 
-def _scene_table(lines: Sequence[Line], names: Sequence[str]) -> list[str]:
+def _scene_table(lines: Sequence[Line], names: Sequence[str]) -> str:
     """One row a scene."""
-    heads = "".join(f"<th>{name}</th>" for name in names)
-    text = [f"<div class='wide'><table><thead><tr>{heads}</tr></thead><tbody>"]
-    for line in lines:
-        row = asdict(line)
-        cells = "".join(
-            f"<td class='{row[name] if name == 'result' else _class(name, row[name])}'>{html.escape(row[name])}</td>"
-            for name in names
-        )
-        text.append(f"<tr>{cells}</tr>")
-    return [*text, "</tbody></table></div>"]
+    rows = [
+        [cell(escape(row[name]), row[name] if name == "result" else _class(name, row[name])) for name in names]
+        for row in map(asdict, lines)]
+    return f"<div class='wide'>{table([cell(name, tag='th') for name in names], rows)}</div>"
 
 
 def _class(name: str, value: str) -> str:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import base64
-import html
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from voussoir.files import read_text
+from voussoir.html_page import cell, document, escape, table
 
 _STYLE = """
 :root { color-scheme: light; }
@@ -56,11 +56,6 @@ summary { cursor: pointer; }
 """
 
 
-def escape(text: object) -> str:
-    """A text as it stands in HTML."""
-    return html.escape(str(text))
-
-
 class Page:
     """A page that grows from top to bottom, below its title."""
 
@@ -83,14 +78,12 @@ class Page:
         self, caption: str, head: Sequence[str], rows: Iterable[Sequence[str]], anchor: str = "", words: bool = False
     ) -> None:
         """Add a table, of words rather than numbers where said; headings may hold HTML."""
-        lines = ["".join(f'<th scope="col">{cell}</th>' for cell in head)]
-        lines += ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
-        body = "".join(f"<tr>{line}</tr>" for line in lines[1:])
+        heads = [f'<th scope="col">{word}</th>' for word in head]
+        body = table(heads, (map(cell, row) for row in rows), "words" if words else "")
+        named = f' id="{anchor}"' if anchor else ""
         self._body.append(
-            f'<div class="table"{_named(anchor)}><p class="caption">{caption}</p>'
-            f'<div class="wide" tabindex="0"><table{_class("words", words)}>'
-            f"<thead><tr>{lines[0]}</tr></thead><tbody>{body}</tbody></table></div></div>"
-        )
+            f'<div class="table"{named}><p class="caption">{caption}</p>'
+            f'<div class="wide" tabindex="0">{body}</div></div>')
 
     def figure(self, svg: Path, caption: str, anchor: str) -> None:
         """Add a figure from an SVG file."""
@@ -130,12 +123,7 @@ class Page:
         nav = f'<nav aria-label="Contents"><strong>Contents</strong><ol>{entries}</ol></nav>'
         place = next((i for i, part in enumerate(self._body) if part.startswith("<h2")), 0)
         body = [*self._body[:place], nav, *self._body[place:]]
-        return (
-            '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">'
-            f"<title>{escape(self._title)}</title><style>{_STYLE}</style></head>\n<body>"
-            f"<h1>{escape(self._title)}</h1>\n" + "\n".join(body) + "\n</body></html>\n"
-        )
+        return document(self._title, _STYLE, "\n".join([f"<h1>{escape(self._title)}</h1>", *body, ""]))
 
 
 def inline_svg(text: str, prefix: str, label: str) -> str:
@@ -156,11 +144,3 @@ def inline_svg(text: str, prefix: str, label: str) -> str:
     points = float(width.group(1)) if width else 460.0
     style = f'style="--width: {points * 4 / 3:.0f}px"'
     return f'{head} role="img" aria-label="{plain}" {style}>{rest}'
-
-
-def _named(anchor: str) -> str:
-    return f' id="{anchor}"' if anchor else ""
-
-
-def _class(name: str, wanted: bool) -> str:
-    return f' class="{name}"' if wanted else ""

@@ -167,7 +167,7 @@ def test_scenes_are_run_and_reported(tmp_path, capsys):
     assert any(line["condition"] and int(line["passes"]) > 0 for line in rows)
     assert "0 WRONG" in (tmp_path / "stability.md").read_text()
     page = (tmp_path / "stability.html").read_text()
-    assert page.count("<td class='right'>") == 4 and "<td class='number '>4</td>" in page
+    assert page.count('<td class="right">') == 4 and '<td class="number">4</td>' in page
     assert "<details><summary>friction, large angles: 4 scenes</summary>" in page
     assert "not right" not in page
 

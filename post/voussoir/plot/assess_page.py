@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import html
 import io
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
 from voussoir.deck.assessment import Assessment, slides
+from voussoir.html_page import cell, document, escape, table
 from voussoir.plot.assess_drawing import draw_scheme
 from voussoir.plot.assess_text import assumptions_of, cases_of, factor_rows, numbers_of, verdict_of
 from voussoir.plot.case_picture import draw_case
@@ -62,28 +62,22 @@ def svg_of(figure: Figure) -> str:
 
 def figure_of(figure: Figure, title: str, caption: str = "") -> str:
     """A figure with its title and caption, for a page."""
-    below = f"<figcaption>{html.escape(caption)}</figcaption>" if caption else ""
-    return f"<figure><h3>{html.escape(title)}</h3>{svg_of(figure)}{below}</figure>"
+    below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
+    return f"<figure><h3>{escape(title)}</h3>{svg_of(figure)}{below}</figure>"
 
 
 def table_of(rows: Sequence[Sequence[str]], kind: str = "", heads: bool = False) -> str:
     """A table; the first cell of a row is its head, and the first row the head of all with `heads`."""
-    lines = []
-    for number, row in enumerate(rows):
-        first = heads and number == 0
-        cells = [f"<th>{html.escape(row[0])}</th>"]
-        for place, cell in enumerate(row[1:], 1):
-            words = "meaning" if kind == "numbers" and place == 2 else "number"
-            name = "" if first or kind == "origin" else f' class="{words}"'
-            cells.append(f"<{'th' if first else 'td'}{name}>{html.escape(cell)}</{'th' if first else 'td'}>")
-        line = "<tr>" + "".join(cells) + "</tr>"
-        lines.append(f"<thead>{line}</thead>" if first else line)
-    return f'<div class="scroll"><table class="{kind}">{"".join(lines)}</table></div>'
+    names = ("", "", "") if kind == "origin" else ("", "number", "meaning" if kind == "numbers" else "number")
+    head = [cell(escape(word), tag="th") for word in rows[0]] if heads else []
+    body = [[cell(escape(word), names[min(place, 2)], "td" if place else "th") for place, word in enumerate(row)]
+            for row in rows[bool(heads):]]
+    return f'<div class="scroll">{table(head, body, kind)}</div>'
 
 
 def list_of(lines: Sequence[str]) -> str:
     """A list of sentences."""
-    return "<ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in lines) + "</ul>"
+    return "<ul>" + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul>"
 
 
 def figures_of(found: Assessment) -> list[str]:
@@ -115,7 +109,7 @@ def single(found: Assessment, origin: Sequence[tuple[str, str]]) -> str:
         ("Load cases", table_of(cases_of(found), "cases", True)),
         *(("", pair) for pair in pairs[1:]),
         ("Assumptions", list_of(assumptions_of(found))),
-        ("Input", f"<pre>{html.escape(found.text)}</pre>"),
+        ("Input", f"<pre>{escape(found.text)}</pre>"),
         ("Origin", table_of(origin, "origin")),
     ]
     return page(found.title, [(sentence, falls)], sections)
@@ -140,7 +134,7 @@ def comparison(all_found: Sequence[Assessment], origin: Sequence[tuple[str, str]
         shown = [figures[0], figures[-1]] if len(figures) > 1 else figures
         sections.append((found.title, f'<div class="pair">{"".join(shown)}</div>' + (list_of(own) if own else "")))
     texts = "".join(
-        f"<h3>{html.escape(found.deck.name)}</h3><pre>{html.escape(found.text)}</pre>" for found in all_found)
+        f"<h3>{escape(found.deck.name)}</h3><pre>{escape(found.text)}</pre>" for found in all_found)
     sections += [("Input", texts), ("Origin", table_of(origin, "origin"))]
     verdicts = [(f"{found.title}: {verdict_of(found)[0]}", verdict_of(found)[1]) for found in all_found]
     return page(f"Comparison of {len(all_found)} arches", verdicts, sections)
@@ -149,12 +143,7 @@ def comparison(all_found: Sequence[Assessment], origin: Sequence[tuple[str, str]
 def page(title: str, verdicts: Sequence[tuple[str, bool]], parts: Sequence[tuple[str, str]]) -> str:
     """The whole page; a verdict is marked where it is a bad one."""
     body = "".join(
-        f"<section>{f'<h2>{html.escape(name)}</h2>' if name else ''}{text}</section>" for name, text in parts)
+        f"<section>{f'<h2>{escape(name)}</h2>' if name else ''}{text}</section>" for name, text in parts)
     said = "".join(
-        f'<p class="verdict{" falls" if falls else ""}">{html.escape(words)}</p>' for words, falls in verdicts)
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{html.escape(title)}</title><style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>"
-        f"{said}{body}</body></html>\n"
-    )
+        f'<p class="verdict{" falls" if falls else ""}">{escape(words)}</p>' for words, falls in verdicts)
+    return document(title, STYLE, f"<h1>{escape(title)}</h1>{said}{body}")
