@@ -278,7 +278,7 @@ contains
       if (number%known) text = rounded(number%value, width)
    end function shown_number
 
-   !> Digits of the critical value of a search, one more than its bracket tells
+   !> Number of digits of the critical value of a search: one more than its bracket determines
    pure integer function known_digits(row)
       type(result_row_t), intent(in) :: row
       real(wp) :: half

@@ -87,7 +87,7 @@ contains
       end do
    end subroutine check_varied
 
-   !> Whether axle loads are those of a whole vehicle [N], not yet per metre of depth
+   !> True if axle loads are those of a whole vehicle [N], not yet per metre of depth
    pure logical function is_converted(deck)
       type(deck_t), intent(in) :: deck
 
