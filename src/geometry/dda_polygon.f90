@@ -15,8 +15,6 @@ module dda_polygon
 
    !> Tangent of the angle below which a corner counts as straight
    real(wp), parameter :: flat = 1.0e-9_wp
-   !> Number of edges up to which all pairs of edges are compared
-   integer, parameter :: few_edges = 16
 
 contains
 
@@ -233,11 +231,7 @@ contains
       next = cshift(vertex, 1, dim=2)
       edge = 0
       point = 0.0_wp
-      if (n > few_edges) then
-         call box_pairs(min(vertex, next), max(vertex, next), [(i, i=1, n)], pair)
-      else
-         pair = reshape([((i, k, k=i + 1, n), i=1, n)], [2, n*(n - 1)/2])
-      end if
+      call box_pairs(min(vertex, next), max(vertex, next), [(i, i=1, n)], pair)
       do k = 1, size(pair, 2)
          associate (i1 => pair(1, k), i2 => pair(2, k))
             if (i2 == i1 + 1 .or. i1 == 1 .and. i2 == n) cycle
