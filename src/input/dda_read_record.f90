@@ -10,7 +10,7 @@ module dda_read_record
    implicit none
    private
 
-   public :: read_record, parse_record, column_size, separator_of, field_of, n_columns
+   public :: read_record, parse_record, column_size, separator_of, field_of, find_line, n_columns
 
    !> Maximum length of a column name [characters]
    integer, parameter :: column_size = 80
@@ -51,7 +51,7 @@ contains
       real(wp), intent(in) :: scale
       real(wp), allocatable, intent(out) :: row(:, :)
       type(error_t), allocatable, intent(out) :: error
-      integer :: place(3), start, finish, number, n, header(2)
+      integer :: place(3), start, first, last, number, n, header(2)
 
       allocate (row(3, 64))
       header = [1, 0]
@@ -59,14 +59,12 @@ contains
       number = 0
       start = 1
       do while (start <= len(text))
-         finish = start + index(text(start:), achar(10)) - 2
-         if (finish < start - 1) finish = len(text)
-         number = number + 1
-         associate (line => text(start:finish))
+         call find_line(text, start, first, last, number)
+         associate (line => text(first:last))
             if (is_blank(line)) then
                continue
             else if (n == 0 .and. .not. begins_with_number(line)) then
-               header = [start, finish]
+               header = [first, last]
             else
                if (n == 0) call find_columns(text(header(1):header(2)), column, place, error)
                if (allocated(error)) exit
@@ -77,7 +75,6 @@ contains
                if (allocated(error)) exit
             end if
          end associate
-         start = finish + 2
       end do
       row = row(:, :n)
       if (n < 2 .and. .not. allocated(error)) call fatal_error(error, "expected at least two " &
@@ -85,6 +82,21 @@ contains
          & //"decimals, got "//to_text(n)//last_row(text, header, n))
       call place_error(error, max(1, number))
    end subroutine parse_record
+
+   !> Find the next line of a text, and go on behind it
+   pure subroutine find_line(text, start, first, last, number)
+      character(len=*), intent(in) :: text
+      integer, intent(inout) :: start   !! Where the line begins in, where the next one begins out
+      integer, intent(out) :: first     !! First character of the line
+      integer, intent(out) :: last      !! Last character, without the line feed
+      integer, intent(inout) :: number  !! Number of the line before in, of this line out
+
+      first = start
+      last = start + index(text(start:), achar(10)) - 2
+      if (last < first - 1) last = len(text)
+      start = last + 2
+      number = number + 1
+   end subroutine find_line
 
    !> Words about the last line of the header, if the file has nothing else
    pure function last_row(text, header, n) result(words)

@@ -12,7 +12,7 @@ module dda_vehicle_list
       & vehicle_track_width, vehicle_wheel_width
    use dda_key_value, only : deck_place_t
    use dda_kinds, only : wp
-   use dda_read_record, only : field_of, n_columns, separator_of
+   use dda_read_record, only : field_of, find_line, n_columns, separator_of
    use dda_text, only : lower_case, read_number, short_text, to_text
    use dda_text_file, only : read_text_file, text_mark
    implicit none
@@ -130,18 +130,15 @@ contains
       !> Bad input, with file and line, or a name that the list does not have
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: header, line, names
-      integer :: finish, number, start
+      integer :: first, last, number, start
 
       header = ""
       names = ""
       number = 0
       start = 1
       do while (start <= len(text))
-         finish = start + index(text(start:), achar(10)) - 2
-         if (finish < start - 1) finish = len(text)
-         number = number + 1
-         line = text(start:finish)
-         start = finish + 2
+         call find_line(text, start, first, last, number)
+         line = text(first:last)
          if (line == "") cycle
          if (header == "") then
             header = line
