@@ -139,6 +139,7 @@ contains
       call move_alloc(from%springs%shift, to%springs%shift)
       call move_alloc(from%search%near%pair, to%search%near%pair)
       call move_alloc(from%search%near%vertex, to%search%near%vertex)
+      call move_alloc(from%near_miss, to%near_miss)
    end subroutine move_large
 
    !> Joints of the coinciding pairs of edges in the reference shape, closed and free of force
