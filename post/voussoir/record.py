@@ -1,4 +1,4 @@
-"""What a deck says, as `dda` writes it: deck.record, and the list of all keys."""
+"""Values of a deck as `dda` writes them (deck.record), and the list of all keys."""
 
 from __future__ import annotations
 

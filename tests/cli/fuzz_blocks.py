@@ -104,7 +104,7 @@ def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
 
 
 def complaint(status: int | None, lines: list[str], folder: Path) -> str:
-    """What the outcome of a call breaks, empty if all is well; a hang has no status."""
+    """Broken rule of a call, empty if none; a call that hangs has no status."""
     if status not in (0, 2, 3):
         return "hang" if status is None else f"status {status}: " + " | ".join(lines[-5:])
     errors = 0

@@ -118,7 +118,7 @@ def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
 
 
 def complaint(status: int | None, lines: list[str], files: list[Path]) -> tuple[str, int]:
-    """What the outcome of a call breaks, empty if nothing, and how many files were refused; a hang has no status."""
+    """Broken rule of a call, empty if none, and the number of refused files; a call that hangs has no status."""
     if status is None:
         return "hang", 0
     if status not in (0, 2):

@@ -12,7 +12,7 @@ PAPER = Path(__file__).parents[2] / "input" / "paper"
 
 
 def check(folder: Path, text: str, *options: str) -> str:
-    """What dda check prints about a good deck, blanks and line ends turned into single blanks."""
+    """Output of dda check for a valid deck, with blanks and line ends as single blanks."""
     (folder / "deck.nml").write_text(text)
     done = run_dda("check", "deck.nml", *options, cwd=folder)
     assert done.returncode == 0, done.stderr

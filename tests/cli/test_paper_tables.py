@@ -28,7 +28,7 @@ Key = tuple[str, float, int, float]
 
 
 def key_of(table: str, row: Row) -> Key:
-    """What tells an arch from the others: table, half angle, blocks, imposed joint (0 where there is none)."""
+    """Identity of an arch: table, half angle, blocks, imposed joint (0 where there is none)."""
     half_angle = float(row.get("alpha_deg") or row["half_angle_deg"])
     imposed = float(row.get("beta_imposed_deg") or row.get("joints_deg(2)") or 0.0)
     return table, half_angle, int(row["blocks"]), imposed

@@ -110,7 +110,7 @@ def test_values_of_any_size_are_shown_with_their_digits(tmp_path: Path, cohesion
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
 def test_a_critical_value_has_the_digits_of_its_bracket(tmp_path: Path, tolerance: float) -> None:
-    """One more than half of the bracket tells: 62.3046875 was printed for 62.0 to 62.6."""
+    """A bracket from 62.0 to 62.6 determines three digits: 62.3, not 62.3046875."""
     spread = (
         "&arch shape = 'segmental', span = 6, rise = 1.5, thickness = 0.45, voussoirs = 9 /\n"
         "&support right_dx = 0.01 /\n&analysis geometry = 'current' /\n"

@@ -240,7 +240,7 @@ class Results:
 
     @cached_property
     def record(self) -> Record:
-        """What the deck asks for: deck.record."""
+        """Values of the keys of the deck, from deck.record."""
         return read_record(self.folder)
 
     def setting(self, name: str) -> str | None:
