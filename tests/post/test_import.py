@@ -176,7 +176,7 @@ def test_import_runs_draws_and_says_what_is_missing(tmp_path: Path, capfd) -> No
     assert main(words) == 2  # nothing holds it
     assert "no block is fixed" in capfd.readouterr().out
     assert main(["import", str(file), "--out", str(deck), "--hold", "3"]) == 2
-    assert "expected numbers of blocks from 1 to 2 to hold, got 3" in capfd.readouterr().err
+    assert "expected numbers of blocks from 1 to 2 for --hold, got 3" in capfd.readouterr().err
     pytest.importorskip("matplotlib")
     assert main([*words, "--hold", "1"]) == 0
     printed = capfd.readouterr().out
