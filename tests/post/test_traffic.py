@@ -22,37 +22,29 @@ FILL = "&fill height = 0.4, unit_weight = 18e3 /\n"
 LORRY = Vehicle("lorry", (40e3, 90e3), (2.1,), 1.8, 0.3, 0.3)
 
 
-def deck_of(folder: Path, text: str) -> Path:
+def deck_of(folder: Path, text: str, name: str = "bridge.nml") -> Path:
     """A deck."""
-    file = folder / "bridge.nml"
+    file = folder / name
     file.write_text(text)
     return file
 
 
-@pytest.mark.parametrize(
-    ("depth", "spread", "width"),
-    [
-        (0.0, 0.5, 0.6),  # two wheels of 0.3 m
-        (0.5, 0.5, 1.6),  # two strips of 0.8 m each
-        (1.5, 0.5, 3.6),  # strips of 1.8 m meet at the track of 1.8 m
-        (3.0, 0.5, 5.1),  # and overlap: 0.3 + 3.0 + 1.8
-        (1.0, 0.0, 0.6),
-        (1.0, 1.0, 4.1),
-    ],
-)
-def test_wheels_spread_to_either_side_until_they_overlap(depth: float, spread: float, width: float) -> None:
-    assert LORRY.width(depth, spread) == pytest.approx(width, abs=1e-12)
-    assert LORRY.width(depth, spread, barrel=1.0) == min(pytest.approx(width, abs=1e-12).expected, 1.0)
+def test_the_strip_of_the_standard_is_its_formula(tmp_path: Path) -> None:
+    decks = [deck_of(tmp_path, ARCH), deck_of(tmp_path, ARCH + FILL, "filled.nml")]
+    assert [pass_over(deck, LORRY, "cs454").width for deck in decks] == pytest.approx([1.5, 1.9])
 
 
-def test_the_strip_of_the_standard_is_its_formula() -> None:
-    assert [LORRY.width(depth, 0.5, "cs454") for depth in (0.0, 0.6)] == pytest.approx([1.5, 2.1])
+@pytest.mark.parametrize(("barrel", "width"), [(1.0, 1.0), (1.4, 1.4), (2.0, 1.4)])
+def test_the_barrel_limits_the_width_of_the_rule(tmp_path: Path, barrel: float, width: float) -> None:
+    """Two strips of 0.3 + 2 0.5 0.4 m carry the wheels; both rules are limited."""
+    deck = deck_of(tmp_path, ARCH + FILL)
+    assert pass_over(deck, LORRY, barrel=barrel, both=False).width == pytest.approx(width, rel=1e-12)
+    assert pass_over(deck, LORRY, "cs454", barrel=barrel, both=False).width == pytest.approx(min(1.9, barrel))
 
 
-def test_convoys_are_vehicles_in_a_row() -> None:
-    three = LORRY.convoy(3, 5.0)
-    assert three.axles == (40e3, 90e3) * 3 and three.spacings == (2.1, 5.0, 2.1, 5.0, 2.1)
-    assert LORRY.convoy(1, 5.0).name == "lorry" and three.name == "3 x lorry, 5 m apart"
+def test_a_convoy_is_named_and_weighs_what_its_vehicles_do(tmp_path: Path) -> None:
+    three = pass_over(deck_of(tmp_path, ARCH), LORRY, both=False, count=3, gap=5.0)
+    assert three.name == "3 x lorry, 5 m apart" and three.weight == 390e3
 
 
 def test_load_factors_are_proportional_to_the_width(tmp_path: Path) -> None:
@@ -80,16 +72,15 @@ def brute_force(axles: tuple[float, ...], spacings: tuple[float, ...], width: fl
 def test_no_position_in_either_direction_is_worse_than_the_worst(tmp_path: Path, count: int) -> None:
     """Equal to the least of all positions both ways to 1e-6."""
     deck = deck_of(tmp_path, ARCH + FILL + "&vehicle axles = 1, position = 0 /\n&search parameter = 'load_factor' /\n")
-    worst, tried = worst_convoy(deck, LORRY, count, (1.5,))
-    vehicle, place = tried[0].vehicle, worst.found.place
-    mirrored = -place - sum(vehicle.spacings)
+    worst, _ = worst_convoy(deck, LORRY, count, (1.5,))
+    axles, spacings, place = LORRY.axles * count, (2.1, 1.5, 2.1)[:2 * count - 1], worst.found.place
+    mirrored = -place - sum(spacings)
     ways = [
-        brute_force(axles, spacings, worst.width, near)
-        for axles, spacings in ((vehicle.axles, vehicle.spacings), (vehicle.axles[::-1], vehicle.spacings[::-1]))
+        brute_force(*way, worst.width, near) for way in ((axles, spacings), (axles[::-1], spacings[::-1]))
         for near in (place, mirrored)]
     assert worst.factor == pytest.approx(min(ways), rel=1e-6)
-    turned = Vehicle("turned", vehicle.axles[::-1], vehicle.spacings[::-1], 1.8, 0.3, 0.3)
-    one_way = [pass_over(deck, each, both=False).factor for each in (vehicle, turned)]
+    turned = Vehicle("turned", LORRY.axles[::-1], LORRY.spacings[::-1], 1.8, 0.3, 0.3)
+    one_way = [pass_over(deck, each, both=False, count=count, gap=1.5).factor for each in (LORRY, turned)]
     assert (worst.factor, worst.opposite) == pytest.approx(tuple(sorted(one_way)), rel=1e-8)
 
 
@@ -155,7 +146,8 @@ def test_given_widths_and_lists_are_used(tmp_path: Path, capsys) -> None:
              str(tmp_path / "out")]
     assert main(words) == 0
     assert "effective width: 2 m, given" in capsys.readouterr().out
-    assert "axles = 6000.0, 4000.0" in (tmp_path / "out" / "cart.nml").read_text()
+    written = (tmp_path / "out" / "cart.nml").read_text()
+    assert "axles = 12000.0, 8000.0" in written and "effective_width = 2.0" in written
     assert main([*words, "--vehicle", "waggon"]) == 2
     assert "expected a vehicle of" in capsys.readouterr().err
 

@@ -104,14 +104,14 @@ def row_of(passage: Passage) -> tuple[str, ...]:
     from voussoir.plot.units import digits
 
     row = passage.found.factor or {}
-    total = sum(passage.vehicle.axles) / 1e3
+    total = passage.weight / 1e3
     words = {math.inf: "unlimited", 0.0: "0"}
     factor, other = (words.get(value, digits(value)) for value in (passage.factor, passage.opposite))
     if math.isnan(passage.factor):
         factor = str(row.get("verdict", "none"))
     place = passage.found.place
     return (
-        passage.vehicle.name, digits(total), digits(passage.width), digits(total / passage.width), factor,
+        passage.name, digits(total), digits(passage.width), digits(total / passage.width), factor,
         "-" if math.isnan(place) else digits(place), str(row.get("worst_direction", "")) or "-",
         "-" if math.isnan(passage.opposite) else other)
 
@@ -119,8 +119,8 @@ def row_of(passage: Passage) -> tuple[str, ...]:
 def csv_of(passage: Passage) -> str:
     """A row of traffic.csv, with all digits."""
     row = passage.found.factor or {}
-    total = sum(passage.vehicle.axles) / 1e3
-    name = f'"{passage.vehicle.name}"' if "," in passage.vehicle.name else passage.vehicle.name
+    total = passage.weight / 1e3
+    name = f'"{passage.name}"' if "," in passage.name else passage.name
     numbers = [total, passage.width, total / passage.width, passage.factor]
     cells = ["" if math.isnan(number) else repr(number) for number in numbers]
     place = "" if math.isnan(passage.found.place) else repr(float(passage.found.place))

@@ -1,4 +1,4 @@
-"""Vehicles of a list on an arch: axle loads per metre of depth by an effective width, convoys, the worst position."""
+"""Vehicles of a list on an arch: convoys, effective widths and the worst position, computed by `dda`."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from voussoir.deck.assessment import Assessment, Row, assess, without
 from voussoir.deck.run import run as run_deck
@@ -16,8 +17,8 @@ from voussoir.files import read_text
 
 #: Columns of a list of vehicles; the others may be missing
 NEEDED = ("name", "axles_kN", "spacings_m")
-#: Track, width and length of a wheel that a list leaves out [m]
-USUAL = {"track_m": 1.8, "wheel_width_m": 0.3, "length_m": 0.3}
+#: Columns that a list may leave out, and the keys whose defaults hold then [m]
+SIZES = {"track_m": "vehicle%track_width", "wheel_width_m": "vehicle%wheel_width", "length_m": "vehicle%length"}
 #: Rules of the effective width w [m]: t is the track, b the width of a wheel, s the spread, h the depth of fill
 RULES = {
     "wheels": "w = b + 2 s h + min(t, b + 2 s h): both wheels spread by s of the depth h of fill to either side",
@@ -49,27 +50,13 @@ class Vehicle:
     length: float
     source: str = ""
 
-    def convoy(self, count: int, gap: float) -> Vehicle:
-        """So many of these one behind the other, their last and first axles a distance apart [m]."""
-        spacings = self.spacings
-        for _ in range(count - 1):
-            spacings = (*spacings, gap, *self.spacings)
-        name = self.name if count == 1 else f"{count} x {self.name}, {gap:g} m apart"
-        return Vehicle(name, self.axles * count, spacings, self.track, self.wheel, self.length, self.source)
-
-    def width(self, depth: float, spread: float, rule: str = "wheels", barrel: float = math.inf) -> float:
-        """Effective width by a rule, at most that of the barrel [m].
-
-        Examples
-        --------
-        >>> axle = Vehicle("axle", (1e5,), (), 1.8, 0.3, 0.3)
-        >>> round(axle.width(0.5, 0.5), 3), round(axle.width(2.0, 0.5), 3), axle.width(0.5, 0.5, "cs454")
-        (1.6, 4.1, 2.0)
-        """
-        if rule == "cs454":
-            return min(1.5 + depth, barrel)
-        wheel = self.wheel + 2.0 * spread * depth
-        return min(wheel + min(self.track, wheel), barrel)
+    def keys(self, count: int, gap: float) -> dict[str, Any]:
+        """Keys of &vehicle for some of these one behind the other, their last and first axles a gap apart [m]."""
+        keys: dict[str, Any] = {
+            "axles": list(self.axles), "length": self.length, "track_width": self.track, "wheel_width": self.wheel}
+        if self.spacings:
+            keys["spacings"] = list(self.spacings)
+        return keys | ({"convoy": count, "convoy_gap": gap} if count > 1 else {})
 
 
 @dataclass(frozen=True)
@@ -78,8 +65,10 @@ class Passage:
 
     Attributes
     ----------
-    vehicle : Vehicle
-        The vehicle.
+    name : str
+        Name of the vehicle, or of the convoy.
+    weight : float
+        Sum of its axle loads [N].
     width : float
         Effective width [m].
     text : str
@@ -90,7 +79,8 @@ class Passage:
         Least load factor of the better direction of travel, NaN where only one is tried.
     """
 
-    vehicle: Vehicle
+    name: str
+    weight: float
     width: float
     text: str
     found: Assessment
@@ -112,7 +102,7 @@ def factor_of(row: Row) -> float:
 
 def read_vehicles(file: Path) -> dict[str, Vehicle]:
     """Vehicles of a list by their names; ValueError with file and line where it is none."""
-    lines = read_text(file).splitlines()
+    lines, usual = read_text(file).splitlines(), defaults(find_dda())
     rows = csv.DictReader(lines)
     lost = [name for name in NEEDED if name not in (rows.fieldnames or [])]
     if lost:
@@ -128,11 +118,11 @@ def read_vehicles(file: Path) -> dict[str, Vehicle]:
             raise ValueError(
                 f"{place}expected one spacing fewer than axles, got {len(axles)} axles and {len(spacings)} spacings")
         sizes = []
-        for key, usual in USUAL.items():
+        for key, name_in_deck in SIZES.items():
             given = _numbers(place, key, row.get(key) or "")
             if len(given) > 1:
                 raise ValueError(f"{place}expected one number as {key}, got {len(given)}")
-            sizes.append(given[0] if given else usual)
+            sizes.append(given[0] if given else float(usual[name_in_deck]))
         weights = tuple(1e3 * axle for axle in axles)
         source = (row.get("source") or "").strip()
         vehicles[name] = Vehicle(name, weights, spacings, sizes[0], sizes[1], sizes[2], source)
@@ -162,7 +152,7 @@ def _numbers(place: str, key: str, words: str | None) -> tuple[float, ...]:
 
 def pass_over(
     deck: Path, vehicle: Vehicle, rule: str = "wheels", width: float | None = None, barrel: float = math.inf,
-    both: bool = True
+    both: bool = True, count: int = 1, gap: float = 5.0
 ) -> Passage:
     """Search the worst position of a vehicle on the arch of a deck, and its factors along the road.
 
@@ -177,40 +167,46 @@ def pass_over(
     width, barrel : float, optional
         The effective width, if no rule gives it, and the width of the barrel that limits that of a rule [m].
     both : bool, optional
-        Whether both directions of travel are tried.
+        True to try both directions of travel.
+    count, gap : int and float, optional
+        Number of vehicles in a convoy, and the distance of their last and first axles [m].
     """
-    text = without(read_text(deck), "vehicle", "search")
-    bare = run_deck(text)
-    given, usual = bare.setting("fill%height"), defaults(find_dda())
-    depth = float(given) if given else 0.0
-    spread = float(bare.setting("fill%spread") or usual.get("fill%spread") or 0.5) if given else 0.0
-    effective = width if width is not None else vehicle.width(depth, spread, rule, barrel)
-    keys: dict[str, object] = {
-        "axles": [weight / effective for weight in vehicle.axles], "length": vehicle.length, "worst": True,
-        "both_directions": both}
-    if vehicle.spacings:
-        keys["spacings"] = list(vehicle.spacings)
-    bare_text = f"{text.rstrip()}\n"
-    text = f"{bare_text}! {vehicle.name}: loads over an effective width of {effective:.6g} m\n"
-    text += deck_text({"vehicle": keys})
+    bare = f"{without(read_text(deck), 'vehicle', 'search').rstrip()}\n"
+    name = vehicle.name if count == 1 else f"{count} x {vehicle.name}, {gap:g} m apart"
+    keys = vehicle.keys(count, gap)
+    if width is None:
+        width = _limited_width(bare, keys, rule, barrel)
+    if width is not None:
+        keys["effective_width"] = width
+    text = f"{bare}! {name}\n{deck_text({'vehicle': keys | {'worst': True, 'both_directions': both}})}"
     found = assess(text, deck, full=False)
-    passage = Passage(vehicle, effective, text, found)
+    assert found.found is not None
+    effective = float(found.found.setting("vehicle%effective_width") or "nan")
+    passage = Passage(name, count * sum(vehicle.axles), effective, text, found)
     if not both:
         return passage
     if (vehicle.axles, vehicle.spacings) == (vehicle.axles[::-1], vehicle.spacings[::-1]):
         return replace(passage, opposite=passage.factor)
-    backward = (found.factor or {}).get("worst_direction") == "backward"
-    other = keys | {"both_directions": False}
-    for name in () if backward else ("axles", "spacings"):
-        other[name] = other[name][::-1]  # type: ignore[index]
-    row = run_deck(bare_text + deck_text({"vehicle": other, "search": {"parameter": "load_factor"}})).case(1)
-    return replace(passage, opposite=factor_of(row))
+    if (found.factor or {}).get("worst_direction") != "backward":
+        keys |= replace(vehicle, axles=vehicle.axles[::-1], spacings=vehicle.spacings[::-1]).keys(count, gap)
+    other = {"vehicle": keys | {"worst": True, "both_directions": False}, "search": {"parameter": "load_factor"}}
+    return replace(passage, opposite=factor_of(run_deck(bare + deck_text(other)).case(1)))
+
+
+def _limited_width(bare: str, keys: dict[str, Any], rule: str, barrel: float) -> float | None:
+    """Effective width [m] that a deck has to give: None where that by the rule of `dda` is within the barrel."""
+    if rule == "cs454":
+        return min(1.5 + float(run_deck(bare).setting("fill%height") or 0.0), barrel)
+    if math.isinf(barrel):
+        return None
+    run = run_deck(bare + deck_text({"vehicle": keys | {"position": 0.0}}))
+    return barrel if float(run.setting("vehicle%effective_width") or "nan") > barrel else None
 
 
 def worst_convoy(
     deck: Path, vehicle: Vehicle, count: int, gaps: Sequence[float], **options: object
 ) -> tuple[Passage, list[Passage]]:
     """The passage of least factor over some gaps of a convoy, and all of them."""
-    tried = [vehicle.convoy(count, gap) for gap in (gaps if count > 1 else gaps[:1])]
-    passages = [pass_over(deck, each, **options) for each in tried]  # type: ignore[arg-type]
+    tried = gaps if count > 1 else gaps[:1]
+    passages = [pass_over(deck, vehicle, count=count, gap=gap, **options) for gap in tried]  # type: ignore[arg-type]
     return min(passages, key=lambda one: math.inf if math.isnan(one.factor) else one.factor), passages
