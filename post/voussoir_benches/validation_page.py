@@ -117,9 +117,10 @@ def _plot(lines: Sequence[Line]) -> str:
     known = [line for line in lines if not isinstance(line.check.exact, str) and not isinstance(line.computed, str)]
     units = [re.search(r"\[.*\]$", line.check.what) for line in known]
     unit = units[0][0] if units and units[0] else ""
-    pairs = [(line.check.exact, line.computed) for line, own in zip(known, units) if unit == (own[0] if own else "")]
-    if pairs and has_diagonal([exact for exact, _ in pairs]):
-        return diagonal(*zip(*pairs), unit)
+    same = [line for line, own in zip(known, units) if unit == (own[0] if own else "")]
+    exact, computed = [float(line.check.exact) for line in same], [float(line.computed) for line in same]
+    if same and has_diagonal(exact):
+        return diagonal(exact, computed, unit)
     return ""
 
 

@@ -79,7 +79,7 @@ class Page:
     ) -> None:
         """Add a table, of words rather than numbers where said; headings may hold HTML."""
         heads = [f'<th scope="col">{word}</th>' for word in head]
-        body = table(heads, (map(cell, row) for row in rows), "words" if words else "")
+        body = table(heads, ([cell(word) for word in row] for row in rows), "words" if words else "")
         named = f' id="{anchor}"' if anchor else ""
         self._body.append(
             f'<div class="table"{named}><p class="caption">{caption}</p>'

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
+from html import escape
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from voussoir.files import read_text
 from voussoir_paper import findings, tables
 from voussoir_paper.campaign import FIGURES, TOGETHER, Campaign, Timing
 from voussoir_paper.contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS, caption
-from voussoir_paper.page import Page, escape
+from voussoir_paper.page import Page
 from voussoir_paper.tables import THEORIES, PaperTable, Row, percent, thickness
 
 #: Stands where the time goes that making the page itself has taken

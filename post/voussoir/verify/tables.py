@@ -70,9 +70,9 @@ def check_joints(
         if math.isfinite(friction):
             beyond = max(beyond, (abs(shear) - friction * normal) / max(1.0, friction))
         finding.keep("friction law (joints.csv)", beyond / largest, WRITTEN if bars is not None else FALLING)
-        for force, place in _forces(row, joint, order, way, at, vector):
-            push(left, scene.blocks[second - 1], place, force)
-            push(left, scene.blocks[first - 1], place, -force)
+        for share, place in _forces(row, joint, order, way, at, vector):
+            push(left, scene.blocks[second - 1], place, share)
+            push(left, scene.blocks[first - 1], place, -share)
         for number in (first, second):
             allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding[number - 1]
     if bars is None:
