@@ -101,30 +101,32 @@ contains
       end do
    end subroutine add_reaction
 
-   !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
-   !> moment of a shallow arch, seen from afar, would lose its digits
-   pure subroutine carry_forces(chain, reaction, force, magnitude)
+   !> Resultants of all joints, each from that of its neighbour by the balance of the block between:
+   !> the moment of a shallow arch, seen from afar, would lose its digits, and the normal force of a
+   !> thin one as the sum of those at its corners
+   pure subroutine carry_forces(chain, reaction, resultant, magnitude)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: reaction(3)
-      !> The forces N1, N2, T: (3, n + 1) [N/m]
-      real(wp), intent(out) :: force(3, size(chain%joint))
-      !> Largest force of a corner by one component of the thrust alone: the rounding of coordinates
-      !> changes forces by a share of it [N/m]
-      real(wp), intent(out) :: magnitude
+      !> Normal force, moment over half the joint, and shear force: (3, n + 1) [N/m]
+      real(wp), intent(out) :: resultant(3, size(chain%joint))
+      !> Largest force of a corner by one component of the thrust alone, and the largest thrust: the
+      !> rounding of coordinates changes forces of corners by a share of the first, normal and shear
+      !> forces by one of the second: (2) [N/m]
+      real(wp), intent(out) :: magnitude(2)
 
-      call carry_on(chain%halved, size(chain%block), chain%block, chain%joint, reaction, force, &
+      call carry_on(chain%halved, size(chain%block), chain%block, chain%joint, reaction, resultant, &
          & magnitude)
    end subroutine carry_forces
 
    !> The same of arrays of known shapes
-   pure subroutine carry_on(halved, n, block, joint, reaction, force, magnitude)
+   pure subroutine carry_on(halved, n, block, joint, reaction, resultant, magnitude)
       logical, intent(in) :: halved  !! Whether the first joint is the last one
       integer, intent(in) :: n       !! Number of blocks
       type(chain_block_t), intent(in) :: block(n)      !! The blocks
       type(chain_joint_t), intent(in) :: joint(n + 1)  !! The joints
       real(wp), intent(in) :: reaction(3)
-      real(wp), intent(out) :: force(3, n + 1)         !! The forces: (3, n + 1) [N/m]
-      real(wp), intent(out) :: magnitude
+      real(wp), intent(out) :: resultant(3, n + 1)     !! The resultants: (3, n + 1) [N/m]
+      real(wp), intent(out) :: magnitude(2)            !! As above: (2) [N/m]
       real(wp) :: s(2), normal, along, moment, per_half
       integer :: ahead, i, j, side
 
@@ -145,11 +147,10 @@ contains
          if (i > 0) moment = moment - joint(j)%arm(1, 3 - side)*normal &
             & - joint(j)%arm(2, 3 - side)*along
          per_half = 1.0_wp/joint(j)%half
-         force(1, j) = (normal + moment*per_half)/2.0_wp
-         force(2, j) = (normal - moment*per_half)/2.0_wp
-         force(3, j) = along
-         magnitude = max(magnitude, (abs(s(1)*joint(j)%middle(2)) + abs(s(2)*joint(j)%middle(1))) &
-            & *per_half + abs(normal))
+         resultant(:, j) = [normal, moment*per_half, along]
+         magnitude(1) = max(magnitude(1), (abs(s(1)*joint(j)%middle(2)) &
+            & + abs(s(2)*joint(j)%middle(1)))*per_half + abs(normal))
+         magnitude(2) = max(magnitude(2), abs(s(1)) + abs(s(2)))
       end do
    end subroutine carry_on
 end module dda_chain_balance

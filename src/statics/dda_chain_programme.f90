@@ -76,28 +76,46 @@ contains
       !> The forces N1, N2, T at the solution: (3, n + 1) [N/m]
       real(wp), intent(out), optional :: force(3, size(chain%joint))
       type(tableau_t) :: tableau
-      real(wp) :: carried(3, size(chain%joint)), change(4), magnitude
+      real(wp) :: resultant(3, size(chain%joint)), change(4), magnitude(2)
       logical :: found
-      integer :: estimate
+      integer :: estimate, r
 
       deficit%known = .false.
       deficit%exchanges = 0
       call begin(chain, deficit, tableau)
       if (.not. tableau%usable) return
       do estimate = 1, max_estimates
-         call carry_forces(chain, deficit%reaction, carried, magnitude)
-         call descend(chain, carried, rounding*magnitude, deficit, tableau, change, found)
+         call carry_forces(chain, deficit%reaction, resultant, magnitude)
+         call descend(chain, resultant, rounding*magnitude, deficit, tableau, change, found)
          if (.not. found) return
          deficit%reaction = deficit%reaction + change(:3)
-         if (sum(tableau%scale*abs(change(:3))) <= far_off*magnitude) exit
+         if (sum(tableau%scale*abs(change(:3))) <= far_off*magnitude(2)) exit
       end do
       deficit%least = change(4)
-      deficit%noise = rounding*magnitude
       deficit%share = tableau%inverse(4, :)
+      deficit%noise = noise_of(chain, deficit, rounding*magnitude)
       deficit%known = .not. deficit%least > 0.0_wp &
          & .or. .not. any(deficit%joint == 0 .and. deficit%share > no_share)
-      if (present(force)) call add_reaction(chain, change(:3), carried, force)
+      if (.not. present(force)) return
+      resultant(:2, :) = reshape([(resultant(1, r) + resultant(2, r), &
+         & resultant(1, r) - resultant(2, r), r=1, size(force, 2))], [2, size(force, 2)])/2.0_wp
+      call add_reaction(chain, change(:3), resultant, force)
    end subroutine find_deficit
+
+   !> Rounding error of the deficit: those of its bounds by their multipliers
+   pure real(wp) function noise_of(chain, deficit, noise) result(total)
+      type(chain_t), intent(in) :: chain
+      type(deficit_t), intent(in) :: deficit
+      real(wp), intent(in) :: noise(2)  !! Those of corners and of resultants: (2) [N/m]
+      integer :: r
+
+      total = 0.0_wp
+      do r = 1, 4
+         if (deficit%joint(r) == 0) cycle
+         total = total + deficit%share(r)*merge(noise(1), &
+            & (1.0_wp + chain%joint(deficit%joint(r))%friction)*noise(2), deficit%bound(r) <= 2)
+      end do
+   end function noise_of
 
    !> Openings and slips of the mechanism, the largest 1, and the faces of the joints
    pure subroutine mechanism_of_bounds(chain, deficit, face, opening, power)
@@ -173,11 +191,12 @@ contains
    end subroutine set_row
 
    !> Exchange bounds until none is broken
-   pure subroutine descend(chain, force, noise, deficit, tableau, place, found)
+   pure subroutine descend(chain, resultant, noise, deficit, tableau, place, found)
       type(chain_t), intent(in) :: chain
-      !> Forces of the estimate: (3, n + 1) [N/m]
-      real(wp), intent(in) :: force(3, size(chain%joint))
-      real(wp), intent(in) :: noise  !! Their rounding error [N/m]
+      !> Normal force, moment over half the joint and shear force by the estimate: (3, n + 1) [N/m]
+      real(wp), intent(in) :: resultant(3, size(chain%joint))
+      !> Rounding errors of corners and of normal and shear forces: (2) [N/m]
+      real(wp), intent(in) :: noise(2)
       type(deficit_t), intent(inout) :: deficit
       type(tableau_t), intent(inout) :: tableau
       real(wp), intent(out) :: place(4)  !! Change of the unknowns, and s: (4)
@@ -189,12 +208,12 @@ contains
       ! a plane of symmetry is smooth, and one through a block does not open
       n = size(chain%joint)
       do r = 1, 4
-         tableau%value(r) = value_of(chain, force, deficit, r, tableau%scale)
+         tableau%value(r) = value_of(chain, resultant, deficit, r, tableau%scale)
       end do
       do
          place = matmul(tableau%inverse, tableau%value)
          call find_worst(n - merge(1, 0, chain%keystone), n - merge(1, 0, chain%halved), &
-            & chain%joint, force, place, broken*(noise + rounding &
+            & chain%joint, resultant, place, broken*(noise + rounding &
             & *sum(tableau%scale*abs(place(:3)))), deficit%exchanges >= greedy_exchanges, joint, &
             & bound)
          if (joint == 0) exit
@@ -205,7 +224,7 @@ contains
          deficit%bound(leaving) = bound
          deficit%exchanges = deficit%exchanges + 1
          call set_row(chain, joint, bound, leaving, tableau)
-         tableau%value(leaving) = value_of(chain, force, deficit, leaving, tableau%scale)
+         tableau%value(leaving) = value_of(chain, resultant, deficit, leaving, tableau%scale)
          call invert(tableau)
          if (.not. tableau%usable) return
       end do
@@ -213,20 +232,20 @@ contains
    end subroutine descend
 
    !> Right-hand side of one row
-   pure real(wp) function value_of(chain, force, deficit, r, scale) result(value)
+   pure real(wp) function value_of(chain, resultant, deficit, r, scale) result(value)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: force(3, size(chain%joint))
+      real(wp), intent(in) :: resultant(3, size(chain%joint))
       type(deficit_t), intent(in) :: deficit
       integer, intent(in) :: r
       real(wp), intent(in) :: scale(3)  !! As in the tableau: (3)
 
       if (deficit%joint(r) > 0) then
-         associate (this => force(:, deficit%joint(r)))
+         associate (this => resultant(:, deficit%joint(r)))
             if (deficit%bound(r) <= 2) then
-               value = -this(deficit%bound(r))
+               value = -(this(1) + merge(1, -1, deficit%bound(r) == 1)*this(2))/2.0_wp
             else
                value = merge(1, -1, deficit%bound(r) == 3)*this(3) &
-                  & - chain%joint(deficit%joint(r))%friction*(this(1) + this(2))
+                  & - chain%joint(deficit%joint(r))%friction*this(1)
             end if
          end associate
       else if (r == 4) then
@@ -238,12 +257,13 @@ contains
    end function value_of
 
    !> The bound that is broken most, or by Bland's rule the first that is broken; joint 0 if none is
-   pure subroutine find_worst(n, rough, joint, force, place, noise, first, worst, bound)
+   pure subroutine find_worst(n, rough, joint, resultant, place, noise, first, worst, bound)
       integer, intent(in) :: n      !! Number of joints that can fail
       integer, intent(in) :: rough  !! Number of those among which shear forces are bounded
       type(chain_joint_t), intent(in) :: joint(n)  !! The joints
-      real(wp), intent(in) :: force(3, n)  !! Forces of the estimate [N/m]
-      real(wp), intent(in) :: noise     !! By how much a corner may be broken [N/m]
+      real(wp), intent(in) :: resultant(3, n)  !! As above [N/m]
+      !> By how much a corner may be broken, and a normal or shear force be off: (2) [N/m]
+      real(wp), intent(in) :: noise(2)
       real(wp), intent(in) :: place(4)  !! Change of the unknowns, and s
       logical, intent(in) :: first      !! Whether the first will do
       integer, intent(out) :: worst     !! Its joint
@@ -251,13 +271,12 @@ contains
       real(wp) :: along, least, moment, normal, room
       integer :: j
 
-      least = -place(4) - noise
+      least = -place(4) - noise(1)
       worst = 0
       bound = 0
       do j = 1, n
-         normal = force(1, j) + force(2, j) + joint(j)%tangent(2)*place(1) &
-            & - joint(j)%tangent(1)*place(2)
-         moment = force(1, j) - force(2, j) + (joint(j)%middle(2)*place(1) &
+         normal = resultant(1, j) + joint(j)%tangent(2)*place(1) - joint(j)%tangent(1)*place(2)
+         moment = resultant(2, j) + (joint(j)%middle(2)*place(1) &
             & - joint(j)%middle(1)*place(2) + place(3))/joint(j)%half
          room = (normal - abs(moment))/2.0_wp
          if (room < least) then
@@ -267,9 +286,9 @@ contains
             if (first) return
          end if
          if (j > rough .or. joint(j)%no_slip) cycle
-         along = force(3, j) + joint(j)%tangent(1)*place(1) + joint(j)%tangent(2)*place(2)
-         ! friction multiplies the rounding of both corners
-         room = joint(j)%friction*(normal + 2.0_wp*noise) - abs(along)
+         along = resultant(3, j) + joint(j)%tangent(1)*place(1) + joint(j)%tangent(2)*place(2)
+         room = joint(j)%friction*normal - abs(along) &
+            & + ((1.0_wp + joint(j)%friction)*noise(2) - noise(1))
          if (.not. room < least) cycle
          least = room
          worst = j
