@@ -74,8 +74,10 @@ contains
       end if
       allocate (rays%point(2, size(is_joint)))
       rays%point(1, :) = rays%direction(1, :)
-      ! cos - 1
-      rays%point(2, :) = -rays%direction(1, :)**2/(1.0_wp + rays%direction(2, :))
+      ! cos - 1, without loss of digits at the crown and opposite to it
+      rays%point(2, :) = rays%direction(2, :) - 1.0_wp
+      where (rays%direction(2, :) > 0.0_wp) rays%point(2, :) = &
+         & -rays%direction(1, :)**2/(1.0_wp + rays%direction(2, :))
       if (numbers%halved) call meet_plane(rays, is_joint)
       allocate (rays%joint(count(is_joint)))
       n = 0
