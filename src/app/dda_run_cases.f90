@@ -38,7 +38,7 @@ contains
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n
 
-      allocate (batch(max_batch))
+      allocate (batch(max_batch), source=case_t())
       n = 0
       most = 1
       do
