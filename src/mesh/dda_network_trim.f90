@@ -179,20 +179,18 @@ contains
       integer :: k, n, last
 
       n = size(half_edge)
-      allocate (node(2, 0:n), turns(n))
+      allocate (node(2, n), turns(n))
       do k = 1, n
          node(:, k) = network%node(:, half_edge_start(network, half_edge(k)))
       end do
-      node(:, 0) = node(:, n)
       turns = .true.
-      last = 0
+      last = n
       do k = 1, n
          turns(k) = .not. is_between(node(:, k), node(:, last), node(:, 1 + mod(k, n)), reach)
          if (turns(k)) last = k
       end do
       ! the first corners were tested against a node that may be no corner itself
-      do k = 1, n
-         if (last == 0) exit
+      do k = 1, merge(n, 0, any(turns))
          if (turns(k)) then
             turns(k) = .not. is_between(node(:, k), node(:, last), node(:, next_turn(turns, k)), &
                & reach)
