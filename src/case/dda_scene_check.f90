@@ -138,8 +138,8 @@ contains
          floating = floating_block(scene)
          if (static .and. floating > 0) call fatal_error(error, "block "//to_text(floating) &
             & //" has no support: no chain of joints ties it to a fixed block, as "// &
-            & "mode = 'static' needs; add a joint or remove it", geometry_file(deck), &
-            & deck%plan%line(floating))
+            & "mode = 'static' needs; move its edges onto those of its neighbours, or remove " &
+            & //"it", geometry_file(deck), deck%plan%line(floating))
          if (.not. allocated(error)) call check_widths(deck, scene, error)
          if (static .and. .not. allocated(error)) call check_loads(deck, scene, error)
          if (allocated(error)) return

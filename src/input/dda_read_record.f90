@@ -257,6 +257,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. time(2) > time(1)) call fatal_error(error, "expected a time after " &
-         & //to_text(time(1))//" s, got "//to_text(time(2))//"; sort the rows, each time once")
+         & //to_text(time(1))//" s, got "//to_text(time(2))//"; write one row per time, sorted")
    end subroutine check_time
 end module dda_read_record
