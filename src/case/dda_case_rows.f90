@@ -5,6 +5,8 @@ module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
+   use dda_case_remarks, only : change_remark, completed_remark, contact_remark, fall_remark, &
+      & joined, jump_remark, kept_places_remark, path_remark
    use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
@@ -13,22 +15,17 @@ module dda_case_rows
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : verdict
-   use dda_step_context, only : contact_note_t
-   use dda_text, only : counted, short_text, to_text
+   use dda_text, only : short_text
    use dda_turned_rows, only : turn_rows
-   use dda_verdict, only : largest_displacement, outcome_t
+   use dda_verdict, only : outcome_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
    private
 
-   public :: tell_case, change_remark, fall_remark, joined, jump_remark, path_remark
+   public :: tell_case
 
    !> Offset of the middle of a bracket, over its half, that causes a remark
    real(wp), parameter :: lopsided = 0.05_wp
-   !> Displacement of a moving block over the largest
-   real(wp), parameter :: moves = 1.0e-3_wp
-   !> Maximum number of named blocks
-   integer, parameter :: most_named = 5
    !> Words for the verdicts, by their number
    character(len=10), parameter :: verdict_word(0:4) = [character(len=10) :: "undecided", &
       & "stable", "collapsed", "completed", "found"]
@@ -138,9 +135,8 @@ contains
             remark = joined(remark, path_remark(outcome))
          end if
          remark = joined(remark, jump_remark(outcome%jumps, outcome%largest_jump))
-         if (outcome%verdict == verdict%completed &
-            & .and. .not. (this%limerick .or. this%scene%settings%current)) &
-            & remark = joined(remark, small_displacement_remark(this%decision%system))
+         if (outcome%verdict == verdict%completed .and. .not. this%limerick) &
+            & remark = joined(remark, completed_remark(this%scene%settings, this%decision%system))
          if (outcome%has_residual) row%contact_residual = some_number(outcome%residual)
          remark = joined(remark, contact_remark(outcome%rough, outcome%reduced))
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
@@ -206,6 +202,8 @@ contains
          end if
          if (critical%has_other) remark = "it also collapses at "//short_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
+         if (critical%verdict == verdict%stable) remark = joined(remark, &
+            & kept_places_remark(searched_name(this%family%deck), this%scene%settings))
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
             & remark = joined(remark, change_remark(critical))
          if (allocated(critical%fallen)) &
@@ -251,150 +249,4 @@ contains
       if (row%exact%known) row%relative_error = &
          & some_number((row%critical%value - row%exact%value)/row%exact%value)
    end subroutine tell_bracket
-
-   !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
-   pure function fall_remark(system, motion) result(remark)
-      type(block_system_t), intent(in) :: system  !! The blocks at the beginning
-      real(wp), intent(in) :: motion(:, :)        !! Their collapse: (n_dof, n_equation)
-      character(len=:), allocatable :: remark
-      real(wp) :: way(size(system%equation))
-      integer :: b, e, i, n
-
-      remark = ""
-      way = 0.0_wp
-      do b = 1, size(way)
-         e = system%equation(b)
-         if (e > 0 .and. e <= size(motion, 2)) way(b) = norm2(motion(1:2, e)) &
-            & + abs(motion(3, e))*sqrt(system%area(b))
-      end do
-      n = count(way > moves*maxval(way))
-      if (n == 0 .or. 3*n > count(system%equation > 0)) return
-      remark = "of "//to_text(count(system%equation > 0))//" blocks "//to_text(n) &
-         & //trim(merge(" moves", " move ", n == 1))//":"
-      do i = 1, min(n, most_named)
-         b = maxloc(way, dim=1)
-         way(b) = -1.0_wp
-         if (i > 1) remark = remark//","
-         remark = remark//" "//to_text(b)
-      end do
-      if (n > most_named) remark = remark//" and others"
-   end function fall_remark
-
-   !> Say that a dynamic run of blocks that keep their places shows no collapse
-   pure function small_displacement_remark(system) result(remark)
-      type(block_system_t), intent(in) :: system  !! The blocks at the end
-      character(len=:), allocatable :: remark
-
-      remark = "geometry = 'reference' shows no collapse; the largest displacement is " &
-         & //short_text(largest_displacement(system, .false.))//" m. " &
-         & //"Set geometry = 'current' for large displacements."
-   end function small_displacement_remark
-
-   !> What the user should know of the path of a static run
-   pure function path_remark(outcome) result(remark)
-      type(outcome_t), intent(in) :: outcome
-      character(len=:), allocatable :: remark
-      character(len=:), allocatable :: place
-
-      remark = ""
-      if (outcome%verdict /= verdict%stable) then
-         place = " time "//short_text(outcome%path_time)
-         if (outcome%path_time < 0.0_wp) place = " "//short_text(1.0_wp + outcome%path_time) &
-            & //" of the prescribed displacement"
-         remark = trim(merge("the blocks collapse at     ", "equilibrium is proven up to", &
-            & outcome%verdict == verdict%collapsed))//place
-      end if
-      ! why forces after stages are not those of the last shape built at once
-      if (outcome%n_slid > 0) remark = joined(remark, "joints that slid between stages: " &
-         & //to_text(outcome%n_slid)//numbered(outcome%slid))
-      if (outcome%has_built) remark = joined(remark, "blocks were built between stages")
-      if (outcome%slides_at_once) remark = joined(remark, "no joint slid between stages, " &
-         & //"but the last shape slides or collapses if it is built at once")
-      if (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once) &
-         & remark = joined(remark, "forces depend on the order of the stages")
-   end function path_remark
-
-   !> Two remarks in one
-   pure function joined(first, second) result(both)
-      character(len=*), intent(in) :: first   !! The one; it may be empty
-      character(len=*), intent(in) :: second  !! The other; likewise
-      character(len=:), allocatable :: both   !! Both, parted by a semicolon
-
-      both = first//second
-      if (min(len(first), len(second)) > 0) both = first//"; "//second
-   end function joined
-
-   !> Numbers of joints in parentheses, not too many of them; nothing for none
-   pure function numbered(joint) result(text)
-      integer, intent(in) :: joint(:)  !! The numbers: (n)
-      character(len=:), allocatable :: text
-      integer, parameter :: most = 12
-      integer :: i
-
-      text = ""
-      do i = 1, min(size(joint), most)
-         text = text//", "//to_text(joint(i))
-      end do
-      if (size(joint) > most) text = text//" and others"
-      if (len(text) > 0) text = " ("//text(3:)//")"
-   end function numbered
-
-   !> What a search in time has found on both sides of its bracket
-   pure function change_remark(critical) result(remark)
-      type(critical_t), intent(in) :: critical
-      character(len=:), allocatable :: remark
-      character(len=:), allocatable :: agree
-      integer :: i
-
-      agree = trim(merge("agrees", "agree ", critical%others == 1))
-      if (.not. allocated(critical%other_change)) then
-         remark = counted(critical%others, "value")//" between the ends "//agree//" with them"
-      else if (size(critical%other_change) == 0) then
-         remark = counted(critical%others, "value")//" on both sides "//agree//" with it"
-      else
-         remark = "not monotone: the answer changes again"
-         do i = 1, size(critical%other_change, 2)
-            if (i > 1) remark = remark//","
-            remark = remark//" between "//short_text(critical%other_change(1, i))//" and " &
-               & //short_text(critical%other_change(2, i))
-         end do
-      end if
-   end function change_remark
-
-   !> Remark on contact residuals and on reduced restitution
-   pure function contact_remark(rough, reduced) result(remark)
-      type(contact_note_t), intent(in) :: rough    !! The worst contact [m/s]
-      type(contact_note_t), intent(in) :: reduced  !! The impact that lacks the most
-      character(len=:), allocatable :: remark
-
-      remark = ""
-      if (rough%value > 0.0_wp) remark = "contact forces leave openings or slips of up to " &
-         & //short_text(rough%value)//" m/s against the law of contact, the largest " &
-         & //place_of(rough)
-      if (reduced%value > 0.0_wp) remark = joined(remark, "restitution was reduced by up to " &
-         & //short_text(100.0_wp*reduced%value)//" % so that impacts add no energy, the most " &
-         & //place_of(reduced))
-   end function contact_remark
-
-   !> Blocks and time of a contact note
-   pure function place_of(note) result(place)
-      type(contact_note_t), intent(in) :: note
-      character(len=:), allocatable :: place
-
-      place = "at a bar"
-      if (all(note%block > 0)) place = "between blocks "//to_text(note%block(1))//" and " &
-         & //to_text(note%block(2))
-      place = place//" at "//short_text(note%time)//" s"
-   end function place_of
-
-   !> What the user should know of jumps on the loading path
-   pure function jump_remark(jumps, largest) result(remark)
-      integer, intent(in) :: jumps     !! How many there were
-      real(wp), intent(in) :: largest  !! The largest displacement of one [m]
-      character(len=:), allocatable :: remark
-
-      remark = ""
-      if (jumps > 0) remark = "jumps on the loading path: "//to_text(jumps) &
-         & //", the largest "//short_text(largest)//" m"
-   end function jump_remark
 end module dda_case_rows

@@ -1,12 +1,12 @@
 !> Settings and verdicts of a run
 module dda_settings
    use dda_boundary, only : boundary_t, loaded_point_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : pi, wp
    implicit none
    private
 
    public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
-   public :: contact_tolerance, factor_of, full_push, verdict
+   public :: contact_tolerance, factor_of, full_push, overturned, verdict
 
    !> Flow rules of sliding joints
    type :: flow_rule_enum
@@ -33,6 +33,8 @@ module dda_settings
 
    !> Gap within which blocks touch, over the size of the smaller one
    real(wp), parameter :: contact_tolerance = 1.0e-4_wp
+   !> Rotation of a block that has fallen over [rad]
+   real(wp), parameter :: overturned = pi/4.0_wp
 
    !> Settings of an analysis; constant during a run
    type :: settings_t

@@ -20,7 +20,7 @@ module dda_arch_scene
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : flow_rule, overturned, settings_t
    implicit none
    private
 
@@ -30,8 +30,6 @@ module dda_arch_scene
 
    !> Friction angle from which no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
-   !> Default rotation that means collapse in a dynamic search [rad]
-   real(wp), parameter :: overturned = pi/4.0_wp
 
    !> Default number of steps per step of full length
    real(wp), parameter :: cut_steps = 20.0_wp

@@ -60,6 +60,35 @@ def test_run_in_time_without_moving_blocks_says_that_it_shows_no_collapse(
     assert (way > 0.1) == moves
 
 
+@pytest.mark.parametrize("rotation", ["", "collapse_rotation_deg = 45"])
+def test_a_block_that_lies_down_is_reported(tmp_path: Path, rotation: str) -> None:
+    """A slender block beyond its balance falls flat: by a quarter turn."""
+    (tmp_path / "x.blocks").write_text(
+        "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n0.5 0\n1.0 2\n0.5 2\n")
+    (tmp_path / "x.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 60 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = 2e-3, duration = 3,\n"
+        f"  steps = 100000, {rotation} /\n")
+    done = run_dda("run", "x.nml", "--out", "out", cwd=tmp_path)
+    (row,) = rows_of(tmp_path / "out" / "results.csv")
+    assert row["verdict"] == ("collapsed" if rotation else "completed")
+    assert ("set collapse_rotation_deg" in done.stdout) == (not rotation)
+    if not rotation:
+        angle = float(done.stdout.split("block 2 turned by ")[1].split(" degrees")[0])
+        assert angle == pytest.approx(90.0 - math.degrees(math.atan2(0.5, 2.0)), abs=0.1)
+
+
+def test_displacements_that_cannot_cause_a_collapse_are_reported(tmp_path: Path) -> None:
+    """In reference geometry no spread of the supports brings an arch down; in current geometry one does."""
+    deck = ("&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.5, voussoirs = 11 /\n"
+            "&support right_dx = 0.01 /\n&joint friction_deg = 40 /\n"
+            "&search parameter = 'displacement_factor', low = 0, high = 100 /\n")
+    (tmp_path / "x.nml").write_text(deck)
+    done = run_dda("run", "x.nml", cwd=tmp_path)
+    assert "geometry = 'reference' keeps the shape" in done.stdout
+    assert "stable" in done.stdout
+
+
 def test_search_in_vain_reports_the_mechanism_of_the_thickest_arch(tmp_path: Path) -> None:
     """A semicircle with friction of 15 degrees slides at any thickness; a thin one would rotate as well."""
     (tmp_path / "arch.nml").write_text("&arch voussoirs = 16 /\n&joint friction_deg = 15 /\n&search /\n")
