@@ -78,11 +78,12 @@ contains
       integer(int64), allocatable :: closed(:)
       integer :: j
       integer, allocatable :: source(:, :)
-      real(wp) :: gap(3)
+      real(wp) :: far(size(reach)), gap(3)
 
       call list_past(system, contacts, past, closed)
-      call store_near_edges(contacts%search, system, reach)
-      call near_joints(contacts%search, system, travel, closed, reach, &
+      far = reach + depth_inside(system, contacts)
+      call store_near_edges(contacts%search, system, far)
+      call near_joints(contacts%search, system, travel, closed, far, &
          & .not. contacts%remember, joint)
       allocate (source(2, size(joint)), place(size(joint)))
       call match_contacts(system, joint, reach, past, source)
@@ -109,6 +110,27 @@ contains
       end do
       call set_strength(contacts)
    end subroutine renew_contacts
+
+   !> Depth to which soft springs have let each block into others. The search must reach that far
+   !> to find its closed contacts again
+   pure function depth_inside(system, contacts) result(depth)
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      real(wp) :: depth(size(system%area))  !! The depth, 0 for fixed blocks: (n_block) [m]
+      type(joint_place_t) :: place
+      real(wp) :: gap(3)
+      integer :: j
+
+      depth = 0.0_wp
+      do j = 1, size(contacts%joint)
+         call place_joint(system%moved, contacts%joint(j), place, gap)
+         associate (joint => contacts%joint(j), n => contacts%joint(j)%n_contact)
+            depth(joint%block) = max(depth(joint%block), maxval( &
+               & -gap(:n) - joint%contact(:n)%closed_at, mask=.not. contacts%face(j)%open(:n)))
+         end associate
+      end do
+      where (system%equation == 0) depth = 0.0_wp
+   end function depth_inside
 
    !> List the contacts of the previous step in order of their keys, and the keys of closed ones
    pure subroutine list_past(system, contacts, past, closed)

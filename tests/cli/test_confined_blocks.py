@@ -51,6 +51,15 @@ def test_confined_blocks_stand(tmp_path: Path, name: str) -> None:
     assert row["verdict"] == "stable"
 
 
+@pytest.mark.parametrize("unknowns", [3, 6])
+def test_block_keeps_its_floor_however_deep_it_sinks_into_soft_springs(tmp_path: Path, unknowns: int) -> None:
+    # deeper than the search for contacts reaches beyond a block that hardly moves
+    row = run_blocks(tmp_path, between_walls(0.15, 3.5) + box(0.0, 0.0, 0.15, 3.0), (
+        "&material density = 2420, young = 1e7 /\n&joint friction_deg = 14 /\n"
+        f"&analysis geometry = 'current', penalty_ratio = 1, unknowns = {unknowns} /\n"))
+    assert row["verdict"] == "stable"
+
+
 @pytest.mark.parametrize("penalty", [1.0, 1e3, 1e6])
 @pytest.mark.parametrize("unknowns", [3, 6])
 def test_block_without_its_floor_falls_between_smooth_walls(tmp_path: Path, penalty: float, unknowns: int) -> None:
