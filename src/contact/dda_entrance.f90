@@ -160,7 +160,9 @@ contains
          if (was_closed(near, of_first(1), of_first(2))) by_first = .true.
          if (was_closed(near, of_second(1), of_second(2))) by_first = .false.
       end if
-      if (by_first) by_first = is_convex(near%outline, near%vertex, of_first(1))
+      ! a reflex corner touches no edge
+      by_first = (by_first .and. is_convex(near%outline, near%vertex, of_first(1))) &
+         & .or. .not. is_convex(near%outline, near%vertex, of_second(1))
       corner = merge(of_first(1), of_second(1), by_first)
       edge = merge(of_first(2), of_second(2), by_first)
    end subroutine choose_end

@@ -254,7 +254,8 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
     contacts = []
     for mine, theirs, ahead in ((a, b + 1, own[0] - its[0]), (a + 1, b, its[1] - own[1])):
         mine, theirs = mine % len(first.corners), theirs % len(second.corners)
-        is_mine = ahead >= 0.0 and _bend(first)[mine] > -FLAT
+        # a notch touches no edge: rounding decides which of two corners that meet is ahead
+        is_mine = ahead >= 0.0 and _bend(first)[mine] > -FLAT or _bend(second)[theirs] <= -FLAT
         contacts.append((1, b, mine) if is_mine else (0, a, theirs))
     joint = _joint(first, second, contacts)
     return joint if float(np.abs(joint.gaps).max()) <= reach else None

@@ -1,0 +1,35 @@
+"""`voussoir verify` derives joints from corners alone: notches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
+
+from voussoir.verify.contacts import Block, find_joints, make_block  # noqa: E402
+
+
+def springing(number: int, off: float) -> Block:
+    """The first voussoir of an arch, whose lower corner is off by so much along its bed [m]."""
+    low = (1 + off, off / 5)
+    return make_block(number, np.array([low, (1.5, 0.1), (1.2, 2), (0.7, 2)]), False)
+
+
+def pier(number: int) -> Block:
+    """A pier with a level bottom between two inclined beds: two notches."""
+    return make_block(number, np.array([(-2, -3), (2, -3), (2, 0.2), (1, 0), (-1, 0), (-2, 0.2)], dtype=float), True)
+
+
+@pytest.mark.parametrize("off", [-1e-15, 0.0, 1e-15])
+@pytest.mark.parametrize("numbers", [(1, 2), (2, 1)])
+def test_a_notch_touches_no_edge(numbers: tuple[int, int], off: float) -> None:
+    """A springing in a notch of its pier has the joint of its bed, and that of its corner with the level bottom."""
+    blocks = sorted([springing(numbers[0], off), pier(numbers[1])], key=lambda block: block.number)
+    joints = find_joints(blocks)
+    assert sorted(joint.single for joint in joints) == [False, True]
+    bed = next(joint for joint in joints if not joint.single)
+    side = numbers[0] - 1
+    # the end in the notch is the voussoir's corner on the pier's edge
+    assert min(bed.contacts, key=lambda contact: np.abs(blocks[1 - side].corners[contact[1]]).sum())[0] == 1 - side
+    assert all(contact[0] == 1 - side for joint in joints for contact in joint.contacts)
