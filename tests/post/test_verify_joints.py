@@ -1,6 +1,8 @@
-"""`voussoir verify` derives joints from corners alone: notches."""
+"""`voussoir verify` derives joints and their law from corners alone: notches, and forces near an end of a joint."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import pytest
@@ -8,6 +10,8 @@ import pytest
 pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
 
 from voussoir.verify.contacts import Block, find_joints, make_block  # noqa: E402
+from voussoir.verify.proofs import Finding  # noqa: E402
+from voussoir.verify.tables import _check_strip  # noqa: E402
 
 
 def springing(number: int, off: float) -> Block:
@@ -33,3 +37,23 @@ def test_a_notch_touches_no_edge(numbers: tuple[int, int], off: float) -> None:
     # the end in the notch is the voussoir's corner on the pier's edge
     assert min(bed.contacts, key=lambda contact: np.abs(blocks[1 - side].corners[contact[1]]).sum())[0] == 1 - side
     assert all(contact[0] == 1 - side for joint in joints for contact in joint.contacts)
+
+
+@pytest.mark.parametrize("force, reach, fails", [
+    (1e-3, 0.5, False),  # of no account beside the load, at the very end
+    (1e5, 0.5 - 0.05, False),  # its strip is a tenth of the joint, half of it beyond the force
+    (1e5, 0.5 - 0.05 + 2e-8, True),
+    (1e5, 0.5, True),
+    (1e2, 0.5, True),
+])
+def test_a_force_needs_room_for_its_strip(force: float, reach: float, fails: bool) -> None:
+    """Joint of 1 m and 1 MN/m of strength, beside loads of 100 kN/m."""
+    blocks = [make_block(number, np.array([(0, y), (1, y), (1, y + 1), (0, y + 1)], dtype=float), number == 1)
+              for number, y in ((1, -1.0), (2, 0.0))]
+    joint, = find_joints(blocks)
+    for way in (-1, 1):
+        finding = Finding()
+        _check_strip(joint, np.array([0.5 + way * reach, 0.0]), force, 1e6, 1e5, finding)
+        assert bool(finding.faults) == fails
+        _check_strip(joint, np.array([0.5 + way * reach, 0.0]), force, math.inf, 1e5, finding)
+        assert bool(finding.faults) == fails

@@ -63,8 +63,8 @@ def check_joints(
         apart = max(abs(way * float(vector @ joint.normal) - normal), abs(way * float(vector @ joint.tangent) - shear))
         digits = max(digits, digits_of(float(np.abs(vector).max()) / largest))
         finding.keep("columns of a joint", apart / largest, SAME + digits)
-        crush = scene.crush(joint) if bars is not None else math.inf
-        _check_place(row, joint, at, normal, crush, rounding_of(scene.blocks[first - 1]), finding)
+        _check_place(row, joint, at, normal, rounding_of(scene.blocks[first - 1]), finding)
+        _check_strip(joint, at, normal, scene.crush(joint) if bars is not None else math.inf, largest, finding)
         friction = scene.friction(joint)
         beyond = max(0.0, -normal)
         if math.isfinite(friction):
@@ -120,24 +120,31 @@ def _forces(
     return joint.forces(np.array([(normal + uneven) / 2.0, (normal - uneven) / 2.0, shear])[order], way)
 
 
-def _check_place(
-    row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, rounding: float, finding: Finding
-) -> None:
-    """The force acts between the ends of its joint, which has room for its bearing strip, if both are known.
-
-    Corners are off by `rounding` [m].
-    """
+def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, rounding: float, finding: Finding) -> None:
+    """Check that a force acts between the ends of its joint, whose corners are off by `rounding` [m]."""
     middle, along = joint.ends.mean(axis=0), joint.ends[1] - joint.ends[0]
     length = float(np.linalg.norm(along))
     if joint.single or not normal > 0.0:
         return
-    beyond, digits = float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5, rounding / length
+    beyond, digits = float(np.linalg.norm(at - middle)) / length - 0.5, rounding / length
     finding.keep("place of a force", max(0.0, beyond), WRITTEN + digits)
     aside = along[0] * (at - middle)[1] - along[1] * (at - middle)[0]
     finding.keep("place off its joint", abs(float(aside)) / length**2, TOLERANCE + digits)
     if row["eccentricity_ratio"]:
         written = abs(float(row["eccentricity_ratio"]))
         finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - written), SAME + digits)
+
+
+def _check_strip(joint: Joint, at: np.ndarray, normal: float, crush: float, largest: float, finding: Finding) -> None:
+    """Check that a joint has room for the strip that bears its force, by the moment that is missing.
+
+    Forces have converged to a share of the `largest` load: smaller forces may be at the very end.
+    """
+    if joint.single or not normal > 0.0 or not math.isfinite(crush):
+        return
+    reach = float(np.linalg.norm(at - joint.ends.mean(axis=0)) / np.linalg.norm(joint.ends[1] - joint.ends[0]))
+    missing = normal * (reach + normal / crush / 2.0 - 0.5)
+    finding.keep("crushing strength (joints.csv)", max(0.0, missing) / largest, SETTLED)
 
 
 def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
