@@ -38,6 +38,8 @@ module dda_vehicle
 
    !> Depth below the upper face within which a corner belongs to it, over the total size
    real(wp), parameter :: on_top = 1.0e-9_wp
+   !> Width of an upper edge over its height, beyond that of an upright joint off by rounding
+   real(wp), parameter :: upright = 1.0e-9_wp
    !> Distance beyond all corners and loaded lengths, over the total size
    real(wp), parameter :: beyond_all = 1.0e6_wp
 
@@ -75,11 +77,13 @@ contains
       do b = 1, size(system%area)
          do k = system%first_vertex(b), system%first_vertex(b + 1) - 1
             next = merge(system%first_vertex(b), k + 1, k + 1 == system%first_vertex(b + 1))
-            if (.not. system%vertex(1, next) < system%vertex(1, k)) cycle
-            n = n + 1
-            road%left(:, n) = system%vertex(:, next)
-            road%right(:, n) = system%vertex(:, k)
-            road%block(n) = b
+            associate (left => system%vertex(:, next), right => system%vertex(:, k))
+               if (.not. right(1) - left(1) > upright*abs(right(2) - left(2))) cycle
+               n = n + 1
+               road%left(:, n) = left
+               road%right(:, n) = right
+               road%block(n) = b
+            end associate
          end do
       end do
       road%left = road%left(:, :n)

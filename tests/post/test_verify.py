@@ -85,6 +85,10 @@ DECKS = {
     "rings and a rise on one side": "&arch shape = 'elliptic', span = 5, rise = 2, right_rise = 1.4, thickness = 0.5, "
         "rings = 2, voussoirs = 13 /\n&fill height = 0.2, unit_weight = 18e3, passive_coefficient = 0.6 /\n"
         "&vehicle axles = 3e4, 2e4, spacings = 1.1, worst = .true. /\n" + SEARCH,
+    "an axle on the crown of a pointed arch in fill": "&arch shape = 'pointed', span = 4.767, voussoirs = 6, "
+        "rise = 2.77, thickness = 0.2226 /\n&joint friction_deg = 48.4 /\n"
+        "&fill height = 0.165, unit_weight = 21e3, passive_coefficient = 1.4 /\n"
+        "&vehicle axles = 5e4, length = 0, position = 0 /\n" + SEARCH,
     "an axle on a joint of a level arch in fill": "&arch shape = 'flat', span = 10, voussoirs = 22, "
         "half_angle_deg = 30, thickness = 1.1 /\n&fill height = 0.1, unit_weight = 18e3, passive_coefficient = 2 /\n"
         "&vehicle axles = 2e4, 3e4, spacings = 1.2, position = 0 /\n" + SEARCH,
