@@ -45,6 +45,7 @@ module dda_case
       logical :: misses_worst = .false.
       !> Whether it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
+      character(len=:), allocatable :: jump_note  !! Jump of the factor between positions, if any
       type(proof_t) :: proof            !! What proves the verdict, where tables are told
       real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio
       logical :: exact_known = .false.  !! Whether it is known

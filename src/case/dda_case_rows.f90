@@ -58,8 +58,8 @@ contains
          row%worst_position = some_number(this%family%deck%value(vehicle_position)%number)
          row%worst_direction = merge("backward", "forward ", this%drives_backward)
          remark = joined(remark, trim(merge("dead loads collapse", "least load factor  ", &
-            & row%verdict == "collapsed"))//" with the leftmost axle at " &
-            & //short_text(row%worst_position%value)//" m, driving "//trim(row%worst_direction))
+            & row%verdict == "collapsed"))//" with the leftmost axle at "//short_text( &
+            & row%worst_position%value)//" m, driving "//trim(row%worst_direction)//this%jump_note)
       end if
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &

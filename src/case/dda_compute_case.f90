@@ -39,6 +39,11 @@ module dda_compute_case
       logical :: decided = .true.
       !> Whether no load is left whose limit may be less and was not found
       logical :: is_known = .true.
+      !> Jump of its inverse between two positions that are all but one: the larger inverse plus the
+      !> jump, where that is [m], and the smaller and the larger factor; of a path that was not
+      !> followed to its end, how far that came
+      real(wp) :: jump = 0.0_wp, jump_place = 0.0_wp, jump_factor(2) = no_limit
+      logical :: jump_backward = .false.  !! True if the vehicle drives the other way there
    end type least_factor_t
 
    interface

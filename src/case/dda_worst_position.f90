@@ -46,21 +46,22 @@ submodule (dda_compute_case) dda_worst_position
    interface
 
       !> Follow the loading paths of positions along the road
-      pure module subroutine follow_road(this, bridge, least)
+      pure module subroutine follow_road(this, bridge, backward, least)
          !> The case, whose deck has the vehicle as it drives; where it stands changes
          type(case_t), intent(inout) :: this
          type(bridge_t), intent(in) :: bridge
+         logical, intent(in) :: backward  !! True if it drives the other way
          type(least_factor_t), intent(inout) :: least
       end subroutine follow_road
 
       !> Follow the loading path of a position
-      pure module subroutine try_place(this, place, least, inverse)
+      pure module subroutine try_place(this, place, least, inverse, falls)
          type(case_t), intent(inout) :: this  !! Likewise
          real(wp), intent(in) :: place        !! The position [m]
          type(least_factor_t), intent(inout) :: least
-         !> Inverse of the factor of the first collapse; of a path without an end, of how far it
-         !> came
+         !> Inverse of the factor of the first collapse, or of how far the path was followed
          real(wp), intent(out), optional :: inverse
+         logical, intent(out), optional :: falls  !! True if there is a collapse
       end subroutine try_place
 
    end interface
@@ -76,6 +77,7 @@ contains
       integer :: ways
 
       before = this%family%deck%value(vehicle_position)%number
+      this%jump_note = ""
       associate (deck => this%family%deck)
          call deck_scene(deck, scene)
          if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
@@ -130,7 +132,7 @@ contains
 
       do way = 1, ways
          before = least%factor
-         if (by_path) call follow_road(this, bridge, least)
+         if (by_path) call follow_road(this, bridge, way == 2, least)
          if (least%is_known .and. .not. by_path) call seek_along_road(bridge, least)
          if (least%factor < before) least%backward = way == 2
          if (ways == 1) return

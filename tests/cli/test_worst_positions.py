@@ -27,6 +27,11 @@ SLIDING = Bridge(
     "&arch shape = 'pointed', span = 8.872, voussoirs = 8, rise = 5.999, thickness = 0.7555, rings = 2 /\n"
     "&joint friction_deg = 34.74 /\n&fill height = 1.205, unit_weight = 16510.0, passive_coefficient = 0.8731 /\n"
     "&material unit_weight = 25800.0 /\n", [14830.0], [], 0.3, "coulomb")
+#: The paths of neighbouring positions differ: the factor jumps by 5 %
+JUMPING = Bridge(
+    "&arch shape = 'segmental', span = 6.545, voussoirs = 23, rise = 1.773, thickness = 0.4465 /\n"
+    "&joint friction_deg = 43.3 /\n&fill height = 0.3678, unit_weight = 21930.0, passive_coefficient = 2.481 /\n",
+    [28520.0, 106200.0], [1.84], 0.3, "coulomb")
 
 
 def row_of(folder: Path, deck: str) -> dict[str, str]:
@@ -82,6 +87,21 @@ def test_a_first_collapse_that_is_least_beside_the_least_limit_is_found(tmp_path
     verdict, faults = check(DDA, tmp_path, SLIDING)
     assert (verdict, faults) == ("found", [])
     assert float(row_of(tmp_path, SLIDING.deck("worst = .true."))["critical"]) < 9.1
+
+
+def test_a_jump_of_the_factor_between_positions_is_named(tmp_path: Path) -> None:
+    """By fixed positions on both sides of the place in the log; a factor that does not jump has no such remark."""
+    row_of(tmp_path, JUMPING.deck("worst = .true."))
+    said = r"jumps with the position .*: from (\S+) to at least (\S+) at (\S+) m, driving (\w+)"
+    smaller, larger, place, way = re.search(said, (tmp_path / "x" / "log.txt").read_text()).groups()
+    places = [float(place) + 2e-5 * side for side in (-1, 1)]
+    sweep = f"&sweep parameter = 'position', values = {places[0]!r}, {places[1]!r} /\n"
+    factors = sorted(float(row["critical"]) for row in run(
+        DDA, tmp_path, "fixed", JUMPING.deck("position = 0", sweep, way == "backward")))
+    assert factors[0] == pytest.approx(float(smaller), rel=2e-4)
+    assert factors[1] > 1.04 * factors[0] and factors[1] > float(larger) * (1.0 - 2e-4)
+    row_of(tmp_path, STEPPED.deck("worst = .true."))
+    assert "jumps with" not in (tmp_path / "x" / "log.txt").read_text()
 
 
 def test_a_bridge_whose_limits_are_not_found_is_undecided_at_once(tmp_path: Path) -> None:
