@@ -114,8 +114,8 @@ contains
       !> forces by one of the second: (2) [N/m]
       real(wp), intent(out) :: magnitude(2)
 
-      call carry_on(chain%halved, size(chain%block), chain%block, chain%joint, reaction, resultant, &
-         & magnitude)
+      call carry_on(chain%halved, size(chain%block), chain%block, chain%joint, reaction, &
+         & resultant, magnitude)
    end subroutine carry_forces
 
    !> The same of arrays of known shapes
