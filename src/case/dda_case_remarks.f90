@@ -1,7 +1,7 @@
 !> Remarks on a computed case, printed and written beside its row
 module dda_case_remarks
    use dda_block_system, only : block_system_t
-   use dda_kinds, only : pi, wp
+   use dda_kinds, only : degree, wp
    use dda_search, only : critical_t
    use dda_settings, only : overturned, settings_t, verdict
    use dda_step_context, only : contact_note_t
@@ -63,7 +63,7 @@ contains
       else if (max(settings%collapse_rotation, settings%collapse_displacement) <= 0.0_wp) then
          b = maxloc(abs(system%motion(3, :)), dim=1)
          if (abs(system%motion(3, b)) >= overturned) remark = "block "//to_text(b) &
-            & //" turned by "//short_text(abs(system%motion(3, b))*180.0_wp/pi) &
+            & //" turned by "//short_text(abs(system%motion(3, b))/degree) &
             & //" degrees; set collapse_rotation_deg or collapse_displacement to detect a collapse"
       end if
    end function completed_remark

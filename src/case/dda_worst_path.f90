@@ -4,8 +4,8 @@
 !> one position than at another. No mechanism of one position bounds the factor of the next. So
 !> paths are followed at positions all along the road. Intervals are halved while the inverse
 !> factor, which is nearly as smooth as the loads, may exceed its maximum: at either end, plus its
-!> change per interval. Neighbouring paths may take different courses, so that the factor jumps:
-!> the most harmful jump is kept for the log.
+!> change per interval. Neighbouring paths may take different branches, so that the factor jumps:
+!> the jump that would reduce the factor most is kept for the log.
 submodule (dda_compute_case:dda_worst_position) dda_worst_path
    use dda_search, only : critical_t, search_t
    use dda_text, only : short_text

@@ -126,7 +126,7 @@ contains
       type(chain_joint_t), intent(in) :: joint(n + 1)  !! The joints
       real(wp), intent(in) :: reaction(3)
       real(wp), intent(out) :: resultant(3, n + 1)     !! The resultants: (3, n + 1) [N/m]
-      real(wp), intent(out) :: magnitude(2)            !! As above: (2) [N/m]
+      real(wp), intent(out) :: magnitude(2)            !! Of corners, of thrusts: (2) [N/m]
       real(wp) :: s(2), normal, along, moment, per_half
       integer :: ahead, i, j, side
 
