@@ -7,7 +7,7 @@
 module dda_limit_decision
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
-      & load_path_t, set_path, size_of_load
+      & load_path_t, no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
    use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
    use dda_joint_rays, only : add_ray_forces, bound_rays, forces_of_rays, n_side, ray_rates, &
@@ -21,7 +21,7 @@ module dda_limit_decision
    private
 
    public :: load_decision_t, load_state
-   public :: decide_load, decide_on_way, drives
+   public :: decide_load, decide_on_way, drives, find_margin
    public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
    public :: keep_velocities, resolution
    public :: crush_tolerance, most_rounds
@@ -59,6 +59,9 @@ module dda_limit_decision
    real(wp), parameter :: free = 1.0e-12_wp
    !> Gap at which an open decision ends
    real(wp), parameter :: resolution = 1.0e-12_wp
+
+   !> Largest gap of the factors that a path reaches and does not pass
+   real(wp), parameter :: margin_gap = 1.0e-9_wp
 
    !> Violation of the crushing parabola, over the largest force
    real(wp), parameter :: crush_tolerance = 1.0e-12_wp
@@ -177,6 +180,32 @@ contains
       decision%n_factorisation = springs%n_factorisation
    end subroutine decide_on_way
 
+   !> Margin of a load: how much of the load that equal forces along all rays carry can be taken
+   !> off, in units of these forces. The load can be carried if and only if that is not negative. It
+   !> is a concave function of the load, and linear for one mechanism
+   pure subroutine find_margin(graph, load, tolerance, margin, unit, found)
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: tolerance  !! How far the margin may be off over its unit
+      real(wp), intent(out) :: margin    !! The margin [N/m]
+      real(wp), intent(out) :: unit      !! Forces that it is small beside [N/m]
+      logical, intent(out) :: found      !! Whether it is known
+      type(ray_matrix_t) :: springs
+      type(interior_point_t) :: point
+      real(wp) :: finish(3, 0:graph%n_block)
+
+      unit = unit_of_force(load)
+      call scale_load(load, unit, unit_of_length(graph), finish)
+      call begin_inside(graph, finish, point)
+      unit = maxval(point%x)*unit
+      call plan_matrix(graph, springs)
+      call go_on_to_load(graph, finish, max(tolerance, resolution), springs, point, whole=.true.)
+      found = any(point%state == [interior_state%optimal, interior_state%stalled]) &
+         & .and. point%upper - point%factor <= max(10.0_wp*tolerance, margin_gap)
+      margin = 0.5_wp*(point%factor + point%upper)
+      if (found) margin = (1.0_wp - 1.0_wp/margin)*unit
+   end subroutine find_margin
+
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(graph, load, springs, point)
       type(joint_graph_t), intent(in) :: graph
@@ -246,7 +275,7 @@ contains
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one
-   pure subroutine go_on_to_load(graph, finish, tolerance, springs, point, to_limit)
+   pure subroutine go_on_to_load(graph, finish, tolerance, springs, point, to_limit, whole)
       type(joint_graph_t), intent(in) :: graph
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: finish(:, 0:)
@@ -258,6 +287,8 @@ contains
       !> Factorisations within which the largest factor of a path is looked for that does not reach
       !> the load: none if absent
       integer, intent(in), optional :: to_limit
+      !> Whether the path is followed to its end, beyond the load; else the load will do
+      logical, intent(in), optional :: whole
       type(interior_goal_t) :: goal
       type(load_path_t) :: path
       real(wp), allocatable :: start(:, :)
@@ -274,11 +305,12 @@ contains
       call start_by_forces(path, path%size, point)
       goal%tolerance = tolerance
       goal%target = path%size
+      if (present(whole)) goal%target = no_limit
       if (present(to_limit)) goal%to_limit = to_limit
       call solve_cones(graph, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
-      if (point%factor > 1.0_wp) then
+      if (point%factor > 1.0_wp .and. .not. present(whole)) then
          ! between two states in balance all are: back to the load
          point%x = before + (point%x - before)/point%factor
          point%factor = 1.0_wp
