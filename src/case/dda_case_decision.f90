@@ -1,12 +1,13 @@
 !> Decision of a case: as a chain, by stages, or from a restart; and its frames
 submodule (dda_compute_case) dda_case_decision
    use dda_chain_decision, only : decide_chain
-   use dda_decision, only : decide_in_stages, enter_stage
+   use dda_decision, only : decide, decide_in_stages, enter_stage
    use dda_deck, only : source_of
    use dda_deck_scene, only : deck_scene
    use dda_forward, only : run_to_verdict
    use dda_key_names, only : analysis_duration, analysis_restart, analysis_steps, arch_radius, &
       & output_energy, output_reactions
+   use dda_limit_decision, only : load_decision_t, load_state
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
@@ -19,12 +20,13 @@ contains
    !> Decide the scene
    module procedure compute_decision
       type(decision_t) :: proof
+      type(load_decision_t) :: stands
       type(scene_t) :: begun
       real(wp) :: last
       logical :: decided
 
-      ! tables tell displacements, which a chain does not keep
-      decided = this%family%decides_chains .and. .not. this%tells_tables
+      decided = this%family%chains &
+         & .and. .not. this%family%chain_settings%collapse_displacement > 0.0_wp
       associate (critical => this%critical)
          if (decided) call link_once(this%family, &
             & this%family%deck%value(arch_thickness_ratio)%number, critical%link)
@@ -33,8 +35,11 @@ contains
             & this%decision, decided, critical%deficit)
       end associate
       if (decided) then
-         if (this%decision%outcome%verdict /= verdict%collapsed) return
+         ! tables tell displacements, which a chain does not keep
+         if (this%decision%outcome%verdict /= verdict%collapsed .and. this%family%decides_chains &
+            & .and. .not. this%tells_tables) return
          proof = this%decision
+         call unfold(proof)
       end if
       call deck_scene(this%family%deck, this%scene)
       call plan_fall(this)
@@ -47,14 +52,21 @@ contains
                & this%onward, this%error)
             if (allocated(this%error)) return
             call decide_in_stages(begun, this%decision, this%album, this%onward, last)
+         else if (decided .and. proof%outcome%verdict == verdict%stable) then
+            stands%state = load_state%stands
+            stands%force = proof%contacts%force
+            call decide(scene, this%decision, this%album, this%onward, stands=stands)
          else
             call decide_in_stages(scene, this%decision, this%album, this%onward, last)
          end if
          if (allocated(boundary%change)) &
             & call enter_stage(scene%settings, last, scene%system, scene%contacts)
       end associate
-      ! the chain proves the collapse; the decision of all blocks, if there is one, has its motion
-      if (decided .and. this%decision%outcome%verdict /= verdict%collapsed) this%decision = proof
+      ! the chain decides; the decision of all blocks, if it agrees, has their motion
+      if (.not. decided) return
+      if (this%decision%outcome%verdict == proof%outcome%verdict) return
+      this%decision = proof
+      if (proof%outcome%verdict == verdict%stable) this%decision%system = this%scene%system
    end procedure compute_decision
 
    !> What the album of the case is to hold

@@ -194,8 +194,7 @@ contains
       ! beside what acts on blocks, without nodes of bars and carriers of bounded forces
       b = maxval(scene%system%equation)
       if (answer%state == load_state%stands .and. decision%outcome%verdict == verdict%stable) then
-         proof%imbalance = answer%imbalance
-         proof%law_violation = answer%violation
+         call check_forces(graph, load, answer%force, proof%imbalance, proof%law_violation)
          call move_alloc(answer%force, proof%force)
       else if (answer%state == load_state%falls &
          & .and. decision%outcome%verdict == verdict%collapsed) then

@@ -27,10 +27,18 @@ contains
 
    !> Decide a static structure, or run a dynamic one
    module procedure decide
-      logical :: bare
+      logical :: bare, shared
 
       bare = .false.
       if (present(verdict_only)) bare = verdict_only
+      if (present(stands)) then
+         call share_forces(scene, decision, shared, album)
+         allocate (decision%limit, source=stands)
+         if (shared) return
+         ! how joints slide that the elastic sharing overloads is known of the path alone
+         decision = decision_t()
+         if (present(album)) album = blank_album(album)
+      end if
       if (scene%settings%dynamic) then
          call run_in_time(scene, decision, album, onward)
       else if (decides_as_graph(scene%settings, scene%contacts)) then
@@ -127,7 +135,7 @@ contains
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
       integer :: n
-      logical :: slides
+      logical :: shared, slides
 
       associate (settings => scene%settings, system => scene%system, contacts => scene%contacts)
          call decide_graph(settings, system, contacts, bare, proof)
@@ -145,7 +153,9 @@ contains
          & .or. has_slid(proof) .or. .not. may_run(scene))) then
          call record_rest(scene, proof, decision)
       else if (proof%end == path_end%reached) then
-         call share_forces(scene, proof, decision, album)
+         call share_forces(scene, decision, shared, album)
+         if (.not. shared) call record_rest(scene, proof, decision)
+         if (present(album) .and. .not. shared) call show_end(scene%settings, decision, album)
       else if (proof%unproven .and. may_run(scene)) then
          call decide_by_steps(scene, decision, album)
       else
@@ -191,14 +201,13 @@ contains
          & scene%contacts%law(scene%contacts%joint%law)%strength < huge(1.0_wp)))
    end function may_run
 
-   !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
-   !> slide under Coulomb friction, as the loading path leaves them
-   pure subroutine share_forces(scene, proof, decision, album)
+   !> Let the blocks of what stands share out the forces as elastic blocks do, unless joints slide
+   !> in that under Coulomb friction
+   pure subroutine share_forces(scene, decision, shared, album)
       type(scene_t), intent(in) :: scene
-      type(graph_verdict_t), intent(in) :: proof
       type(decision_t), intent(inout) :: decision
+      logical, intent(out) :: shared  !! Whether they do
       type(album_t), intent(inout), optional :: album
-      logical :: shared
 
       associate (outcome => decision%outcome)
          call run_under(flow_rule%associated, scene%settings, scene%system, scene%contacts, &
@@ -209,9 +218,6 @@ contains
          outcome%verdict = verdict%stable
          if (allocated(outcome%reason)) deallocate (outcome%reason)
       end associate
-      if (shared) return
-      call record_rest(scene, proof, decision)
-      if (present(album)) call show_end(scene%settings, decision, album)
    end subroutine share_forces
 
    !> Blocks and contacts of what stands, as its proof has them

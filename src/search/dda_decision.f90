@@ -10,6 +10,7 @@ module dda_decision
    use dda_contacts, only : contacts_t
    use dda_frames, only : album_t
    use dda_kinds, only : wp
+   use dda_limit_decision, only : load_decision_t
    use dda_scene, only : scene_t
    use dda_scene_graph, only : graph_verdict_t
    use dda_search, only : decision_t
@@ -63,7 +64,7 @@ module dda_decision
       end subroutine record_rest
 
       !> Decide a static structure, or run a dynamic one
-      pure module subroutine decide(scene, decision, album, onward, verdict_only)
+      pure module subroutine decide(scene, decision, album, onward, verdict_only, stands)
          type(scene_t), intent(in) :: scene  !! The scene at its beginning
          type(decision_t), intent(out) :: decision
          !> Receives pictures of the run that decides
@@ -72,6 +73,9 @@ module dda_decision
          type(march_t), intent(inout), optional :: onward
          !> Whether forces and motions of what stands are not asked for
          logical, intent(in), optional :: verdict_only
+         !> Proof that a static structure stands, without sliding on its way: then only the elastic
+         !> sharing of its forces is left to find
+         type(load_decision_t), intent(in), optional :: stands
       end subroutine decide
 
       !> Decide by steps to rest or collapse
