@@ -72,7 +72,7 @@ contains
       real(wp), intent(in) :: limit  !! The end of the range on the side that stands
       type(critical_t), intent(inout) :: critical  !! What was found so far
       type(proposal_t), intent(out) :: proposal    !! Where the collapse stops
-      real(wp) :: x(2), margin(2), least, next, noise, slope, step, unit
+      real(wp) :: x(2), margin(2), least, near, next, noise, slope, step, tolerance, unit
       integer :: i
       logical :: found
 
@@ -92,14 +92,15 @@ contains
       step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
       x(2) = x(1) + sign(step, limit - x(1))
       do i = 1, max_values
-         call margin_at(family, x(2), sharpness*abs(margin(1)/unit), critical, margin(2), unit, &
-            & found)
+         tolerance = max(resolution, sharpness*abs(margin(1)/unit))
+         call margin_at(family, x(2), tolerance, critical, margin(2), unit, found)
          if (.not. found .or. .not. abs(margin(2) - margin(1)) > 0.0_wp) return
          slope = (margin(2) - margin(1))/(x(2) - x(1))
          noise = least_margin*unit/abs(slope)
          next = x(2) - margin(2)/slope
          if (next < search%low .or. next > search%high) return
-         if (abs(next - x(2)) <= max(0.02_wp*least*abs(next), noise)) exit
+         near = max(0.02_wp*least*abs(next), noise)
+         if (abs(next - x(2)) <= near .and. 0.5_wp*tolerance*unit/abs(slope) <= near) exit
          x = [x(2), next]
          margin(1) = margin(2)
       end do
