@@ -9,7 +9,8 @@ module dda_limit_decision
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
-   use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
+   use dda_joint_layers, only : add_layers, joint_layers_t, less_friction, less_rough, no_layers, &
+      & touch_parabola
    use dda_joint_rays, only : add_ray_forces, bound_rays, forces_of_rays, n_side, ray_rates, &
       & scale_load
    use dda_kinds, only : wp
@@ -87,16 +88,53 @@ contains
       end if
    end subroutine decide_load
 
-   !> Whether joints that crush can carry a load: tangents of their parabolas are added until forces
-   !> keep them, or none reach the load
+   !> Whether joints that crush can carry a load
    pure subroutine decide_crushing(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       type(load_decision_t), intent(out) :: decision
+      type(joint_graph_t) :: joints
+      integer :: k, n
+      logical :: same
+
+      n = 0
+      do k = 1, size(less_friction)
+         call less_rough(graph, less_friction(k), joints, same)
+         call decide_strips(joints, load, decision)
+         n = n + decision%n_factorisation
+         call prove_crushing(graph, load, same, decision)
+         if (same .or. decision%state /= load_state%undecided) exit
+      end do
+      decision%n_factorisation = n
+   end subroutine decide_crushing
+
+   !> What the forces or the velocities of joints with less friction prove
+   pure subroutine prove_crushing(graph, load, same, decision)
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: load(:, :)
+      logical, intent(in) :: same  !! Whether they had no less
+      type(load_decision_t), intent(inout) :: decision
+      real(wp) :: power
+
+      if (decision%state == load_state%stands) then
+         call check_forces(graph, load, decision%force, decision%imbalance, decision%violation)
+      else if (decision%state == load_state%falls) then
+         call check_velocities(graph, load, decision%velocity, decision%violation, power)
+         decision%power = power - crushing_power(graph, decision%velocity)
+         if (.not. decision%power > 0.0_wp .or. (decision%violation > free .and. .not. same)) &
+            & decision%state = load_state%undecided
+      end if
+   end subroutine prove_crushing
+
+   !> Whether joints that crush can carry a load: tangents of their parabolas are added until forces
+   !> keep them, or none reach the load
+   pure subroutine decide_strips(graph, load, decision)
+      type(joint_graph_t), intent(in) :: graph
+      real(wp), intent(in) :: load(:, :)
+      type(load_decision_t), intent(out) :: decision
       type(joint_graph_t) :: layered
       type(joint_layers_t) :: layers
       real(wp), allocatable :: apex(:, :)
-      real(wp) :: beyond_cone, power
       integer :: k, n
       logical :: touched
 
@@ -110,21 +148,13 @@ contains
          decision%n_factorisation = n
          decision%force = decision%force(:, :size(graph%kind))
          decision%velocity = decision%velocity(:, :graph%n_block)
-         if (decision%state /= load_state%stands) exit
+         if (decision%state /= load_state%stands) return
          call touch_parabola(graph, decision%force, crush_tolerance &
             & *max(maxval(abs(decision%force(1:2, :))), maxval(abs(load))), layers, touched)
-         if (.not. touched) exit
-         if (k == most_rounds) decision%state = load_state%undecided
+         if (.not. touched) return
       end do
-      if (decision%state == load_state%stands) then
-         call check_forces(graph, load, decision%force, decision%imbalance, decision%violation)
-      else if (decision%state == load_state%falls) then
-         call check_velocities(graph, load, decision%velocity, beyond_cone, power)
-         decision%violation = beyond_cone
-         decision%power = power - crushing_power(graph, decision%velocity)
-         if (.not. decision%power > 0.0_wp) decision%state = load_state%undecided
-      end if
-   end subroutine decide_crushing
+      decision%state = load_state%undecided
+   end subroutine decide_strips
 
    !> Whether joints that do not crush can carry a load
    pure subroutine decide_cones(graph, load, decision)

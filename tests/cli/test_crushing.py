@@ -155,6 +155,18 @@ def test_an_arch_follows_its_path_to_the_limit_where_nothing_slides(
     assert float(row["law_violation"]) <= 1e-9
 
 
+@pytest.mark.parametrize("friction", ["89.9", "90"])
+def test_joints_that_need_no_slip_have_the_limit_of_steep_friction(tmp_path: Path, friction: str) -> None:
+    """The mechanism turns alone: forces at 80 degrees carry the limit of more friction."""
+    bridge = ("&arch shape = 'parabolic', span = 16.01, voussoirs = 34, rise = 6.547, thickness = 0.6859 /\n"
+              "&joint friction_deg = {0} /\n&fill height = 2.222, unit_weight = 14590, backing_height = 3.036 /\n"
+              "&vehicle axles = 99210, length = 0.3, position = 8 /\n" + SEARCH)
+    (steep,) = rows(tmp_path, bridge.format(80) + material(1792000.0, 26690.0), head="")
+    (row,) = rows(tmp_path, bridge.format(friction) + material(1792000.0, 26690.0), head="")
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(float(steep["critical"]), rel=1e-8)
+
+
 def test_stages_under_coulomb_friction_are_refused_beside_a_strength(tmp_path: Path) -> None:
     (tmp_path / "x.blocks").write_text(BLOCK + "block\n0 2\n1 2\n1 3\n0 3\nremove block 3 at 1\n")
     deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0)
