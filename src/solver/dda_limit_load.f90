@@ -29,7 +29,13 @@ module dda_limit_load
    type :: load_walk_t
       private
       !> The joints
+      type(joint_graph_t) :: joints
+      !> Tangents of the parabolas of those that crush
+      type(joint_layers_t) :: layers
+      !> The joints with layers for the tangents
       type(joint_graph_t) :: graph
+      !> Loads by the couples of the layers: (3, n_block of graph)
+      real(wp), allocatable :: couple(:, :)
       !> One for rays whose force may not be negative, and for rays of any sign: (n_side, n_joint)
       integer(int8), allocatable :: bounded(:, :), free(:, :)
       !> Springs that tell how far the forces are from their bounds

@@ -31,30 +31,68 @@ contains
 
    !> Begin with an assembly
    module procedure begin_walk
-      walk%graph = graph
+      walk%joints = graph
       walk%unit = unit_of_force(load)
-      call bound_rays(graph, walk%bounded, walk%free)
-      call plan_matrix(graph, walk%springs)
-      allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
+      walk%layers = no_layers()
+      call begin_with_layers(walk)
    end procedure begin_walk
+
+   !> Begin without forces, with layers for all tangents
+   pure subroutine begin_with_layers(walk)
+      type(load_walk_t), intent(inout) :: walk
+      type(joint_graph_t) :: joints
+      logical :: same
+
+      joints = walk%joints
+      if (crushes(joints)) call less_rough(walk%joints, less_friction(1), joints, same)
+      call add_layers(joints, walk%layers, walk%graph, walk%couple)
+      call bound_rays(walk%graph, walk%bounded, walk%free)
+      call plan_matrix(walk%graph, walk%springs)
+      if (allocated(walk%mass)) deallocate (walk%mass)
+      allocate (walk%mass(3, 0:walk%graph%n_block), source=0.0_wp)
+      if (allocated(walk%x)) deallocate (walk%x)
+   end subroutine begin_with_layers
 
    !> Go on to a load
    module procedure walk_to
-      type(interior_point_t) :: point
       type(load_decision_t) :: decision
-      real(wp) :: scaled(3, 0:walk%graph%n_block)
+      real(wp), allocatable :: force(:, :), x(:, :)
+      integer :: k
+      logical :: touched
+
+      allocate (force(3, size(walk%joints%kind)))
+      do k = 1, most_rounds
+         call walk_with_layers(load, walk, x, state)
+         if (.not. crushes(walk%joints)) return
+         if (state /= load_state%stands) exit
+         call forces_of_rays(walk%graph, x(:, :size(force, 2)), walk%unit, force)
+         call touch_parabola(walk%joints, force, crush_tolerance*max(maxval(abs(force(1:2, :))), &
+            & maxval(abs(load))), walk%layers, touched)
+         if (.not. touched) return
+         call begin_with_layers(walk)
+      end do
+      call decide_load(walk%joints, load, decision)
+      state = decision%state
+   end procedure walk_to
+
+   !> Go on to a load with the layers that there are
+   pure subroutine walk_with_layers(load, walk, x, state)
+      real(wp), intent(in) :: load(:, :)
+      type(load_walk_t), intent(inout) :: walk
+      !> Forces along the rays that carry it: (n_side, n_joint)
+      real(wp), allocatable, intent(out) :: x(:, :)
+      integer, intent(out) :: state
+      type(interior_point_t) :: point
+      real(wp) :: all(3, walk%graph%n_block), scaled(3, 0:walk%graph%n_block)
       logical :: carried
 
-      if (crushes(walk%graph)) then
-         call decide_load(walk%graph, load, decision)
-         state = decision%state
-         return
-      end if
-      call scale_load(load, walk%unit, walk%springs%length, scaled)
+      all = walk%couple
+      all(:, :size(load, 2)) = all(:, :size(load, 2)) + load
+      call scale_load(all, walk%unit, walk%springs%length, scaled)
       state = load_state%stands
       carried = .false.
       if (allocated(walk%x)) then
-         if (walk%springs%usable) call try_correction(scaled, walk, carried)
+         if (walk%springs%usable) call try_correction(scaled, walk, x, carried)
          if (carried) return
          point%x = walk%x
          call go_on_to_load(walk%graph, scaled, resolution, walk%springs, point)
@@ -69,15 +107,18 @@ contains
       if (state == load_state%stands) walk%x = point%x
       if (allocated(walk%x)) call centre(merge(n_centring, 0, state == load_state%stands), &
          & size_of_load(scaled), walk)
-   end procedure walk_to
+      x = point%x
+   end subroutine walk_with_layers
 
    !> Whether a correction carries the forces to a load
-   pure subroutine try_correction(scaled, walk, carried)
+   pure subroutine try_correction(scaled, walk, x, carried)
       real(wp), intent(in) :: scaled(:, 0:)     !! The load in the units of the rays: (3, 0:n_block)
       type(load_walk_t), intent(inout) :: walk  !! The walk, whose springs are those of its forces
+      !> The forces after correction: (n_side, n_joint)
+      real(wp), allocatable, intent(out) :: x(:, :)
       logical, intent(out) :: carried           !! Whether forces inside all bounds balance the load
       real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
-      real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
+      real(wp) :: rate(n_side, size(walk%x, 2))
       integer :: turn
 
       carried = .false.

@@ -120,6 +120,14 @@ def test_bounds_of_another_position_are_none_of_the_least_factor(tmp_path: Path)
     assert row["verdict"] == "found" or (row["exact_low"], row["exact_high"]) == ("", "")
 
 
+def test_the_worst_position_of_joints_that_crush_and_cannot_slide_is_found(tmp_path: Path) -> None:
+    """The same as at 45 degrees, as nothing slides there."""
+    deck = random_study(70039).replace("values = 25, 45, 90", "values = 45, 90")
+    sliding, rough = run(DDA, tmp_path, "x", deck)
+    assert sliding["verdict"] == rough["verdict"] == "found"
+    assert float(rough["critical"]) == pytest.approx(float(sliding["critical"]), rel=2e-9)
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3, 9, 11, 12])
 def test_no_fixed_position_is_worse_than_the_worst(tmp_path: Path, seed: int) -> None:
     verdict, faults = check(DDA, tmp_path, random_bridge(seed))
