@@ -26,6 +26,7 @@ module dda_joint_graph
       integer :: corner_no_slip = 4  !! One corner that cannot slide: N1 >= 0, any T, N2 = 0
       integer :: pin = 5             !! A restrained point: any N1 and any T, N2 = 0
       integer :: mirror = 6          !! A plane of symmetry: any N1 and N2, T = 0
+      integer :: strip = 9           !! Column of a joint that crushes, without forces
    end type joint_kind_enum
 
    !> Names of the kinds

@@ -6,7 +6,8 @@
 module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_rays, only : add_ray_forces, ray_rates
+   use dda_joint_rays, only : add_ray_forces, joint_force, n_side, ray_rates
+   use dda_joint_strips, only : bear_strips, subtract_crushing, yield_strip
    use dda_kinds, only : wp
    use dda_ray_matrix, only : add_digits, ray_matrix_t, solve_springs
    implicit none
@@ -14,6 +15,7 @@ module dda_interior_direction
 
    public :: turn_t
    public :: direct, direct_again, refine_direction, find_balance, respond_to_live_load, see_rest
+   public :: add_yielding, see_yielding
 
    !> What one turn works on
    type :: turn_t
@@ -97,14 +99,80 @@ contains
       turn%dfactor = 0.0_wp
       ! rates less what velocities make of them are to go
       call ray_rates(graph, path%length, point%v, turn%rate)
+      call subtract_crushing(graph, path%strip, point%x, point%s, turn%rate)
       turn%ds = path%compliance*turn%aim &
          & - ((point%s - path%compliance*point%x)*path%bounded - turn%rate)
       turn%dx = turn%aim - springs%stiffness*turn%ds
       turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
+      call begin_yielding(graph, point, springs, turn)
       call see_rest(graph, path, turn)
       call balance_direction(graph, path, point, springs, turn)
       call refine_direction(graph, path, point, enough, springs, turn)
    end subroutine find_direction
+
+   !> Let joints that crush yield to the first direction, and bring their strips to their forces
+   pure subroutine begin_yielding(graph, point, springs, turn)
+      type(joint_graph_t), intent(in) :: graph
+      type(interior_point_t), intent(in) :: point
+      type(ray_matrix_t), intent(in) :: springs
+      type(turn_t), intent(inout) :: turn
+      real(wp) :: force(3), y(2), more(n_side)
+      integer :: i
+
+      do i = 1, size(springs%strip)
+         associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
+            & c => springs%strip(i)%place)
+            force = joint_force(graph%kind(j), graph%friction(j), turn%dx(:, j))
+            call yield_strip(graph, strip, force, turn%aim(:2, c) &
+               & + point%x(:2, c) - bear_strips(graph, strip, point%x), y, more)
+            turn%ds(:, j) = turn%ds(:, j) + more
+            turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*more
+            turn%ds(:2, c) = y
+            turn%dx(:2, c) = turn%aim(:2, c) - springs%stiffness(:2, c)*y
+         end associate
+      end do
+   end subroutine begin_yielding
+
+   !> Let joints that crush yield to a change of a direction
+   pure subroutine see_yielding(graph, springs, dx, turn, more)
+      type(joint_graph_t), intent(in) :: graph
+      type(ray_matrix_t), intent(in) :: springs
+      real(wp), intent(in) :: dx(:, :)       !! The direction of x before: (n_side, n_joint)
+      type(turn_t), intent(inout) :: turn    !! That of x without yielding in, with it out
+      !> Rates of yielding, of the joint and of its strip: (n_side, 2, n_strip)
+      real(wp), intent(out) :: more(:, :, :)
+      real(wp) :: force(3)
+      integer :: i
+
+      more = 0.0_wp
+      do i = 1, size(springs%strip)
+         associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
+            & c => springs%strip(i)%place)
+            force = joint_force(graph%kind(j), graph%friction(j), turn%dx(:, j) - dx(:, j))
+            call yield_strip(graph, strip, force, turn%dx(:2, c) - dx(:2, c), &
+               & more(:2, 2, i), more(:, 1, i))
+            turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*more(:, 1, i)
+            turn%dx(:, c) = turn%dx(:, c) - springs%stiffness(:, c)*more(:, 2, i)
+         end associate
+      end do
+   end subroutine see_yielding
+
+   !> Add rates of yielding to the rates, whose part of the direction of x follows
+   pure subroutine add_yielding(springs, more, turn)
+      type(ray_matrix_t), intent(in) :: springs
+      real(wp), intent(in) :: more(:, :, :)  !! Rates of yielding: (n_side, 2, n_strip)
+      type(turn_t), intent(inout) :: turn
+      integer :: i
+
+      do i = 1, size(springs%strip)
+         associate (j => springs%strip(i)%joint, c => springs%strip(i)%place)
+            turn%rate(:, j) = turn%rate(:, j) + more(:, 1, i)
+            turn%rate(:, c) = turn%rate(:, c) + more(:, 2, i)
+            turn%dx(:, j) = turn%dx(:, j) + springs%stiffness(:, j)*more(:, 1, i)
+            turn%dx(:, c) = turn%dx(:, c) + springs%stiffness(:, c)*more(:, 2, i)
+         end associate
+      end do
+   end subroutine add_yielding
 
    !> Balance a direction again until the imbalance that is left no longer halves
    pure subroutine refine_direction(graph, path, point, enough, springs, turn)

@@ -16,6 +16,7 @@ module dda_interior_point
    use dda_interior_direction, only : turn_t
    use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals
    use dda_joint_graph, only : joint_graph_t
+   use dda_joint_strips, only : keep_inside
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
    implicit none
@@ -66,6 +67,7 @@ contains
          point%x = point%x + 0.5_wp*product/power
       end if
       point%x = point%x*path%bounded
+      call keep_inside(graph, path%strip, point%x)
       point%s = point%s*path%bounded + (1.0_wp - path%bounded)
    end subroutine start_by_springs
 

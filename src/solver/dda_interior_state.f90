@@ -2,6 +2,7 @@
 module dda_interior_state
    use dda_joint_graph, only : joint_graph_t, unit_of_length
    use dda_joint_rays, only : bound_rays
+   use dda_joint_strips, only : joint_strip_t, list_strips
    use dda_kinds, only : wp
    use, intrinsic :: iso_fortran_env, only : int8
    implicit none
@@ -51,6 +52,8 @@ module dda_interior_state
       real(wp), allocatable :: mass(:, :)
       !> Whether there are any
       logical :: moves = .false.
+      !> Joints that crush: (n)
+      type(joint_strip_t), allocatable :: strip(:)
       !> What a unit of force closes a ray by: forces that hold one another, of any size, are small
       real(wp) :: compliance = 0.0_wp
       !> Factor of this path that is one for the caller
@@ -111,6 +114,7 @@ contains
       type(load_path_t), intent(out) :: path
 
       call bound_rays(graph, path%bounded, path%free)
+      call list_strips(graph, path%strip)
       path%has_others = any(path%bounded == 0_int8)
       path%n_bounded = real(max(1, count(path%bounded > 0)), wp)
       path%length = unit_of_length(graph)

@@ -2,11 +2,12 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_interior_turn
-   use dda_interior_direction, only : direct, direct_again, find_balance, refine_direction, &
-      & respond_to_live_load, see_rest, turn_t
+   use dda_interior_direction, only : add_yielding, direct, direct_again, find_balance, &
+      & refine_direction, respond_to_live_load, see_rest, see_yielding, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : add_ray_forces, n_side, ray_rates
+   use dda_joint_strips, only : see_strips, strip_lack, strip_power, subtract_crushing
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs
    use, intrinsic :: iso_fortran_env, only : int8
@@ -85,9 +86,11 @@ contains
       call add_ray_forces(graph, path%length, point%x, turn%rest)
       turn%lack = -turn%rest
       ! forces that hold one another may be so large that their rounding counts beside the loads
-      point%imbalance = maxval(abs(turn%lack))/max(path%largest_dead, &
-         & abs(point%factor)*path%largest_live, 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
+      power = max(maxval(abs(turn%lack)), strip_lack(graph, path%strip, point%x))
+      point%imbalance = power/max(path%largest_dead, abs(point%factor)*path%largest_live, &
+         & 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
       call ray_rates(graph, path%length, point%v, turn%rate)
+      call subtract_crushing(graph, path%strip, point%x, point%s, turn%rate)
       power = maxval(abs(point%v))
       against = against_all(path, turn%rate)
       point%violation = against/max(power, tiny(power))
@@ -96,7 +99,8 @@ contains
       turn%lack_of_power = 1.0_wp - power
       point%upper = no_limit
       if (power > 0.0_wp) then
-         point%upper = (power_against(graph, path, point, turn%rate) - sum(path%dead*point%v))/power
+         point%upper = (power_against(graph, path, point, turn%rate) - sum(path%dead*point%v) &
+            & + strip_power(graph, path%strip, point%x, point%s))/power
          ! forces that carry more may be larger where joints are violated
          point%margin = (max(against, 0.0_wp) + epsilon(power)*maxval(abs(point%v))) &
             & *sum(abs(point%x))/power
@@ -162,6 +166,7 @@ contains
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
       call set_stiffness(path, point, springs)
+      call see_strips(graph, point%x, point%s, springs%strip)
       call set_springs(graph, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(graph, path, springs, turn)
       turn%aim = -point%x*path%bounded
@@ -267,7 +272,7 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
-      real(wp) :: change(n_side), dx(n_side, size(turn%dx, 2))
+      real(wp) :: change(n_side), dx(n_side, size(turn%dx, 2)), more(n_side, 2, size(springs%strip))
       real(wp) :: dv(3, 0:graph%n_block), dfactor, share, steps(2, n_share)
       integer :: i, j, best
 
@@ -278,8 +283,10 @@ contains
          turn%dx(:, j) = dx(:, j) + change_of_aim(path, wish, point, turn, dx(:, j), j) &
             & *(1.0_wp - path%compliance*springs%stiffness(:, j))
       end do
+      call see_yielding(graph, springs, dx, turn, more)
       call see_rest(graph, path, turn)
       call find_balance(graph, path, point, springs, turn)
+      call add_yielding(springs, more, turn)
       ! the rates are not needed any more and make room for what s would change by
       do j = 1, size(dx, 2)
          change = turn%dx(:, j) - dx(:, j)
@@ -383,8 +390,8 @@ contains
       real(wp) :: reach(2)
 
       reach = share_of_way*longest_steps(path, point, turn)
-      ! with masses, forces and accelerations balance together
-      if (path%moves) reach = minval(reach)
+      ! with masses, forces and accelerations balance together, and with curvature
+      if (path%moves .or. size(path%strip) > 0) reach = minval(reach)
       point%x = point%x + reach(1)*turn%dx
       point%factor = point%factor + reach(1)*turn%dfactor
       point%s = point%s + reach(2)*(turn%ds*path%bounded)

@@ -14,8 +14,8 @@ module dda_joint_layers
    implicit none
    private
 
-   public :: joint_layers_t, less_friction
-   public :: add_layers, beyond_parabola, bound_all, less_rough, no_layers, touch_parabola
+   public :: joint_layers_t
+   public :: add_layers, beyond_parabola, no_layers, touch_parabola
 
    !> Tangents of the parabolas of joints
    type :: joint_layers_t
@@ -26,10 +26,6 @@ module dda_joint_layers
       !> Normal force there, over the strength: (n)
       real(wp), allocatable :: share(:)
    end type joint_layers_t
-
-   !> Friction with which joints that crush are decided, the first that no slip needs more of: steep
-   !> cones and free shear forces beside layers leave the proofs few digits
-   real(wp), parameter :: less_friction(*) = [5.0_wp, 50.0_wp, huge(1.0_wp)]
 
    !> Distance below which two tangents of a joint coincide
    real(wp), parameter :: same = 1.0e-10_wp
@@ -44,27 +40,6 @@ contains
 
       allocate (no_layers%joint(0), no_layers%side(0), no_layers%share(0))
    end function no_layers
-
-   !> The same joints, of which none that may be crushed has more friction than so much. Rougher
-   !> joints carry the same forces, and move in the same mechanism if none of them slides
-   pure subroutine less_rough(graph, friction, other, same)
-      type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: friction  !! Coefficient of friction; huge for all that there is
-      type(joint_graph_t), intent(out) :: other
-      logical, intent(out) :: same      !! Whether they had no more before
-      logical :: rougher(size(graph%kind))
-
-      other = graph
-      rougher = .false.
-      if (friction < huge(friction)) rougher = graph%crush < huge(friction) &
-         & .and. (graph%kind == joint_kind%no_slip &
-         & .or. (graph%kind == joint_kind%contact .and. graph%friction > friction))
-      where (rougher)
-         other%kind = joint_kind%contact
-         other%friction = friction
-      end where
-      same = .not. any(rougher)
-   end subroutine less_rough
 
    !> How far the forces of a joint lie beyond what it can carry without being crushed [N/m]
    elemental real(wp) function beyond_parabola(strength, n1, n2) result(beyond)
@@ -101,19 +76,6 @@ contains
          touched = .true.
       end do
    end subroutine touch_parabola
-
-   !> Bound the forces of all joints by their strengths
-   pure subroutine bound_all(graph, layers)
-      type(joint_graph_t), intent(in) :: graph
-      type(joint_layers_t), intent(inout) :: layers
-      integer :: j
-
-      do j = 1, size(graph%kind)
-         if (.not. graph%crush(j) < huge(1.0_wp)) cycle
-         call add_tangent(j, 1, 1.0_wp, layers)
-         call add_tangent(j, 2, 1.0_wp, layers)
-      end do
-   end subroutine bound_all
 
    !> Add a tangent
    pure subroutine add_tangent(joint, side, share, layers)

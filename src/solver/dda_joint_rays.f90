@@ -11,24 +11,24 @@ module dda_joint_rays
    implicit none
    private
 
-   public :: n_side, bound_rays, joint_rays, joint_spring, scaled_rows, scale_load
+   public :: n_side, bound_rays, joint_force, joint_rays, joint_spring, scaled_rows, scale_load
    public :: ray_rates, add_ray_forces, forces_of_rays
 
    !> Rays of a joint
    integer, parameter :: n_side = 4
    !> Shapes of rays: those of joint_kind, and of frictionless joints of two corners and of one
-   integer, parameter :: n_shape = 8, smooth_contact = 7, smooth_corner = 8
+   integer, parameter :: n_shape = 9, smooth_contact = 7, smooth_corner = 8
    !> Share of the normal force of the first corner in the first two rays, of the second corner in
    !> the others; share of the shear force: (n_side, n_shape)
    real(wp), parameter :: press(n_side, n_shape) = reshape(real([1, 1, 1, 1, 1, 0, 1, 0, &
-      & 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 0, 0], wp), &
+      & 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0], wp), &
       & [n_side, n_shape])
    real(wp), parameter :: shear(n_side, n_shape) = reshape(real([1, -1, 1, -1, 0, 1, 0, 0, &
-      & 1, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], wp), &
+      & 1, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], wp), &
       & [n_side, n_shape])
    !> Shear forces and those of joints that pull have any sign: (n_shape)
    logical, parameter :: pulls(n_shape) = [.false., .false., .false., .false., .true., .true., &
-      & .false., .false.]
+      & .false., .false., .false.]
 
 contains
 
@@ -51,6 +51,7 @@ contains
          else where (abs(press(:, shape)) + abs(shear(:, shape)) > 0.0_wp)
             free(:, j) = 1_int8
          end where
+         if (shape == joint_kind%strip) bounded(:2, j) = 1_int8
       end do
    end subroutine bound_rays
 

@@ -84,17 +84,21 @@ contains
       violation = violation/max(largest, tiny(largest))
    end subroutine check_forces
 
-   !> Power on a mechanism of what forces leave of a load: by so much per unit of the live load's
-   !> power a factor that they carry may be too large, as the mechanism is the factor's slope in any
-   !> load
+   !> Power on a mechanism of what forces leave of a load, and of what lies beyond the strength of
+   !> joints that the mechanism crushes: by so much per unit of the live load's power a factor that
+   !> they carry may be too large, as the mechanism is the factor's slope in any load or strength
    pure real(wp) function balance_margin(graph, load, force, velocity) result(margin)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :), force(:, :), velocity(:, :)
-      real(wp) :: left(size(load, 1), size(load, 2))
+      real(wp) :: left(size(load, 1), size(load, 2)), rate(3, size(graph%kind))
 
       left = load
       call add_joint_forces(graph, force, left)
       margin = sum(abs(left*velocity))
+      if (.not. crushes(graph)) return
+      call joint_motion(graph, velocity, rate)
+      margin = margin + sum(beyond_parabola(graph%crush, force(1, :), force(2, :)) &
+         & *(abs(rate(1, :) - rate(2, :)) + max(0.0_wp, -rate(1, :)) + max(0.0_wp, -rate(2, :))))
    end function balance_margin
 
    !> Power that forces would put into velocities where these close joints that cannot close: by so

@@ -9,8 +9,7 @@ module dda_limit_decision
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
-   use dda_joint_layers, only : add_layers, joint_layers_t, less_friction, less_rough, no_layers, &
-      & touch_parabola
+   use dda_joint_strips, only : add_strips, joint_strip_t, keep_inside, list_strips
    use dda_joint_rays, only : add_ray_forces, bound_rays, forces_of_rays, n_side, ray_rates, &
       & scale_load
    use dda_kinds, only : wp
@@ -25,7 +24,6 @@ module dda_limit_decision
    public :: decide_load, decide_on_way, drives, find_margin
    public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
    public :: keep_velocities, resolution
-   public :: crush_tolerance, most_rounds
 
    !> Whether a load can be carried
    type :: load_state_enum
@@ -64,12 +62,6 @@ module dda_limit_decision
    !> Largest gap of the factors that a path reaches and does not pass
    real(wp), parameter :: margin_gap = 1.0e-9_wp
 
-   !> Violation of the crushing parabola, over the largest force
-   real(wp), parameter :: crush_tolerance = 1.0e-12_wp
-
-   !> Maximum number of rounds of tangents
-   integer, parameter :: most_rounds = 60
-
    !> Power of a mechanism below which it is round-off, over that of the loads
    real(wp), parameter :: rounding = 1.0e-13_wp
 
@@ -94,67 +86,20 @@ contains
       real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       type(load_decision_t), intent(out) :: decision
       type(joint_graph_t) :: joints
-      integer :: k, n
-      logical :: same
+      real(wp) :: power, unit
 
-      n = 0
-      do k = 1, size(less_friction)
-         call less_rough(graph, less_friction(k), joints, same)
-         call decide_strips(joints, load, decision)
-         n = n + decision%n_factorisation
-         call prove_crushing(graph, load, same, decision)
-         if (same .or. decision%state /= load_state%undecided) exit
-      end do
-      decision%n_factorisation = n
-   end subroutine decide_crushing
-
-   !> What the forces or the velocities of joints with less friction prove
-   pure subroutine prove_crushing(graph, load, same, decision)
-      type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: load(:, :)
-      logical, intent(in) :: same  !! Whether they had no less
-      type(load_decision_t), intent(inout) :: decision
-      real(wp) :: power
-
+      unit = unit_of_force(load)
+      call add_strips(graph, unit, joints)
+      call decide_cones(joints, load/unit, decision)
+      decision%force = unit*decision%force(:, :size(graph%kind))
       if (decision%state == load_state%stands) then
          call check_forces(graph, load, decision%force, decision%imbalance, decision%violation)
       else if (decision%state == load_state%falls) then
          call check_velocities(graph, load, decision%velocity, decision%violation, power)
          decision%power = power - crushing_power(graph, decision%velocity)
-         if (.not. decision%power > 0.0_wp .or. (decision%violation > free .and. .not. same)) &
-            & decision%state = load_state%undecided
+         if (.not. decision%power > 0.0_wp) decision%state = load_state%undecided
       end if
-   end subroutine prove_crushing
-
-   !> Whether joints that crush can carry a load: tangents of their parabolas are added until forces
-   !> keep them, or none reach the load
-   pure subroutine decide_strips(graph, load, decision)
-      type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: load(:, :)
-      type(load_decision_t), intent(out) :: decision
-      type(joint_graph_t) :: layered
-      type(joint_layers_t) :: layers
-      real(wp), allocatable :: apex(:, :)
-      integer :: k, n
-      logical :: touched
-
-      layers = no_layers()
-      n = 0
-      do k = 1, most_rounds
-         call add_layers(graph, layers, layered, apex)
-         apex(:, :graph%n_block) = apex(:, :graph%n_block) + load
-         call decide_cones(layered, apex, decision)
-         n = n + decision%n_factorisation
-         decision%n_factorisation = n
-         decision%force = decision%force(:, :size(graph%kind))
-         decision%velocity = decision%velocity(:, :graph%n_block)
-         if (decision%state /= load_state%stands) return
-         call touch_parabola(graph, decision%force, crush_tolerance &
-            & *max(maxval(abs(decision%force(1:2, :))), maxval(abs(load))), layers, touched)
-         if (.not. touched) return
-      end do
-      decision%state = load_state%undecided
-   end subroutine decide_strips
+   end subroutine decide_crushing
 
    !> Whether joints that do not crush can carry a load
    pure subroutine decide_cones(graph, load, decision)
@@ -299,9 +244,12 @@ contains
       type(interior_point_t), intent(out) :: point  !! Has these forces
       real(wp), parameter :: several = 5.0_wp
       integer(int8), allocatable :: bounded(:, :), free(:, :)
+      type(joint_strip_t), allocatable :: strip(:)
 
       call bound_rays(graph, bounded, free)
       point%x = several*max(1.0_wp, sqrt(size_of_load(load)))*bounded
+      call list_strips(graph, strip)
+      call keep_inside(graph, strip, point%x)
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one

@@ -9,14 +9,13 @@ module dda_limit_load
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, load_path_t, &
       & no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
-   use dda_joint_layers, only : add_layers, beyond_parabola, bound_all, joint_layers_t, &
-      & less_friction, less_rough, no_layers, touch_parabola
    use dda_joint_rays, only : bound_rays, forces_of_rays, scale_load
+   use dda_joint_strips, only : add_strips
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & crushing_power, flow_margin, stopping_factor
-   use dda_limit_decision, only : crush_tolerance, decide_load, drives, go_to_load, &
-      & keep_velocities, load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
+   use dda_limit_decision, only : drives, go_to_load, keep_velocities, load_state, state_at_end, &
+      & unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    use, intrinsic :: iso_fortran_env, only : int8
    implicit none
@@ -28,14 +27,8 @@ module dda_limit_load
    !> Forces of an assembly on their way
    type :: load_walk_t
       private
-      !> The joints
-      type(joint_graph_t) :: joints
-      !> Tangents of the parabolas of those that crush
-      type(joint_layers_t) :: layers
-      !> The joints with layers for the tangents
+      !> The joints, with columns for those that crush
       type(joint_graph_t) :: graph
-      !> Loads by the couples of the layers: (3, n_block of graph)
-      real(wp), allocatable :: couple(:, :)
       !> One for rays whose force may not be negative, and for rays of any sign: (n_side, n_joint)
       integer(int8), allocatable :: bounded(:, :), free(:, :)
       !> Springs that tell how far the forces are from their bounds
@@ -85,10 +78,6 @@ module dda_limit_load
    !> Largest difference of both factors of crushing joints
    real(wp), parameter :: widest = 1.0e-8_wp
 
-   !> Gap of the bounds with the first tangents, and share of it with the next
-   real(wp), parameter :: first_gap = 1.0e-2_wp, sharper = 0.1_wp
-   !> Violation of a parabola without a new tangent, over the largest violation
-   real(wp), parameter :: negligible = 0.01_wp
 
    interface
 
@@ -152,100 +141,24 @@ contains
    end subroutine find_limit
 
    !> The limit load of joints that crush
-   pure subroutine limit_crushing(graph, dead, live, tolerance, decided, limit)
+   pure subroutine limit_crushing(graph, dead, live, tolerance, stands, limit)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :)  !! Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)  !! What a factor of one adds: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: tolerance
-      logical, intent(in) :: decided      !! Whether the dead load is taken to stand
+      logical, intent(in) :: stands       !! Whether the dead load is taken to stand
       type(limit_load_t), intent(out) :: limit
-      type(load_decision_t) :: decision
-      integer :: k, n
-      logical :: same
-
-      n = 0
-      if (.not. decided) then
-         call decide_load(graph, dead, decision)
-         n = decision%n_factorisation
-         if (decision%state /= load_state%stands) then
-            if (decision%state == load_state%falls) limit%state = limit_state%no_dead_equilibrium
-            limit%force = decision%force
-            limit%velocity = decision%velocity
-            limit%n_factorisation = n
-            call certify(graph, dead, live, limit)
-            return
-         end if
-      end if
-      do k = 1, size(less_friction)
-         call limit_strips(graph, less_friction(k), dead, live, tolerance, limit, same)
-         n = n + limit%n_factorisation
-         if (same .or. limit%state == limit_state%found) exit
-      end do
-      limit%n_factorisation = n
-   end subroutine limit_crushing
-
-   !> The limit load of joints that crush, by tangents of their parabolas that are added until the
-   !> forces keep them. Where forces lie beyond needs few digits at first
-   pure subroutine limit_strips(graph, friction, dead, live, tolerance, limit, same)
-      type(joint_graph_t), intent(in) :: graph
-      !> Friction with which forces and velocities are sought; they prove the limit of the joints as
-      !> they are
-      real(wp), intent(in) :: friction
-      real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
-      type(limit_load_t), intent(out) :: limit
-      logical, intent(out) :: same  !! Whether the joints have no more friction than that
       type(joint_graph_t) :: joints
-      type(joint_layers_t) :: layers
-      real(wp) :: beyond, gap, most
-      integer :: k, n
-      logical :: bounded, touched
+      real(wp) :: unit
 
-      call less_rough(graph, friction, joints, same)
-      layers = no_layers()
-      gap = first_gap
-      bounded = .false.
-      n = 0
-      do k = 1, most_rounds
-         call limit_layers(joints, layers, dead, live, gap, limit)
-         n = n + limit%n_factorisation
-         limit%n_factorisation = n
-         if (limit%state == limit_state%unbounded .and. .not. bounded) then
-            bounded = .true.
-            call bound_all(graph, layers)
-            cycle
-         end if
-         if (limit%state /= limit_state%found) exit
-         most = crush_tolerance*maxval(abs(limit%force(1:2, :)))
-         beyond = maxval(beyond_parabola(graph%crush, limit%force(1, :), limit%force(2, :)))
-         call touch_parabola(graph, limit%force, max(most, negligible*beyond), layers, touched)
-         call certify(graph, dead, live, limit)
-         if (agree(limit, tolerance, crush_tolerance)) return
-         if (.not. (touched .or. gap > tolerance)) exit
-         gap = max(tolerance, sharper*gap)
-      end do
+      unit = unit_of_force(dead)
+      call add_strips(graph, unit, joints)
+      call limit_cones(joints, dead/unit, live/unit, tolerance, stands, limit)
+      limit%force = unit*limit%force(:, :size(graph%kind))
       call certify(graph, dead, live, limit)
       if (limit%state == limit_state%found .and. .not. agree(limit, max(tolerance, widest), &
          & widest)) limit%state = limit_state%not_converged
-   end subroutine limit_strips
-
-   !> The limit load of joints with layers for the parabolas of those that crush
-   pure subroutine limit_layers(graph, layers, dead, live, tolerance, limit)
-      type(joint_graph_t), intent(in) :: graph
-      type(joint_layers_t), intent(in) :: layers
-      real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
-      !> The limit, forces and velocities of joints and blocks alone
-      type(limit_load_t), intent(out) :: limit
-      type(joint_graph_t) :: layered
-      real(wp), allocatable :: load(:, :), more(:, :)
-
-      call add_layers(graph, layers, layered, load)
-      load(:, :graph%n_block) = load(:, :graph%n_block) + dead
-      allocate (more(3, layered%n_block), source=0.0_wp)
-      more(:, :graph%n_block) = live
-      call limit_cones(layered, load, more, tolerance, .true., limit)
-      limit%force = limit%force(:, :size(graph%kind))
-      limit%velocity = limit%velocity(:, :graph%n_block)
-   end subroutine limit_layers
+   end subroutine limit_crushing
 
    !> Whether two factors agree, and the forces keep the law of joints that crush
    pure logical function agree(limit, gap, violation)

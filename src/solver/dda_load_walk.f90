@@ -11,6 +11,7 @@
 submodule (dda_limit_load) dda_load_walk
    use dda_interior_turn, only : lift
    use dda_joint_rays, only : add_ray_forces, n_side
+   use dda_joint_strips, only : bear_strips, see_strips
    use dda_limit_decision, only : begin_inside, go_on_to_load
    use dda_ray_matrix, only : set_springs, solve_springs
    implicit none
@@ -31,69 +32,30 @@ contains
 
    !> Begin with an assembly
    module procedure begin_walk
-      walk%joints = graph
       walk%unit = unit_of_force(load)
-      walk%layers = no_layers()
-      call begin_with_layers(walk)
-   end procedure begin_walk
-
-   !> Begin without forces, with layers for all tangents
-   pure subroutine begin_with_layers(walk)
-      type(load_walk_t), intent(inout) :: walk
-      type(joint_graph_t) :: joints
-      logical :: same
-
-      joints = walk%joints
-      if (crushes(joints)) call less_rough(walk%joints, less_friction(1), joints, same)
-      call add_layers(joints, walk%layers, walk%graph, walk%couple)
+      if (crushes(graph)) then
+         call add_strips(graph, walk%unit, walk%graph)
+      else
+         walk%graph = graph
+      end if
       call bound_rays(walk%graph, walk%bounded, walk%free)
       call plan_matrix(walk%graph, walk%springs)
-      if (allocated(walk%mass)) deallocate (walk%mass)
-      allocate (walk%mass(3, 0:walk%graph%n_block), source=0.0_wp)
-      if (allocated(walk%x)) deallocate (walk%x)
-   end subroutine begin_with_layers
+      allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
+   end procedure begin_walk
 
    !> Go on to a load
    module procedure walk_to
-      type(load_decision_t) :: decision
-      real(wp), allocatable :: force(:, :), x(:, :)
-      integer :: k
-      logical :: touched
-
-      allocate (force(3, size(walk%joints%kind)))
-      do k = 1, most_rounds
-         call walk_with_layers(load, walk, x, state)
-         if (.not. crushes(walk%joints)) return
-         if (state /= load_state%stands) exit
-         call forces_of_rays(walk%graph, x(:, :size(force, 2)), walk%unit, force)
-         call touch_parabola(walk%joints, force, crush_tolerance*max(maxval(abs(force(1:2, :))), &
-            & maxval(abs(load))), walk%layers, touched)
-         if (.not. touched) return
-         call begin_with_layers(walk)
-      end do
-      call decide_load(walk%joints, load, decision)
-      state = decision%state
-   end procedure walk_to
-
-   !> Go on to a load with the layers that there are
-   pure subroutine walk_with_layers(load, walk, x, state)
-      real(wp), intent(in) :: load(:, :)
-      type(load_walk_t), intent(inout) :: walk
-      !> Forces along the rays that carry it: (n_side, n_joint)
-      real(wp), allocatable, intent(out) :: x(:, :)
-      integer, intent(out) :: state
       type(interior_point_t) :: point
-      real(wp) :: all(3, walk%graph%n_block), scaled(3, 0:walk%graph%n_block)
+      real(wp) :: scaled(3, 0:walk%graph%n_block)
       logical :: carried
 
-      all = walk%couple
-      all(:, :size(load, 2)) = all(:, :size(load, 2)) + load
-      call scale_load(all, walk%unit, walk%springs%length, scaled)
+      call scale_load(load, walk%unit, walk%springs%length, scaled)
       state = load_state%stands
-      carried = .false.
       if (allocated(walk%x)) then
-         if (walk%springs%usable) call try_correction(scaled, walk, x, carried)
-         if (carried) return
+         if (walk%springs%usable) then
+            call try_correction(scaled, walk, carried)
+            if (carried) return
+         end if
          point%x = walk%x
          call go_on_to_load(walk%graph, scaled, resolution, walk%springs, point)
          state = state_at_end(point)
@@ -105,21 +67,18 @@ contains
          state = state_at_end(point)
       end if
       if (state == load_state%stands) walk%x = point%x
-      if (allocated(walk%x)) call centre(merge(n_centring, 0, state == load_state%stands), &
-         & size_of_load(scaled), walk)
-      x = point%x
-   end subroutine walk_with_layers
+      if (allocated(walk%x)) call centre(merge(n_centring, 0, state == load_state%stands &
+         & .and. size(walk%springs%strip) == 0), size_of_load(scaled), walk)
+   end procedure walk_to
 
    !> Whether a correction carries the forces to a load
-   pure subroutine try_correction(scaled, walk, x, carried)
+   pure subroutine try_correction(scaled, walk, carried)
       real(wp), intent(in) :: scaled(:, 0:)     !! The load in the units of the rays: (3, 0:n_block)
       type(load_walk_t), intent(inout) :: walk  !! The walk, whose springs are those of its forces
-      !> The forces after correction: (n_side, n_joint)
-      real(wp), allocatable, intent(out) :: x(:, :)
       logical, intent(out) :: carried           !! Whether forces inside all bounds balance the load
       real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
-      real(wp) :: rate(n_side, size(walk%x, 2))
-      integer :: turn
+      real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
+      integer :: i, turn
 
       carried = .false.
       x = walk%x
@@ -128,6 +87,9 @@ contains
       do turn = 1, most_turns
          call solve_springs(walk%graph, walk%springs, rest, motion, rate)
          x = x - walk%springs%stiffness*rate
+         do i = 1, size(walk%springs%strip)
+            x(:2, walk%springs%strip(i)%place) = bear_strips(walk%graph, walk%springs%strip(i), x)
+         end do
          if (any(x*walk%bounded < 0.0_wp)) return
          rest = scaled
          call add_ray_forces(walk%graph, walk%springs%length, x, rest)
@@ -150,6 +112,7 @@ contains
          associate (x => walk%x, bounded => walk%bounded)
             walk%springs%stiffness = bounded*x**2 + walk%free*stiffness_of_free &
                & *sum(bounded*x**2)/real(max(1, count(bounded > 0)), wp)
+            call see_strips(walk%graph, x, 1.0_wp/max(x, tiny(1.0_wp)), walk%springs%strip)
             call set_springs(walk%graph, walk%mass, lift, walk%springs)
             if (i == n_step .or. .not. walk%springs%usable) exit
             push = 0.0_wp

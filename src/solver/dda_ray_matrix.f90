@@ -13,6 +13,7 @@ module dda_ray_matrix
    use dda_joint_places, only : lay_out_joints
    use dda_joint_rays, only : joint_rays, joint_spring, n_side, ray_rates, &
       & scaled_rows
+   use dda_joint_strips, only : joint_strip_t, list_strips, part_opening, soften_spring
    use dda_kinds, only : wp
    use dda_wide_factor, only : factorise_wide, rk, substitute_wide
    implicit none
@@ -36,6 +37,8 @@ module dda_ray_matrix
       integer, allocatable :: entry(:)
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
+      !> Joints that crush: (n)
+      type(joint_strip_t), allocatable :: strip(:)
       !> Factorisations so far
       integer :: n_factorisation = 0
       !> Substitutions so far
@@ -52,6 +55,7 @@ contains
       springs%length = unit_of_length(graph)
       call lay_out_joints(graph, .true., springs%matrix, springs%factor, springs%entry)
       allocate (springs%stiffness(n_side, size(graph%block, 2)))
+      call list_strips(graph, springs%strip)
    end subroutine plan_matrix
 
    !> Assemble springs and masses, and factor their matrix
@@ -93,8 +97,9 @@ contains
       real(rk) :: diagonal(3, 3, graph%n_block), coupling(3, 3, size(springs%matrix%pair, 2))
       real(rk) :: arm(3, 3, 2), pushed(3, 3, 2), spring(3, 3)
       real(wp) :: force(3, n_side)
-      integer :: b, c, i, j, side
+      integer :: b, c, i, j, next, side
 
+      next = 1
       diagonal = 0.0_rk
       do b = 1, graph%n_block
          do c = 1, 3
@@ -111,6 +116,7 @@ contains
                   & + springs%stiffness(i, j)*(real(force(:, i), rk)*force(c, i))
             end do
          end do
+         call soften(springs, j, next, spring)
          do side = 1, 2
             pushed(:, :, side) = matmul(arm(:, :, side), spring)
             b = graph%block(side, j)
@@ -132,12 +138,19 @@ contains
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: pushed(3, 3, 2), row(3, 3, 2), spring(3, 3)
-      integer :: j, side
+      real(rk) :: soft(3, 3)
+      integer :: j, next, side
 
+      next = 1
       springs%matrix%diagonal = 0.0_wp
       do j = 1, size(graph%block, 2)
          row = scaled_rows(graph, j, springs%length)
          spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
+         if (next <= size(springs%strip)) then
+            soft = spring
+            call soften(springs, j, next, soft)
+            spring = real(soft, wp)
+         end if
          do side = 1, 2
             if (graph%block(side, j) == 0) cycle
             pushed(:, :, side) = matmul(row(:, :, side), spring)
@@ -150,6 +163,20 @@ contains
             & matmul(pushed(:, :, side), transpose(row(:, :, 3 - side)))
       end do
    end subroutine assemble
+
+   !> Let the spring of a joint that crushes yield
+   pure subroutine soften(springs, j, next, spring)
+      type(ray_matrix_t), intent(inout) :: springs
+      integer, intent(in) :: j                 !! Number of the joint
+      integer, intent(inout) :: next           !! Number of the next joint that crushes, among them
+      real(rk), intent(inout) :: spring(3, 3)  !! The spring
+
+      if (next > size(springs%strip)) return
+      if (springs%strip(next)%joint /= j) return
+      call soften_spring(springs%stiffness(:2, springs%strip(next)%place), springs%strip(next), &
+         & spring)
+      next = next + 1
+   end subroutine soften
 
    !> sum = sum + a b', the lower triangle alone: no more is looked at of a diagonal block
    pure subroutine add_lower(a, b, sum)
@@ -181,6 +208,7 @@ contains
       else
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(graph, springs%length, motion, rate)
+         call part_openings(graph, springs, real(motion, rk), rate)
       end if
    end subroutine solve_springs
 
@@ -202,5 +230,25 @@ contains
             & + matmul(x(:, graph%block(2, j)), arm(:, :, 2)), &
             & real(joint_rays(graph%kind(j), graph%friction(j)), rk)), wp)
       end do
+      call part_openings(graph, springs, x, rate)
    end subroutine solve_wide
+
+   !> Part what opens joints that crush into rates of their rays and of crushing
+   pure subroutine part_openings(graph, springs, motion, rate)
+      type(joint_graph_t), intent(in) :: graph
+      type(ray_matrix_t), intent(in) :: springs
+      real(rk), intent(in) :: motion(3, 0:graph%n_block)
+      real(wp), intent(inout), contiguous :: rate(:, :)
+      real(rk) :: arm(3, 3, 2)
+      integer :: i
+
+      do i = 1, size(springs%strip)
+         associate (j => springs%strip(i)%joint)
+            arm = scaled_rows(graph, j, springs%length)
+            call part_opening(graph, springs%strip(i), &
+               & matmul(motion(:, graph%block(1, j)), arm(:, :, 1)) &
+               & + matmul(motion(:, graph%block(2, j)), arm(:, :, 2)), rate)
+         end associate
+      end do
+   end subroutine part_openings
 end module dda_ray_matrix

@@ -101,6 +101,33 @@ def test_an_arch_carries_what_a_programme_of_tangents_has(
     assert float(row["critical"]) == pytest.approx(programme(scene, crushes=True), rel=1e-7)
 
 
+RINGS = (
+    "&arch shape = 'segmental', span = 13.36, voussoirs = 8, rise = 3.61, thickness = 1.104, rings = 3 /\n"
+    "&joint friction_deg = {friction} /\n&vehicle axles = 93170, length = 0.3, position = {place} /\n"
+    + ASSOCIATED + SEARCH
+)
+
+
+@pytest.mark.parametrize("friction", [25.87, 45.0])
+@pytest.mark.parametrize("place", [-3.0, 0.0])
+@pytest.mark.parametrize("strength", [1.5e6, 5.503e6])
+def test_rings_that_crush_and_slide_carry_what_a_programme_of_tangents_has(
+    tmp_path: Path, friction: float, place: float, strength: float
+) -> None:
+    pytest.importorskip("scipy", reason="the linear programme wants scipy")
+    verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
+    from live_assemblies import programme
+    from voussoir.verify.deck import read_deck
+
+    (row,) = rows(tmp_path, RINGS.format(friction=friction, place=place) + material(strength, 2e4), head="")
+    (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}
+    blocks = verify.read_table(folder / "blocks.csv")[1]
+    scene = verify.scene_of(read_deck(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(programme(scene, crushes=True), rel=1e-7)
+    assert int(row["factorisations"]) < 60
+
+
 def test_great_strengths_are_none(tmp_path: Path) -> None:
     bridge = BRIDGE.format(shape="segmental", rise=2.5)
     (bare,) = rows(tmp_path, bridge + "&material unit_weight = 2e4 /\n", head="")
