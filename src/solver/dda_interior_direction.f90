@@ -6,7 +6,7 @@
 module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_rays, only : add_ray_forces, joint_force, n_side, ray_rates
+   use dda_joint_rays, only : add_ray_forces, sum_of_rays, n_side, ray_rates
    use dda_joint_strips, only : bear_strips, subtract_crushing, yield_strip
    use dda_kinds, only : wp
    use dda_ray_matrix, only : add_digits, ray_matrix_t, solve_springs
@@ -122,7 +122,7 @@ contains
       do i = 1, size(springs%strip)
          associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
             & c => springs%strip(i)%place)
-            force = joint_force(graph%kind(j), graph%friction(j), turn%dx(:, j))
+            force = sum_of_rays(graph%kind(j), graph%friction(j), turn%dx(:, j))
             call yield_strip(graph, strip, force, turn%aim(:2, c) &
                & + point%x(:2, c) - bear_strips(graph, strip, point%x), y, more)
             turn%ds(:, j) = turn%ds(:, j) + more
@@ -148,7 +148,7 @@ contains
       do i = 1, size(springs%strip)
          associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
             & c => springs%strip(i)%place)
-            force = joint_force(graph%kind(j), graph%friction(j), turn%dx(:, j) - dx(:, j))
+            force = sum_of_rays(graph%kind(j), graph%friction(j), turn%dx(:, j) - dx(:, j))
             call yield_strip(graph, strip, force, turn%dx(:2, c) - dx(:2, c), &
                & more(:2, 2, i), more(:, 1, i))
             turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*more(:, 1, i)

@@ -11,7 +11,7 @@ module dda_joint_rays
    implicit none
    private
 
-   public :: n_side, bound_rays, joint_force, joint_rays, joint_spring, scaled_rows, scale_load
+   public :: n_side, bound_rays, sum_of_rays, joint_rays, joint_spring, scaled_rows, scale_load
    public :: ray_rates, add_ray_forces, forces_of_rays
 
    !> Rays of a joint
@@ -112,7 +112,7 @@ contains
    end function joint_spring
 
    !> Forces of a joint from the factors of its rays
-   pure function joint_force(kind, friction, x) result(force)
+   pure function sum_of_rays(kind, friction, x) result(force)
       integer, intent(in) :: kind       !! What it can carry, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
       real(wp), intent(in) :: x(:)      !! Their factors: (n_side)
@@ -130,7 +130,7 @@ contains
          force(2) = part(1)*(p(3)*x(3) + p(4)*x(4))
          force(3) = part(2)*(s(1)*x(1) + s(2)*x(2) + s(3)*x(3) + s(4)*x(4))
       end associate
-   end function joint_force
+   end function sum_of_rays
 
    !> Rows of a joint as rigid bodies feel them; a block that touches itself has those of both sides
    !> as its first
@@ -208,7 +208,7 @@ contains
 
       arm = 1.0_wp/length
       do j = 1, size(x, 2)
-         f = joint_force(graph%kind(j), graph%friction(j), x(:, j))
+         f = sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
          do side = 1, 2
             b = graph%block(side, j)
             call add_rows(graph%row(1, 1, side, j), arm, f, load(:, b))
@@ -240,7 +240,7 @@ contains
       integer :: j
 
       do j = 1, size(x, 2)
-         force(:, j) = unit*joint_force(graph%kind(j), graph%friction(j), x(:, j))
+         force(:, j) = unit*sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
       end do
    end subroutine forces_of_rays
 end module dda_joint_rays

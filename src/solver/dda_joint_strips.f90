@@ -14,7 +14,7 @@
 !>    K = (1/D + curvature + sum of grad z grad z'*y/z)**-1       D: springs of the rays
 module dda_joint_strips
    use dda_joint_graph, only : joint_graph_t, joint_kind
-   use dda_joint_rays, only : joint_force, joint_rays, n_side
+   use dda_joint_rays, only : sum_of_rays, joint_rays, n_side
    use dda_kinds, only : wp
    use dda_wide_factor, only : rk
    implicit none
@@ -89,7 +89,7 @@ contains
       real(wp), intent(in) :: x(:, :)  !! Forces along the rays: (n_side, n_joint)
       real(wp) :: force(3)
 
-      force = joint_force(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
+      force = sum_of_rays(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
       share = (force(1) + force(2))/strip%strength
    end function part_of_strip
 
@@ -100,7 +100,7 @@ contains
       real(wp), intent(in) :: x(:, :)
       real(wp) :: z(2), force(3)
 
-      force = joint_force(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
+      force = sum_of_rays(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
       z = force(1:2) - 0.5_wp*((force(1) + force(2))/strip%strength)*(force(1) + force(2))
    end function bear_strips
 
@@ -115,12 +115,12 @@ contains
       do i = 1, size(strip)
          associate (j => strip(i)%joint, z => x(:2, strip(i)%place))
             z = bear_strips(graph, strip(i), x)
-            force = joint_force(graph%kind(j), graph%friction(j), x(:, j))
+            force = sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
             most = gentle*min(sum(force(1:2)), strip(i)%strength)
             if (minval(z) < 0.25_wp*most) then
                ! equal forces along all rays
                where (x(:, j) > 0.0_wp) x(:, j) = 1.0_wp
-               force = joint_force(graph%kind(j), graph%friction(j), x(:, j))
+               force = sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
                x(:, j) = most/sum(force(1:2))*x(:, j)
                z = bear_strips(graph, strip(i), x)
             end if

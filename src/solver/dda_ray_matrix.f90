@@ -237,6 +237,7 @@ contains
    pure subroutine part_openings(graph, springs, motion, rate)
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(in) :: springs
+      !> Motion of the blocks, none of what cannot move: (3, 0:n_block)
       real(rk), intent(in) :: motion(3, 0:graph%n_block)
       real(wp), intent(inout), contiguous :: rate(:, :)
       real(rk) :: arm(3, 3, 2)
