@@ -99,20 +99,19 @@ contains
       turn%dfactor = 0.0_wp
       ! rates less what velocities make of them are to go
       call ray_rates(graph, path%length, point%v, turn%rate)
-      call subtract_crushing(graph, path%strip, point%x, point%s, turn%rate)
+      call subtract_crushing(path%strip, point%x, point%s, turn%rate)
       turn%ds = path%compliance*turn%aim &
          & - ((point%s - path%compliance*point%x)*path%bounded - turn%rate)
       turn%dx = turn%aim - springs%stiffness*turn%ds
       turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
-      call begin_yielding(graph, point, springs, turn)
+      call begin_yielding(point, springs, turn)
       call see_rest(graph, path, turn)
       call balance_direction(graph, path, point, springs, turn)
       call refine_direction(graph, path, point, enough, springs, turn)
    end subroutine find_direction
 
    !> Let joints that crush yield to the first direction, and bring their strips to their forces
-   pure subroutine begin_yielding(graph, point, springs, turn)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine begin_yielding(point, springs, turn)
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(in) :: springs
       type(turn_t), intent(inout) :: turn
@@ -122,9 +121,9 @@ contains
       do i = 1, size(springs%strip)
          associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
             & c => springs%strip(i)%place)
-            force = sum_of_rays(graph%kind(j), graph%friction(j), turn%dx(:, j))
-            call yield_strip(graph, strip, force, turn%aim(:2, c) &
-               & + point%x(:2, c) - bear_strips(graph, strip, point%x), y, more)
+            force = sum_of_rays(strip%kind, strip%friction, turn%dx(:, j))
+            call yield_strip(strip, force, turn%aim(:2, c) &
+               & + point%x(:2, c) - bear_strips(strip, point%x), y, more)
             turn%ds(:, j) = turn%ds(:, j) + more
             turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*more
             turn%ds(:2, c) = y
@@ -134,8 +133,7 @@ contains
    end subroutine begin_yielding
 
    !> Let joints that crush yield to a change of a direction
-   pure subroutine see_yielding(graph, springs, dx, turn, more)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine see_yielding(springs, dx, turn, more)
       type(ray_matrix_t), intent(in) :: springs
       real(wp), intent(in) :: dx(:, :)       !! The direction of x before: (n_side, n_joint)
       type(turn_t), intent(inout) :: turn    !! That of x without yielding in, with it out
@@ -148,8 +146,8 @@ contains
       do i = 1, size(springs%strip)
          associate (strip => springs%strip(i), j => springs%strip(i)%joint, &
             & c => springs%strip(i)%place)
-            force = sum_of_rays(graph%kind(j), graph%friction(j), turn%dx(:, j) - dx(:, j))
-            call yield_strip(graph, strip, force, turn%dx(:2, c) - dx(:2, c), &
+            force = sum_of_rays(strip%kind, strip%friction, turn%dx(:, j) - dx(:, j))
+            call yield_strip(strip, force, turn%dx(:2, c) - dx(:2, c), &
                & more(:2, 2, i), more(:, 1, i))
             turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*more(:, 1, i)
             turn%dx(:, c) = turn%dx(:, c) - springs%stiffness(:, c)*more(:, 2, i)

@@ -16,7 +16,7 @@ module dda_interior_point
    use dda_interior_direction, only : turn_t
    use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_strips, only : keep_inside
+   use dda_joint_strips, only : keep_inside, renew_strips
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
    implicit none
@@ -24,7 +24,8 @@ module dda_interior_point
 
    public :: start_by_forces, start_by_springs, worst, solve_cones
 
-   !> Iterations without progress before termination
+   !> Iterations without progress before termination; twice as many where joints crush: their
+   !> curvature may show late
    integer, parameter :: patience = 8
    !> Least progress of a factor over its target
    real(wp), parameter :: headway = 0.01_wp
@@ -39,9 +40,10 @@ contains
 
    !> Springs of equal stiffness carry the dead load; all forces and rates are then pushed inside
    !> their bounds by the same amount (Mehrotra)
-   pure subroutine start_by_springs(graph, path, springs, point)
+   pure subroutine start_by_springs(graph, path, far, springs, point)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
+      logical, intent(in) :: far  !! Whether joints that crush begin at a share of their strength
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(out) :: point  !! Where the iteration begins
       real(wp) :: product, power
@@ -67,7 +69,9 @@ contains
          point%x = point%x + 0.5_wp*product/power
       end if
       point%x = point%x*path%bounded
-      call keep_inside(graph, path%strip, point%x)
+      if (far .and. size(path%strip) > 0) &
+         & point%x = path%bounded*(0.25_wp*minval(path%strip%strength))
+      call keep_inside(path%strip, point%x)
       point%s = point%s*path%bounded + (1.0_wp - path%bounded)
    end subroutine start_by_springs
 
@@ -125,6 +129,7 @@ contains
          end if
          call correct(graph, path, goal, springs, point, turn)
          call move(path, turn, point)
+         call renew_strips(path%strip, point%x)
       end do
       if (point%state /= interior_state%stalled) return
       best%n_turn = point%n_turn
@@ -172,9 +177,11 @@ contains
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then
          point%state = interior_state%optimal
-      else if (point%factor*live > goal%ceiling*max(live, path%largest_dead)) then
+      else if (point%factor*live > goal%ceiling*max(live, path%largest_dead) &
+         & .and. point%imbalance < near) then
          point%state = interior_state%unbounded
-      else if (idle >= patience .or. point%n_turn == goal%max_turn &
+      else if (idle >= merge(patience, 2*patience, size(path%strip) == 0) &
+         & .or. point%n_turn == goal%max_turn &
          & .or. .not. abs(turn%barrier) <= huge(turn%barrier)) then
          point%state = interior_state%stalled
       end if

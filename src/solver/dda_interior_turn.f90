@@ -7,7 +7,7 @@ module dda_interior_turn
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : add_ray_forces, n_side, ray_rates
-   use dda_joint_strips, only : see_strips, strip_lack, strip_power, subtract_crushing
+   use dda_joint_strips, only : see_strips, strip_hurry, strip_lack, strip_power, subtract_crushing
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs
    use, intrinsic :: iso_fortran_env, only : int8
@@ -86,11 +86,11 @@ contains
       call add_ray_forces(graph, path%length, point%x, turn%rest)
       turn%lack = -turn%rest
       ! forces that hold one another may be so large that their rounding counts beside the loads
-      power = max(maxval(abs(turn%lack)), strip_lack(graph, path%strip, point%x))
+      power = max(maxval(abs(turn%lack)), strip_lack(path%strip, point%x))
       point%imbalance = power/max(path%largest_dead, abs(point%factor)*path%largest_live, &
          & 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
       call ray_rates(graph, path%length, point%v, turn%rate)
-      call subtract_crushing(graph, path%strip, point%x, point%s, turn%rate)
+      call subtract_crushing(path%strip, point%x, point%s, turn%rate)
       power = maxval(abs(point%v))
       against = against_all(path, turn%rate)
       point%violation = against/max(power, tiny(power))
@@ -100,7 +100,7 @@ contains
       point%upper = no_limit
       if (power > 0.0_wp) then
          point%upper = (power_against(graph, path, point, turn%rate) - sum(path%dead*point%v) &
-            & + strip_power(graph, path%strip, point%x, point%s))/power
+            & + strip_power(path%strip, point%x, point%s))/power
          ! forces that carry more may be larger where joints are violated
          point%margin = (max(against, 0.0_wp) + epsilon(power)*maxval(abs(point%v))) &
             & *sum(abs(point%x))/power
@@ -166,7 +166,7 @@ contains
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
       call set_stiffness(path, point, springs)
-      call see_strips(graph, point%x, point%s, springs%strip)
+      call see_strips(point%x, point%s, springs%strip)
       call set_springs(graph, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(graph, path, springs, turn)
       turn%aim = -point%x*path%bounded
@@ -180,7 +180,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: mean
 
-      mean = sum(point%x*path%bounded)/max(sum(point%s*path%bounded), tiny(mean))
+      mean = max(sum(point%x*path%bounded), tiny(mean))/max(sum(point%s*path%bounded), tiny(mean))
       springs%stiffness = path%bounded*point%x/(point%s + path%compliance*point%x) &
          & + path%free*stiffness_of_free*mean
    end subroutine set_stiffness
@@ -283,7 +283,7 @@ contains
          turn%dx(:, j) = dx(:, j) + change_of_aim(path, wish, point, turn, dx(:, j), j) &
             & *(1.0_wp - path%compliance*springs%stiffness(:, j))
       end do
-      call see_yielding(graph, springs, dx, turn, more)
+      call see_yielding(springs, dx, turn, more)
       call see_rest(graph, path, turn)
       call find_balance(graph, path, point, springs, turn)
       call add_yielding(springs, more, turn)
@@ -370,7 +370,7 @@ contains
       real(wp) :: hurry(2)
       integer :: j, k
 
-      hurry = share_of_way
+      hurry = max(share_of_way, [strip_hurry(path%strip, point%x, turn%dx), 0.0_wp])
       do j = 1, size(turn%dx, 2)
          do k = 1, n_side
             if (turn%dx(k, j) < -hurry(1)*point%x(k, j) .and. path%bounded(k, j) > 0) &

@@ -21,13 +21,16 @@ module dda_joint_strips
    private
 
    public :: joint_strip_t
-   public :: add_strips, bear_strips, keep_inside, list_strips, see_strips
-   public :: part_opening, strip_lack, strip_power, soften_spring, subtract_crushing, yield_strip
+   public :: add_strips, bear_strips, keep_inside, list_strips, never_crush, see_strips
+   public :: part_opening, renew_strips, soften_spring, strip_hurry, strip_lack, strip_power
+   public :: subtract_crushing, yield_strip
 
    !> A joint that crushes
    type :: joint_strip_t
       integer :: joint = 0           !! Number of the joint
       integer :: place = 0           !! Number of the column of z1 and z2
+      integer :: kind = 0            !! Its kind, one of joint_kind
+      real(wp) :: friction = 0.0_wp  !! Its coefficient of friction
       real(wp) :: strength = 0.0_wp  !! Strength over the whole length, in units of force
       real(wp) :: share = 0.0_wp     !! Normal force over the strength, of the last turn
       real(wp) :: bend = 0.0_wp      !! Curvature against a change of the normal force, of that
@@ -65,6 +68,24 @@ contains
       where (graph%crush >= huge(1.0_wp)) joints%crush(:n) = huge(1.0_wp)
    end subroutine add_strips
 
+   !> The joints with what they carry at any factor: none that crush but the shear force of those
+   !> that cannot slide
+   pure function never_crush(graph) result(joints)
+      type(joint_graph_t), intent(in) :: graph  !! The joints, with columns for those that crush
+      type(joint_graph_t) :: joints
+      integer :: j
+
+      joints = graph
+      if (.not. allocated(graph%crush)) return
+      deallocate (joints%crush)
+      do j = 1, size(graph%kind)
+         if (.not. graph%crush(j) < huge(1.0_wp)) cycle
+         joints%kind(j) = joint_kind%pin
+         joints%row(:, 1:2, :, j) = 0.0_wp
+         if (graph%kind(j) /= joint_kind%no_slip) joints%row(:, 3, :, j) = 0.0_wp
+      end do
+   end function never_crush
+
    !> The joints that crush, of a graph with their columns
    pure subroutine list_strips(graph, strip)
       type(joint_graph_t), intent(in) :: graph
@@ -78,35 +99,61 @@ contains
       do j = 1, size(graph%kind) - n
          if (.not. graph%crush(j) < huge(1.0_wp)) cycle
          i = i + 1
-         strip(i) = joint_strip_t(j, size(graph%kind) - n + i, graph%crush(j))
+         strip(i) = joint_strip_t(j, size(graph%kind) - n + i, graph%kind(j), &
+            & graph%friction(j), graph%crush(j))
       end do
    end subroutine list_strips
 
    !> Normal force of a joint over its strength
-   pure real(wp) function part_of_strip(graph, strip, x) result(share)
-      type(joint_graph_t), intent(in) :: graph
+   pure real(wp) function part_of_strip(strip, x) result(share)
       type(joint_strip_t), intent(in) :: strip
       real(wp), intent(in) :: x(:, :)  !! Forces along the rays: (n_side, n_joint)
       real(wp) :: force(3)
 
-      force = sum_of_rays(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
+      force = sum_of_rays(strip%kind, strip%friction, x(:, strip%joint))
       share = (force(1) + force(2))/strip%strength
    end function part_of_strip
 
    !> What z1 and z2 are by the forces of the joint
-   pure function bear_strips(graph, strip, x) result(z)
-      type(joint_graph_t), intent(in) :: graph
+   pure function bear_strips(strip, x) result(z)
       type(joint_strip_t), intent(in) :: strip
       real(wp), intent(in) :: x(:, :)
       real(wp) :: z(2), force(3)
 
-      force = sum_of_rays(graph%kind(strip%joint), graph%friction(strip%joint), x(:, strip%joint))
+      force = sum_of_rays(strip%kind, strip%friction, x(:, strip%joint))
       z = force(1:2) - 0.5_wp*((force(1) + force(2))/strip%strength)*(force(1) + force(2))
    end function bear_strips
 
+   !> Set z1 and z2 to what they are by the forces of their joint where these hold the larger part
+   !> of them; elsewhere they are led there from turn to turn
+   pure subroutine renew_strips(strip, x)
+      type(joint_strip_t), intent(in) :: strip(:)
+      real(wp), intent(inout) :: x(:, :)  !! Forces along the rays: (n_side, n_joint)
+      real(wp) :: z(2)
+      integer :: i
+
+      do i = 1, size(strip)
+         z = bear_strips(strip(i), x)
+         where (z > 0.5_wp*x(:2, strip(i)%place)) x(:2, strip(i)%place) = z
+      end do
+   end subroutine renew_strips
+
+   !> One over the longest step along a direction of the forces on which z1 and z2 bend by no more
+   !> than the normal force
+   pure real(wp) function strip_hurry(strip, x, dx) result(hurry)
+      type(joint_strip_t), intent(in) :: strip(:)
+      real(wp), intent(in) :: x(:, :), dx(:, :)  !! Forces, direction: (n_side, n_joint)
+      integer :: i
+
+      hurry = 0.0_wp
+      do i = 1, size(strip)
+         hurry = max(hurry, abs(part_of_strip(strip(i), dx)) &
+            & /sqrt(2.0_wp*max(part_of_strip(strip(i), x), tiny(hurry))))
+      end do
+   end function strip_hurry
+
    !> Bring forces of joints well inside their strips
-   pure subroutine keep_inside(graph, strip, x)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine keep_inside(strip, x)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(inout) :: x(:, :)  !! Forces along the rays, not negative: (n_side, n_joint)
       real(wp) :: force(3), most
@@ -114,63 +161,59 @@ contains
 
       do i = 1, size(strip)
          associate (j => strip(i)%joint, z => x(:2, strip(i)%place))
-            z = bear_strips(graph, strip(i), x)
-            force = sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
+            z = bear_strips(strip(i), x)
+            force = sum_of_rays(strip(i)%kind, strip(i)%friction, x(:, j))
             most = gentle*min(sum(force(1:2)), strip(i)%strength)
             if (minval(z) < 0.25_wp*most) then
                ! equal forces along all rays
                where (x(:, j) > 0.0_wp) x(:, j) = 1.0_wp
-               force = sum_of_rays(graph%kind(j), graph%friction(j), x(:, j))
+               force = sum_of_rays(strip(i)%kind, strip(i)%friction, x(:, j))
                x(:, j) = most/sum(force(1:2))*x(:, j)
-               z = bear_strips(graph, strip(i), x)
+               z = bear_strips(strip(i), x)
             end if
          end associate
       end do
    end subroutine keep_inside
 
    !> Shares of strength and curvatures at a point
-   pure subroutine see_strips(graph, x, s, strip)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine see_strips(x, s, strip)
       real(wp), intent(in) :: x(:, :), s(:, :)  !! Forces and rates: (n_side, n_joint)
       type(joint_strip_t), intent(inout) :: strip(:)
       integer :: i
 
       do i = 1, size(strip)
-         strip(i)%share = part_of_strip(graph, strip(i), x)
+         strip(i)%share = part_of_strip(strip(i), x)
          strip(i)%bend = sum(s(:2, strip(i)%place))/strip(i)%strength
       end do
    end subroutine see_strips
 
    !> How far z1 and z2 of a point are from what the forces make of them
-   pure real(wp) function strip_lack(graph, strip, x) result(lack)
-      type(joint_graph_t), intent(in) :: graph
+   pure real(wp) function strip_lack(strip, x) result(lack)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(in) :: x(:, :)
       integer :: i
 
       lack = 0.0_wp
       do i = 1, size(strip)
-         lack = max(lack, maxval(abs(bear_strips(graph, strip(i), x) - x(:2, strip(i)%place))))
+         lack = max(lack, maxval(abs(bear_strips(strip(i), x) - x(:2, strip(i)%place))))
       end do
    end function strip_lack
 
    !> Power that crushed joints take up at most, beyond what their rays do
-   pure real(wp) function strip_power(graph, strip, x, s) result(power)
-      type(joint_graph_t), intent(in) :: graph
+   pure real(wp) function strip_power(strip, x, s) result(power)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(in) :: x(:, :), s(:, :)  !! Forces and rates: (n_side, n_joint)
       integer :: i
 
       power = 0.0_wp
       do i = 1, size(strip)
-         power = power + 0.5_wp*strip(i)%strength*part_of_strip(graph, strip(i), x)**2 &
+         power = power + 0.5_wp*strip(i)%strength*part_of_strip(strip(i), x)**2 &
             & *sum(s(:2, strip(i)%place))
       end do
    end function strip_power
 
    !> Take what joints are crushed by from the rates of their rays
-   pure subroutine subtract_crushing(graph, strip, x, s, rate)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine subtract_crushing(strip, x, s, rate)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(in) :: x(:, :), s(:, :)  !! Forces and rates of a point: (n_side, n_joint)
       real(wp), intent(inout) :: rate(:, :)     !! Rates of the rays: (n_side, n_joint)
@@ -178,8 +221,8 @@ contains
 
       do i = 1, size(strip)
          associate (j => strip(i)%joint)
-            rate(:, j) = rate(:, j) - matmul(crushing(part_of_strip(graph, strip(i), x), &
-               & s(:2, strip(i)%place)), joint_rays(graph%kind(j), graph%friction(j)))
+            rate(:, j) = rate(:, j) - matmul(crushing(part_of_strip(strip(i), x), &
+               & s(:2, strip(i)%place)), joint_rays(strip(i)%kind, strip(i)%friction))
          end associate
       end do
    end subroutine subtract_crushing
@@ -222,8 +265,7 @@ contains
    end function edges
 
    !> Part the opening of a joint into rates of its rays and of crushing
-   pure subroutine part_opening(graph, strip, opening, rate)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine part_opening(strip, opening, rate)
       type(joint_strip_t), intent(in) :: strip
       real(rk), intent(in) :: opening(3)    !! Opening 1, opening 2, slip
       real(wp), intent(inout) :: rate(:, :) !! Rates; those of the joint are set: (n_side, n_joint)
@@ -233,15 +275,14 @@ contains
          y = matmul(strip%soft, matmul(opening, strip%arm))
          left = opening - matmul(edges(strip%share), y)
          left(1:2) = left(1:2) - strip%slack*dot_product(strip%column, left)
-         rate(:, j) = real(matmul(left, joint_rays(graph%kind(j), graph%friction(j))), wp)
+         rate(:, j) = real(matmul(left, joint_rays(strip%kind, strip%friction)), wp)
          rate(:2, strip%place) = real(y, wp)
       end associate
    end subroutine part_opening
 
    !> Yielding of a strip to forces of its joint: rates of crushing, and what these and the
    !> curvature add to the rates of the rays
-   pure subroutine yield_strip(graph, strip, force, aim, y, rate)
-      type(joint_graph_t), intent(in) :: graph
+   pure subroutine yield_strip(strip, force, aim, y, rate)
       type(joint_strip_t), intent(in) :: strip
       real(wp), intent(in) :: force(3)       !! Forces of the rays without yielding: N1, N2, T
       real(wp), intent(in) :: aim(2)         !! What z1 and z2 should change by without rates
@@ -256,7 +297,7 @@ contains
          y = real(crushed, wp)
          left = left + matmul(strip%arm, crushed)
          left = strip%bend*(left(1) + left(2))*[1.0_rk, 1.0_rk, 0.0_rk] - matmul(edge, crushed)
-         rate = real(matmul(left, joint_rays(graph%kind(j), graph%friction(j))), wp)
+         rate = real(matmul(left, joint_rays(strip%kind, strip%friction)), wp)
       end associate
    end subroutine yield_strip
 

@@ -210,7 +210,7 @@ contains
       type(load_path_t) :: path
 
       call set_path(graph, 0.0_wp*load, load, path)
-      call start_by_springs(graph, path, springs, soft)
+      call start_by_springs(graph, path, .false., springs, soft)
       if (.not. (is_free(graph, soft%v) .and. drives(load, soft%v))) return
       call move_alloc(soft%v, point%v)
       point%state = interior_state%blocked
@@ -249,7 +249,7 @@ contains
       call bound_rays(graph, bounded, free)
       point%x = several*max(1.0_wp, sqrt(size_of_load(load)))*bounded
       call list_strips(graph, strip)
-      call keep_inside(graph, strip, point%x)
+      call keep_inside(strip, point%x)
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one

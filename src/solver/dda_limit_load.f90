@@ -10,7 +10,7 @@ module dda_limit_load
       & no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
    use dda_joint_rays, only : bound_rays, forces_of_rays, scale_load
-   use dda_joint_strips, only : add_strips
+   use dda_joint_strips, only : add_strips, never_crush
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & crushing_power, flow_margin, stopping_factor
@@ -188,14 +188,15 @@ contains
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
-         call raise_live_load(graph, dead, live, tolerance, many, springs, point)
-         if (point%state /= interior_state%optimal) &
-            & call try_live_load_alone(graph, live, springs, unit, point, limit)
-         if (limit%state == limit_state%not_converged) then
-            if (point%state == interior_state%unbounded) &
-               & call raise_live_load(graph, dead, live, tolerance, beyond, springs, point)
-            if (point%state == interior_state%optimal) limit%state = limit_state%found
+         call raise_live_load(graph, dead, live, tolerance, .false., springs, point)
+         if (point%state /= interior_state%optimal) then
+            call try_live_load_alone(graph, live, unit, point, limit, springs%n_factorisation)
+            if (limit%state == limit_state%not_converged .and. (crushes(graph) &
+               & .or. point%state == interior_state%unbounded)) &
+               & call raise_live_load(graph, dead, live, tolerance, .true., springs, point)
          end if
+         if (limit%state == limit_state%not_converged .and. point%state &
+            & == interior_state%optimal) limit%state = limit_state%found
       end if
       allocate (limit%force(3, size(graph%kind)))
       allocate (limit%velocity(3, graph%n_block))
@@ -207,11 +208,11 @@ contains
 
    !> Raise the live load beside a dead load that stands: from forces that carry it, if there are
    !> any, or where these lead nowhere, from springs
-   pure subroutine raise_live_load(graph, dead, live, tolerance, ceiling, springs, point)
+   pure subroutine raise_live_load(graph, dead, live, tolerance, far, springs, point)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
-      !> Live loads so many times as large as the dead load are beyond bounds
-      real(wp), intent(in) :: ceiling
+      !> Whether live loads far larger than the dead load are within bounds
+      logical, intent(in) :: far
       type(ray_matrix_t), intent(inout) :: springs
       !> Where forces carry the dead load in, where the live load ends out
       type(interior_point_t), intent(inout) :: point
@@ -224,14 +225,14 @@ contains
       call scale_load(live, unit_of_force(dead), unit_of_length(graph), scaled_live)
       call set_path(graph, scaled_dead, scaled_live, path)
       goal%tolerance = tolerance
-      goal%ceiling = ceiling
+      goal%ceiling = merge(beyond, many, far)
       if (state_at_end(point) == load_state%stands) then
          call start_by_forces(path, max(1.0_wp, size_of_load(scaled_dead)), point)
          call solve_cones(graph, path, goal, springs, point)
          before = point
       end if
       if (worst(before) > tolerance .and. before%state /= interior_state%unbounded) then
-         call start_by_springs(graph, path, springs, point)
+         call start_by_springs(graph, path, far, springs, point)
          call solve_cones(graph, path, goal, springs, point)
          if (point%state /= interior_state%unbounded .and. worst(before) < worst(point)) &
             & point = before
@@ -242,19 +243,26 @@ contains
       point%factor = point%factor/path%size
    end subroutine raise_live_load
 
-   !> A live load that is carried alone is carried at any factor
-   pure subroutine try_live_load_alone(graph, live, springs, unit, point, limit)
+   !> A live load that is carried alone is carried at any factor, where no joint has to bear it that
+   !> crushes
+   pure subroutine try_live_load_alone(graph, live, unit, point, limit, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: live(:, :)
-      type(ray_matrix_t), intent(inout) :: springs
       !> Unit of force, that of the live load where it is carried: [N/m]
       real(wp), intent(inout) :: unit
       !> The forces that carry it, if there are any
       type(interior_point_t), intent(inout) :: point
       type(limit_load_t), intent(inout) :: limit
+      integer, intent(inout) :: n_factorisation  !! Factorisations so far
+      type(joint_graph_t) :: joints
+      type(ray_matrix_t) :: springs
       type(interior_point_t) :: alone
 
-      call go_to_load(graph, live, springs, alone)
+      joints = never_crush(graph)
+      call plan_matrix(joints, springs)
+      springs%n_factorisation = n_factorisation
+      call go_to_load(joints, live, springs, alone)
+      n_factorisation = springs%n_factorisation
       if (state_at_end(alone) /= load_state%stands) return
       limit%state = limit_state%unbounded
       point = alone

@@ -88,7 +88,7 @@ contains
          call solve_springs(walk%graph, walk%springs, rest, motion, rate)
          x = x - walk%springs%stiffness*rate
          do i = 1, size(walk%springs%strip)
-            x(:2, walk%springs%strip(i)%place) = bear_strips(walk%graph, walk%springs%strip(i), x)
+            x(:2, walk%springs%strip(i)%place) = bear_strips(walk%springs%strip(i), x)
          end do
          if (any(x*walk%bounded < 0.0_wp)) return
          rest = scaled
@@ -112,7 +112,7 @@ contains
          associate (x => walk%x, bounded => walk%bounded)
             walk%springs%stiffness = bounded*x**2 + walk%free*stiffness_of_free &
                & *sum(bounded*x**2)/real(max(1, count(bounded > 0)), wp)
-            call see_strips(walk%graph, x, 1.0_wp/max(x, tiny(1.0_wp)), walk%springs%strip)
+            call see_strips(x, 1.0_wp/max(x, tiny(1.0_wp)), walk%springs%strip)
             call set_springs(walk%graph, walk%mass, lift, walk%springs)
             if (i == n_step .or. .not. walk%springs%usable) exit
             push = 0.0_wp

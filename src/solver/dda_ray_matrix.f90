@@ -246,7 +246,7 @@ contains
       do i = 1, size(springs%strip)
          associate (j => springs%strip(i)%joint)
             arm = scaled_rows(graph, j, springs%length)
-            call part_opening(graph, springs%strip(i), &
+            call part_opening(springs%strip(i), &
                & matmul(motion(:, graph%block(1, j)), arm(:, :, 1)) &
                & + matmul(motion(:, graph%block(2, j)), arm(:, :, 2)), rate)
          end associate

@@ -51,6 +51,24 @@ def test_a_column_bears_up_to_its_strength(tmp_path: Path, place: float, strengt
     assert high - low <= 1e-10 * most
 
 
+@pytest.mark.parametrize("place", [0.5, 0.6, 0.9])
+@pytest.mark.parametrize("strength", [1e4, 1e6, 1e9])
+def test_a_column_of_any_strength_bears_up_to_it(tmp_path: Path, place: float, strength: float) -> None:
+    """A live load that the joints carry alone is not carried at any factor."""
+    low, high = limit(tmp_path, f"{place!r} 2 0 -1", strength, "own")
+    slope = 4.0 / strength - 1.0 + 2.0 * (place - 0.5)
+    most = (-slope + math.sqrt(slope**2 + 4.0 / strength * (2.0 - 4.0 / strength))) / (2.0 / strength)
+    assert low <= most * (1 + 1e-11) and most * (1 - 1e-11) <= high
+    assert high - low <= 1e-8 * most
+
+
+@pytest.mark.parametrize(("held", "verdict"), [("fix 0.5 2\n", "stable"), ("fix 0.5 2 x\n", "found")])
+def test_what_hangs_on_a_pin_is_carried_at_any_factor(tmp_path: Path, held: str, verdict: str) -> None:
+    deck = "&joint friction_deg = 45 /\n" + ASSOCIATED + SEARCH + material(50.0)
+    (row,) = rows(tmp_path, deck, BLOCK + held + "live 0.5 2 0 -1\n")
+    assert row["verdict"] == verdict
+
+
 def test_the_weaker_material_counts(tmp_path: Path) -> None:
     blocks = BLOCK.replace("block\n0 0", "block material 2\n0 0") + "live 0 1.5 1 0\n"
     deck = "&joint friction_deg = 85 /\n" + ASSOCIATED + SEARCH
