@@ -146,6 +146,21 @@ def test_rings_that_crush_and_slide_carry_what_a_programme_of_tangents_has(
     assert int(row["factorisations"]) < 60
 
 
+def test_rings_under_passive_fill_that_crush_are_found(tmp_path: Path) -> None:
+    """The limit that tangents of the parabolas have, each a layer of the graph of joints."""
+    bridge = (
+        "&arch shape = 'catenary', span = 9.639, voussoirs = 20, rise = 1.731, thickness = 0.5015, rings = 3,\n"
+        "joint_direction = 'radial' /\n&joint friction_deg = 60.65 /\n"
+        "&vehicle axles = 78430, 15420, spacings = 1.184, length = 0.2757, position = 0.8581 /\n"
+        "&fill height = 1.025, unit_weight = 20570, passive_coefficient = 2.538, backing_height = 0.3489 /\n"
+        "&material compressive_strength = 616900 /\n" + ASSOCIATED + SEARCH
+    )
+    (row,) = rows(tmp_path, bridge, head="")
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(0.348006381, rel=1e-8)
+    assert int(row["factorisations"]) < 60
+
+
 def test_great_strengths_are_none(tmp_path: Path) -> None:
     bridge = BRIDGE.format(shape="segmental", rise=2.5)
     (bare,) = rows(tmp_path, bridge + "&material unit_weight = 2e4 /\n", head="")
