@@ -180,7 +180,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: mean
 
-      mean = max(sum(point%x*path%bounded), tiny(mean))/max(sum(point%s*path%bounded), tiny(mean))
+      mean = sum(point%x*path%bounded)/max(sum(point%s*path%bounded), tiny(mean))
       springs%stiffness = path%bounded*point%x/(point%s + path%compliance*point%x) &
          & + path%free*stiffness_of_free*mean
    end subroutine set_stiffness

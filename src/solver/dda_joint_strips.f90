@@ -45,7 +45,8 @@ module dda_joint_strips
 
 contains
 
-   !> The joints with a column for each that crushes, behind the others
+   !> The joints with a column for each that crushes, behind the others; at a corner alone there is
+   !> no strip that could bear a force
    pure subroutine add_strips(graph, unit, joints)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: unit  !! Unit of force: [N/m]
@@ -54,7 +55,7 @@ contains
       integer :: i, m, n
 
       n = size(graph%kind)
-      crushed = pack([(i, i=1, n)], graph%crush < huge(1.0_wp))
+      crushed = pack([(i, i=1, n)], graph%crush > 0.0_wp .and. graph%crush < huge(1.0_wp))
       m = size(crushed)
       joints%n_block = graph%n_block
       allocate (joints%block(2, n + m), source=0)
@@ -66,7 +67,22 @@ contains
       joints%row(:, :, :, :n) = graph%row
       joints%crush = [graph%crush/unit, graph%crush(crushed)/unit]
       where (graph%crush >= huge(1.0_wp)) joints%crush(:n) = huge(1.0_wp)
+      do i = 1, n
+         if (.not. graph%crush(i) > 0.0_wp) call unload(i, joints)
+      end do
    end subroutine add_strips
+
+   !> Let a joint carry nothing but the shear force of one that cannot slide
+   pure subroutine unload(joint, joints)
+      integer, intent(in) :: joint  !! Its number
+      type(joint_graph_t), intent(inout) :: joints
+
+      joints%row(:, 1:2, :, joint) = 0.0_wp
+      if (all(joints%kind(joint) /= [joint_kind%no_slip, joint_kind%corner_no_slip])) &
+         & joints%row(:, 3, :, joint) = 0.0_wp
+      joints%kind(joint) = joint_kind%pin
+      joints%crush(joint) = huge(1.0_wp)
+   end subroutine unload
 
    !> The joints with what they carry at any factor: none that crush but the shear force of those
    !> that cannot slide
@@ -77,12 +93,10 @@ contains
 
       joints = graph
       if (.not. allocated(graph%crush)) return
-      deallocate (joints%crush)
       do j = 1, size(graph%kind)
-         if (.not. graph%crush(j) < huge(1.0_wp)) cycle
-         joints%kind(j) = joint_kind%pin
-         joints%row(:, 1:2, :, j) = 0.0_wp
-         if (graph%kind(j) /= joint_kind%no_slip) joints%row(:, 3, :, j) = 0.0_wp
+         if (graph%crush(j) < huge(1.0_wp)) call unload(j, joints)
+         ! a ray with a bound that acts on nothing stays, by which free rays have their springs
+         if (graph%kind(j) == joint_kind%strip) joints%kind(j) = joint_kind%corner
       end do
    end function never_crush
 
