@@ -42,6 +42,8 @@ module dda_verdict
    real(wp), parameter :: beyond_rest = 10.0_wp
    !> Motion of a full step over the permitted one
    real(wp), parameter :: full = 0.5_wp
+   !> Share of the load of a block that rounding leaves without balance
+   real(wp), parameter :: rounded = 1.0e-13_wp
    !> Residual of strain equilibrium at rest
    real(wp), parameter :: unstrained = 1.0e-11_wp
    !> Last motion at rest over the displacement
@@ -310,6 +312,9 @@ contains
       type(settings_t), intent(in) :: settings
 
       is_at_rest = step%residue <= settings%rest_tolerance .and. step%strain_residue <= unstrained
+      ! the forces that are kept balance better after one more step
+      if (.not. settings%current) is_at_rest = is_at_rest .and. (step%residue <= rounded .or. &
+         & march%last_acceleration <= settings%rest_tolerance*march%free_acceleration)
       if (settings%current) is_at_rest = is_at_rest .and. march%steps - march%begun >= 2 &
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
          & min(march%rounding, barely*march%displacement))
