@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
@@ -28,6 +29,8 @@ VERDICTS = {
 }
 #: Most contours of a map, and most cells that have a mark in their middle
 MOST_CONTOURS, MOST_MARKS = 7, 400
+#: Colours of the values of a map: viridis without its yellow, on which white contours are lost
+MAP_COLORS = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.75, 256)))
 
 
 def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool = True) -> Figure:
@@ -118,7 +121,7 @@ def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, leg
         return figure
     name = number_column(run, column)
     field[place] = values_of(run.cases, name)
-    colors = axes.pcolormesh(along, up, field, shading="nearest", cmap="viridis", rasterized=True)
+    colors = axes.pcolormesh(along, up, field, shading="nearest", cmap=MAP_COLORS, rasterized=True)
     draw_contours(axes, along, up, field)
     figure.colorbar(colors, ax=axes, label=column_label(run, name))
     note(axes, int(np.count_nonzero(np.isnan(values_of(run.cases, name)))), len(run.cases), name)
