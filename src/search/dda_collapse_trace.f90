@@ -133,6 +133,7 @@ contains
       type(load_stations_t) :: stations
       type(scene_t) :: scene
       real(wp), allocatable :: load(:, :)
+      integer :: n
 
       margin = 0.0_wp
       unit = 1.0_wp
@@ -145,8 +146,8 @@ contains
       stations = load_stations(scene%settings, .false.)
       allocate (load(3, graph%n_block))
       call loads_at(stations, ubound(stations%tilt, 1), scene%settings, scene%system, graph, load)
-      call find_margin(graph, load, tolerance, margin, unit, found)
-      critical%factorisations = critical%factorisations + 1
+      call find_margin(graph, load, tolerance, margin, unit, found, n)
+      critical%factorisations = critical%factorisations + n
    end subroutine margin_at
 
    !> Whether a collapse takes power that the loads alone do not tell: what is crushed does, and a

@@ -158,13 +158,14 @@ contains
    !> Margin of a load: how much of the load that equal forces along all rays carry can be taken
    !> off, in units of these forces. The load can be carried if and only if that is not negative. It
    !> is a concave function of the load, and linear for one mechanism
-   pure subroutine find_margin(graph, load, tolerance, margin, unit, found)
+   pure subroutine find_margin(graph, load, tolerance, margin, unit, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
       real(wp), intent(in) :: tolerance  !! How far the margin may be off over its unit
       real(wp), intent(out) :: margin    !! The margin [N/m]
       real(wp), intent(out) :: unit      !! Forces that it is small beside [N/m]
       logical, intent(out) :: found      !! Whether it is known
+      integer, intent(out) :: n_factorisation  !! Factorisations
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
       real(wp) :: finish(3, 0:graph%n_block)
@@ -179,6 +180,7 @@ contains
          & .and. point%upper - point%factor <= max(10.0_wp*tolerance, margin_gap)
       margin = 0.5_wp*(point%factor + point%upper)
       if (found) margin = (1.0_wp - 1.0_wp/margin)*unit
+      n_factorisation = springs%n_factorisation
    end subroutine find_margin
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
