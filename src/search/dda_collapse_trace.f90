@@ -66,16 +66,21 @@ contains
 
    !> Trace the last collapse to where it stops, by the secant method on the margin between it and
    !> the limit. A chain is traced by its deficit
-   pure subroutine trace(family, search, limit, critical, proposal)
+   pure subroutine trace(family, search, limit, critical, proposal, by_tangent)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: limit  !! The end of the range on the side that stands
       type(critical_t), intent(inout) :: critical  !! What was found so far
       type(proposal_t), intent(out) :: proposal    !! Where the collapse stops
+      !> Whether the first secant will do, as to rule out values: none of a concave margin that never
+      !> vanishes converges
+      logical, intent(in), optional :: by_tangent
       real(wp) :: x(2), margin(2), least, near, next, noise, slope, step, tolerance, unit
       integer :: i
-      logical :: found
+      logical :: enough, found
 
+      enough = .false.
+      if (present(by_tangent)) enough = by_tangent
       least = least_half(search, critical%falls, size(critical%fallen%contacts%face))
       proposal%half = least*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
@@ -99,6 +104,7 @@ contains
          noise = least_margin*unit/abs(slope)
          next = x(2) - margin(2)/slope
          if (next < search%low .or. next > search%high) return
+         if (enough) exit
          near = max(0.02_wp*least*abs(next), noise)
          if (abs(next - x(2)) <= near .and. 0.5_wp*tolerance*unit/abs(slope) <= near) exit
          x = [x(2), next]
@@ -115,7 +121,7 @@ contains
       ! beside its stop a mechanism becomes too slow for a decision to tell it from rest
       associate (outcome => critical%fallen%outcome)
          if (outcome%acceleration_ratio > 0.0_wp) proposal%half = max(proposal%half, noise &
-            & + 2.0_wp*abs(next - critical%falls)*outcome%rest_tolerance/outcome%acceleration_ratio)
+            & + 1.1_wp*abs(next - critical%falls)*outcome%rest_tolerance/outcome%acceleration_ratio)
       end associate
       proposal%reach = proposal%half
    end subroutine trace

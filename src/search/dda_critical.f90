@@ -10,7 +10,7 @@ module dda_critical
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph
    use dda_search, only : critical_t, decision_t, keep_decision, search_t, shed
-   use dda_settings, only : verdict
+   use dda_settings, only : flow_rule, verdict
    implicit none
    private
 
@@ -76,8 +76,12 @@ contains
          end if
       end if
       if (differs) call close_both(family, search, value, critical)
-      if (family%load /= searched_load%none .and. allocated(critical%fallen)) then
-         if (.not. critical%fallen%by_graph) call tell_whole(family, verdict%collapsed, critical)
+      if (allocated(critical%fallen)) then
+         if (critical%fallen%by_graph) then
+            call tell_whole(family, verdict%collapsed, critical)
+            ! beside the critical value the graph may see no sliding: steps follow it then
+            critical%fallen%by_graph = critical%fallen%flow == flow_rule%coulomb
+         end if
       end if
       if (allocated(critical%standing) .and. .not. (family%decides_chains &
          & .and. allocated(critical%fallen))) call tell_whole(family, verdict%stable, critical)
@@ -144,7 +148,7 @@ contains
       do
          if (answer == verdict%collapsed) then
             call trace(family, search, merge(from, to, critical%falls > 0.5_wp*(from + to)), &
-               & critical, proposal)
+               & critical, proposal, by_tangent=.true.)
             if (proposal%usable) then
                if (proposal%value < critical%falls) to = min(to, proposal%value)
                if (proposal%value > critical%falls) from = max(from, proposal%value)
@@ -162,9 +166,8 @@ contains
       end do
    end subroutine look_between
 
-   !> Decide again what is told of a search, where its joint graph does: how it falls, as to follow
-   !> that in steps takes minutes, or how what stands shares out its forces, as its proof does not
-   !> tell
+   !> Decide a value again that was asked for its verdict alone, where its joint graph decides: for
+   !> the way in which it falls, or for the elastic sharing of the forces of what stands
    pure subroutine tell_whole(family, wanted, critical)
       class(family_t), intent(in) :: family
       integer, intent(in) :: wanted  !! What is told, collapsed or stable

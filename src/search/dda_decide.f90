@@ -248,6 +248,8 @@ contains
          allocate (outcome%motion(settings%n_dof, maxval(scene%system%equation)), source=0.0_wp)
          outcome%motion(:3, :) = proof%mechanism(:, :maxval(scene%system%equation))
          call show_mechanism(settings, scene%system, proof, decision%contacts)
+         outcome%acceleration_ratio = proof%power_share
+         outcome%rest_tolerance = settings%rest_tolerance
          if (present(album)) call show_end(settings, decision, album)
       end associate
    end procedure record_collapse

@@ -29,6 +29,8 @@ module dda_graph_decision
       & //"initial loads"
    !> Relative gap of both bounds of a limit with its mechanism
    real(wp), parameter :: limit_gap = 1.0e-9_wp
+   !> Share of the largest power beside which accelerations are too small for a direction
+   real(wp), parameter :: slow = 1.0e-4_wp
    !> Factorisations for sliding at collapse, and for the whole collapse under live loads
    integer, parameter :: few = 5, most = 30
    !> Factorisations after which no first mechanism is sought
@@ -41,7 +43,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      logical, intent(in) :: bare  !! Whether a run of steps tells how it falls
+      !> Whether the verdict is enough: the way in which it falls is the mechanism of limit analysis
+      logical, intent(in) :: bare
       type(graph_verdict_t), intent(out) :: verdict
       !> State in which a stage before has left these joints, with its load; else they are unloaded
       type(coulomb_state_t), intent(in), optional :: start
@@ -98,13 +101,19 @@ contains
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
       if (.not. (on_way .or. bare)) allocate (verdict%limit, source=decision)
+      verdict%power_share = power_share(settings, system, decision)
       if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
-         verdict%is_told = on_way
+         verdict%is_told = .true.
          verdict%mechanism = decision%velocity
-         if (on_way) call see_first_fall(settings, graph, load, decision%force, verdict)
-         if (.not. (on_way .or. bare)) call see_fall(settings, graph, load, verdict)
+         verdict%force = decision%force
+         if (bare) return
+         if (on_way .or. verdict%power_share < slow) then
+            call see_first_fall(settings, graph, load, decision%force, verdict)
+         else
+            call see_fall(settings, graph, load, verdict)
+         end if
       else if (decision%state == load_state%stands) then
          verdict%end = path_end%reached
          call move_alloc(decision%force, verdict%force)
@@ -216,10 +225,22 @@ contains
       type(block_system_t), intent(in) :: system
       type(load_decision_t), intent(in) :: decision
 
-      is_feigned = decision%state == load_state%falls
-      if (is_feigned) is_feigned = .not. decision%power > settings%rest_tolerance &
-         & *power_of_all(settings, system, decision%velocity)
+      is_feigned = decision%state == load_state%falls &
+         & .and. .not. power_share(settings, system, decision) > settings%rest_tolerance
    end function is_feigned
+
+   !> Power of the load on the mechanism of a collapse over what the loads could do at most, 0
+   !> without a collapse
+   pure real(wp) function power_share(settings, system, decision)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(load_decision_t), intent(in) :: decision
+
+      power_share = 0.0_wp
+      if (decision%state == load_state%falls .and. decision%power > 0.0_wp) power_share &
+         & = decision%power/max(power_of_all(settings, system, decision%velocity), &
+         & tiny(1.0_wp))
+   end function power_share
 
    !> What all weights and forces could do if each went along with the motion: beside it, power that
    !> rounded coordinates make is nothing

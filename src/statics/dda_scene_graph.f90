@@ -38,6 +38,8 @@ module dda_scene_graph
       !> Flow rule that it was found under, one of flow_rule
       integer :: flow = flow_rule%associated
       real(wp), allocatable :: mechanism(:, :)     !! Velocities of the collapse: (3, n_block)
+      !> Power of the load on it by limit analysis, over what the loads could do at most
+      real(wp) :: power_share = 0.0_wp
       type(coulomb_state_t), allocatable :: state  !! Last state in balance under Coulomb friction
       !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
