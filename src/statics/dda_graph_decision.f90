@@ -100,7 +100,7 @@ contains
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
-      if (.not. (on_way .or. bare)) allocate (verdict%limit, source=decision)
+      if (.not. bare) allocate (verdict%limit, source=decision)
       verdict%power_share = power_share(settings, system, decision)
       if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
       if (decision%state == load_state%falls) then
