@@ -7,7 +7,6 @@ submodule (dda_compute_case) dda_case_decision
    use dda_forward, only : run_to_verdict
    use dda_key_names, only : analysis_duration, analysis_restart, analysis_steps, arch_radius, &
       & output_energy, output_reactions
-   use dda_limit_decision, only : load_decision_t, load_state
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
@@ -20,7 +19,6 @@ contains
    !> Decide the scene
    module procedure compute_decision
       type(decision_t) :: proof
-      type(load_decision_t) :: stands
       type(scene_t) :: begun
       real(wp) :: last
       logical :: decided
@@ -35,7 +33,7 @@ contains
             & this%decision, decided, critical%deficit)
       end associate
       if (decided) then
-         ! tables tell displacements, which a chain does not keep
+         ! tables have displacements, and a collapse its first motion, which a chain does not keep
          if (this%decision%outcome%verdict /= verdict%collapsed .and. this%family%decides_chains &
             & .and. .not. this%tells_tables) return
          proof = this%decision
@@ -53,9 +51,7 @@ contains
             if (allocated(this%error)) return
             call decide_in_stages(begun, this%decision, this%album, this%onward, last)
          else if (decided .and. proof%outcome%verdict == verdict%stable) then
-            stands%state = load_state%stands
-            stands%force = proof%contacts%force
-            call decide(scene, this%decision, this%album, this%onward, stands=stands)
+            call decide(scene, this%decision, this%album, this%onward, stands=proof%limit)
          else
             call decide_in_stages(scene, this%decision, this%album, this%onward, last)
          end if

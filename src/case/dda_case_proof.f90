@@ -9,7 +9,7 @@ submodule (dda_compute_case) dda_case_proof
    use dda_error, only : error_t
    use dda_joint_graph, only : joint_graph_t, keep_joints
    use dda_key_names, only : output_thrust_bar, output_thrust_joint
-   use dda_limit_certificate, only : check_forces, check_velocities
+   use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, find_thrust_range, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
@@ -181,7 +181,7 @@ contains
       type(decision_t), intent(in) :: decision
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: answer
-      real(wp) :: load(3, graph%n_block)
+      real(wp) :: load(3, graph%n_block), power
       integer :: b
 
       load = full_loads(scene%settings, scene, graph)
@@ -198,8 +198,9 @@ contains
          call move_alloc(answer%force, proof%force)
       else if (answer%state == load_state%falls &
          & .and. decision%outcome%verdict == verdict%collapsed) then
-         proof%law_violation = answer%violation
-         proof%power = answer%power/most_power(load(:, :b), answer%velocity(:, :b))
+         call check_velocities(graph, load, answer%velocity, proof%law_violation, power)
+         proof%power = (power - crushing_power(graph, answer%velocity)) &
+            & /most_power(load(:, :b), answer%velocity(:, :b))
          call move_alloc(answer%velocity, proof%velocity)
       end if
    end subroutine prove_state

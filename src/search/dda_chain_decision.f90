@@ -7,6 +7,7 @@ module dda_chain_decision
    use dda_chain_programme, only : deficit_t, find_deficit, mechanism_of_bounds
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
+   use dda_limit_decision, only : load_state
    use dda_search, only : decision_t
    use dda_settings, only : flow_rule, settings_t, verdict
    implicit none
@@ -43,11 +44,14 @@ contains
          do j = 1, n
             contacts%gap(:, j) = contacts%force(:, j)/(-chain%joint(j)%stiffness)
          end do
+         allocate (decision%limit)
          if (deficit%least > deficit%noise) then
             outcome%verdict = verdict%collapsed
+            decision%limit%state = load_state%falls
             call show_mechanism(chain, deficit, decision)
          else
             outcome%verdict = verdict%stable
+            decision%limit%state = load_state%stands
             ! the plane of symmetry is smooth
             n = n - merge(1, 0, chain%halved)
             if (settings%verdict_flow == flow_rule%coulomb &
@@ -125,14 +129,27 @@ contains
       opening(:, n + 1) = [change(1) + turn, change(1) - turn, change(2)]
    end subroutine move_blocks
 
-   !> Make the decision of a halved chain that of the whole one; any other stays as it is. A smooth
-   !> plane of symmetry is the joint there, which does not slide and opens on both sides
+   !> Make the decision of a chain that of all its blocks, with its forces or its mechanism as
+   !> certificate; any other decision stays as it is
    elemental subroutine unfold(decision)
+      type(decision_t), intent(inout) :: decision
+
+      if (decision%halved) call mirror_half(decision)
+      if (.not. allocated(decision%limit)) return
+      associate (limit => decision%limit)
+         if (allocated(limit%force) .or. allocated(limit%velocity)) return
+         if (limit%state == load_state%stands) limit%force = decision%contacts%force
+         if (limit%state == load_state%falls) limit%velocity = decision%outcome%motion
+      end associate
+   end subroutine unfold
+
+   !> Add the right half of a chain. A smooth plane of symmetry is the joint there, which does not
+   !> slide and opens on both sides
+   pure subroutine mirror_half(decision)
       type(decision_t), intent(inout) :: decision
       type(joint_face_t), allocatable :: face(:)
       integer :: m, n
 
-      if (.not. decision%halved) return
       decision%halved = .false.
       associate (contacts => decision%contacts, outcome => decision%outcome)
          m = size(contacts%face)
@@ -161,7 +178,7 @@ contains
          if (decision%keystone) outcome%motion(:, m) = outcome%motion(:, m)*[0.0_wp, 1.0_wp, 0.0_wp]
          call mirror(size(outcome%motion, 2), n - 1, [-1.0_wp, 1.0_wp, -1.0_wp], outcome%motion)
       end associate
-   end subroutine unfold
+   end subroutine mirror_half
 
    !> Mirror the columns of the left half
    pure subroutine mirror(m, n, sign, value)
