@@ -109,10 +109,10 @@ contains
          verdict%mechanism = decision%velocity
          verdict%force = decision%force
          if (bare) return
-         if (on_way .or. verdict%power_share < slow) then
-            call see_first_fall(settings, graph, load, decision%force, verdict)
-         else
+         if (.not. (on_way .or. verdict%power_share < slow)) then
             call see_fall(settings, graph, load, verdict)
+         else if (verdict%n_factorisation + few <= most) then
+            call slide_along(settings, graph, load, decision%force, verdict)
          end if
       else if (decision%state == load_state%stands) then
          verdict%end = path_end%reached
@@ -269,21 +269,6 @@ contains
          power = power + force(b)*(norm2(velocity(1:2, e)) + gyration*abs(velocity(3, e)))
       end do
    end function power_of_all
-
-   !> How a load falls that has grown out of a dead load, from the forces with which it begins to
-   pure subroutine see_first_fall(settings, graph, load, force, verdict)
-      type(settings_t), intent(in) :: settings
-      type(joint_graph_t), intent(in) :: graph
-      real(wp), intent(in) :: load(:, :)
-      !> Forces in the mechanism in which it falls first: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
-      !> A collapse; its forces are set, and its mechanism where joints slide along themselves
-      type(graph_verdict_t), intent(inout) :: verdict
-
-      verdict%force = force
-      if (verdict%n_factorisation + few <= most) call slide_along(settings, graph, load, force, &
-         & verdict)
-   end subroutine see_first_fall
 
    !> How blocks begin to fall by a load from rest
    pure subroutine see_fall(settings, graph, load, verdict)
