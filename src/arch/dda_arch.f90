@@ -46,13 +46,13 @@ contains
       if (facet_deg > 0.0_wp) facet_count = max(1, ceiling(span_deg/facet_deg - 1.0e-9_wp))
    end function facet_count
 
-   !> Directions of the sections of the left half, seen from the centre, from the springing to the
+   !> Directions of the sections of the left half relative to the centre, from the springing to the
    !> crown
    pure subroutine left_directions(shape, direction, is_joint)
       type(arch_shape_t), intent(in) :: shape
       !> Unit vectors; the last is the crown's if there is a section: (2, m)
       real(wp), allocatable, intent(out) :: direction(:, :)
-      logical, allocatable, intent(out) :: is_joint(:)  !! Which sections are joints: (m)
+      logical, allocatable, intent(out) :: is_joint(:)  !! True for sections at joints: (m)
       real(wp) :: angle(sum(shape%facets) + 1), start, span
       logical :: joint(size(angle))
       integer :: i, k, n, crown
@@ -89,8 +89,8 @@ contains
       if (.not. angle(1) > 0.0_wp) direction(1, n) = 0.0_wp
    end subroutine left_directions
 
-   !> Directions of the sections of the whole arch, seen from the centre, from the left springing to
-   !> the right one; mirrored to the last bit
+   !> Directions of the sections of the whole arch relative to the centre, from the left springing
+   !> to the right one; mirrored to the last bit
    pure subroutine section_directions(shape, direction, is_joint)
       type(arch_shape_t), intent(in) :: shape
       real(wp), allocatable, intent(out) :: direction(:, :)
@@ -156,7 +156,7 @@ contains
          & [(b > n, b=1, n + 2)], material)
    end subroutine arch_blocks
 
-   !> What a springing that is fixed stands on, as deep as the joint is long: its fourth edge
+   !> Block below a fixed springing, as deep as the joint is long: its fourth edge
    pure function springing(start, finish) result(vertex)
       real(wp), intent(in) :: start(2)   !! Where the joint starts, the arch on its left: (2) [m]
       real(wp), intent(in) :: finish(2)  !! Where it ends: (2) [m]

@@ -15,7 +15,7 @@ module dda_arch_assembly
    type :: arch_sections_t
       real(wp), allocatable :: intrados(:, :)  !! Intrados: (2, n) [m]
       real(wp), allocatable :: extrados(:, :)  !! Extrados: (2, n) [m]
-      logical, allocatable :: is_joint(:)      !! Which sections are joints: (n)
+      logical, allocatable :: is_joint(:)      !! True for sections at joints: (n)
       real(wp) :: crown_x = 0.0_wp             !! Where the crown is along x [m]
    end type arch_sections_t
 
@@ -194,7 +194,7 @@ contains
 
    contains
 
-      !> Whether a support is a pier or a buttress
+      !> True if a support is a pier or a buttress
       pure logical function stands_free(s)
          integer, intent(in) :: s  !! Its number, from 0
 
@@ -252,7 +252,7 @@ contains
    !> Corners without those that repeat the one before
    pure function distinct(corner, near) result(kept)
       real(wp), intent(in) :: corner(:, :)  !! The corners: (2, n) [m]
-      real(wp), intent(in) :: near          !! How far corners are apart that are one [m]
+      real(wp), intent(in) :: near          !! Largest distance of equal corners [m]
       real(wp), allocatable :: kept(:, :)   !! Those kept: (2, m) [m]
       integer :: i, n
 
@@ -277,7 +277,7 @@ contains
    pure subroutine add_block(assembly, corner, fixed, material)
       type(arch_assembly_t), intent(inout) :: assembly
       real(wp), intent(in) :: corner(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
-      logical, intent(in) :: fixed          !! Whether it cannot move
+      logical, intent(in) :: fixed          !! True if it cannot move
       integer, intent(in) :: material       !! Number of its material
 
       associate (plan => assembly%plan, n => assembly%n_block, v => assembly%n_vertex)

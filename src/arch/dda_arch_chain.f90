@@ -1,6 +1,6 @@
 !> An arch of rigid voussoirs as a chain
 !>
-!> Coordinates are seen from the middle of the crown, and each voussoir from its own first joint:
+!> The origin is the middle of the crown, and for each voussoir that of its own first joint:
 !> the thickness t of a shallow arch, a millionth of its radius, then keeps its digits. Area, centre
 !> and moment of inertia are polynomials of t, whose coefficients are found once: a point of a
 !> voussoir is X0 + s X1, with X0 on a chord halfway through the thickness, X1 between the
@@ -15,7 +15,7 @@ module dda_arch_chain
 
    public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain, join_voussoirs
 
-   !> What an arch of one material is made from
+   !> Shape, material and joints of an arch
    type :: arch_numbers_t
       type(arch_shape_t) :: shape         !! Its shape
       real(wp) :: density = 0.0_wp        !! Mass per volume [kg/m3]
@@ -24,21 +24,21 @@ module dda_arch_chain
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp) :: penalty_ratio = 0.0_wp
       type(joint_law_t) :: law  !! Law of the joints, without cohesion and tensile strength
-      !> Whether the springings cannot slide
+      !> True if the springings cannot slide
       logical :: no_slip_springing = .false.
-      logical :: halved = .false.  !! Whether the left half alone will do: the loads must be upright
+      logical :: halved = .false.  !! True if the left half alone suffices: under vertical loads
    end type arch_numbers_t
 
-   !> What does not depend on the thickness, of the whole arch or its left half
+   !> Numbers that do not depend on the thickness, of the whole arch or its left half
    type :: arch_rays_t
-      !> Whether the plane of symmetry cuts a voussoir, whose left half is the last one
+      !> True if the plane of symmetry cuts a voussoir, whose left half is the last one
       logical :: keystone = .false.
       !> Directions of the sections from left to right: (2, m)
       real(wp), allocatable :: direction(:, :)
       !> Where they cross the circle halfway through the thickness, from its top, over the radius:
       !> (2, m)
       real(wp), allocatable :: point(:, :)
-      !> Which of them are joints, or the plane of symmetry: (n_joint)
+      !> Numbers of those at joints or at the plane of symmetry: (n_joint)
       integer, allocatable :: joint(:)
       !> Areas of the voussoirs over t: (n) [m]
       real(wp), allocatable :: area(:)
@@ -108,7 +108,7 @@ contains
    !> those on either side
    pure subroutine meet_plane(rays, is_joint)
       type(arch_rays_t), intent(inout) :: rays
-      !> Which sections are joints; the plane counts as one
+      !> True for sections at joints; the plane counts as one
       logical, allocatable, intent(inout) :: is_joint(:)
       integer :: m
 
@@ -213,7 +213,7 @@ contains
       if (numbers%halved) call add_plane(rays, chain)
    end subroutine arch_chain
 
-   !> Set the joints but for their arms
+   !> Set the joints except their arms
    pure subroutine set_joints(numbers, thickness, n, m, section, direction, point, stiffness, &
       & joint, reach)
       type(arch_numbers_t), intent(in) :: numbers
@@ -274,7 +274,7 @@ contains
       end do
    end subroutine set_blocks
 
-   !> Add the compliances of the voussoirs, which tell whether joints slide on the way to the load
+   !> Add the compliances of the voussoirs: the loading path depends on them
    pure subroutine add_compliances(numbers, rays, thickness, chain)
       type(arch_numbers_t), intent(in) :: numbers
       type(arch_rays_t), intent(in) :: rays
@@ -305,7 +305,7 @@ contains
    pure subroutine add_compliance(give, area, across, thickness, compliance)
       real(wp), intent(in) :: give       !! One over Young's modulus and thickness [m/N]
       real(wp), intent(in) :: area       !! Area of the block [m2]
-      real(wp), intent(in) :: across     !! How far its centre is from the joint, with any sign [m]
+      real(wp), intent(in) :: across     !! Distance of its centre from the joint, of any sign [m]
       real(wp), intent(in) :: thickness  !! Length of the joint [m]
       !> Receives it [m2/N]
       real(wp), intent(inout) :: compliance

@@ -8,7 +8,7 @@ module dda_arch_curve
    public :: curve_t, piece_t, piece_form, station_t
    public :: close_curve, station_at, curve_length
 
-   !> What a piece is
+   !> Forms of a piece
    type :: piece_form_enum
       integer :: ellipse = 1   !! centre + (a sin u, b cos u), u rising
       integer :: parabola = 2  !! centre + (u, -u**2/(2 a))
@@ -34,7 +34,7 @@ module dda_arch_curve
       !> Length of the line up to each piece, and the whole: (0:n) [m]
       real(wp), allocatable :: length(:)
       real(wp) :: crown = 0.0_wp    !! Length up to the crown [m]
-      logical :: pointed = .false.  !! Whether the line bends sharply there
+      logical :: pointed = .false.  !! True if the line has a corner there
    end type curve_t
 
    !> A place on the line
@@ -83,7 +83,7 @@ contains
    pure type(station_t) function station_at(curve, length, from_right) result(station)
       type(curve_t), intent(in) :: curve
       real(wp), intent(in) :: length     !! Length from the left end [m]
-      logical, intent(in) :: from_right  !! Whether the right piece counts where two meet
+      logical, intent(in) :: from_right  !! True to use the right piece where two meet
       real(wp) :: u, rate(2), bend(2), speed
       integer :: i
 

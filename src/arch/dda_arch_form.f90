@@ -10,7 +10,7 @@ module dda_arch_form
    !> Numbers that make an arch
    type :: arch_form_t
       character(len=16) :: shape = "circular"  !! One of the words of arch%shape
-      !> Whether radius and half angle make it, of its middle; otherwise span and rise, of its
+      !> True if made from radius and half angle of its middle line, else from span and rise of its
       !> intrados
       logical :: by_radius = .true.
       real(wp) :: radius = 10.0_wp  !! Radius half way between intrados and extrados [m]
@@ -20,7 +20,7 @@ module dda_arch_form
       !> Height of the crown of the intrados above its springings, left and right: (2) [m]
       real(wp) :: rise(2) = 0.0_wp
       real(wp) :: thickness(2) = 0.0_wp  !! Thickness at the crown and at the springings: (2) [m]
-      !> Whether joints point from a centre; otherwise they are square to the middle line
+      !> True if joints point from a centre; else they are square to the middle line
       logical :: radial = .false.
       integer :: voussoirs = 36       !! Voussoirs of a ring
       real(wp) :: facet_deg = 0.0_wp  !! Largest angle of a chord; 0 for one chord a voussoir [deg]
@@ -30,12 +30,12 @@ module dda_arch_form
       !> Width and height of the two buttresses; no width for springings that are fixed: (2) [m]
       real(wp) :: buttress(2) = 0.0_wp
       integer :: courses = 1        !! Blocks of a pier, or of a buttress, one on the other
-      logical :: no_slip = .false.  !! Whether joints at fixed blocks cannot slide
+      logical :: no_slip = .false.  !! True if joints at fixed blocks cannot slide
    end type arch_form_t
 
-   !> What makes no arch
+   !> Error in the form of an arch
    type :: form_problem_t
-      !> What was expected and found, and what to do; empty if nothing is wrong
+      !> Message with the expected value, the one that was read and a remedy; empty without error
       character(len=200) :: text = ""
       character(len=24) :: key = "shape"  !! Key of &arch at fault
    end type form_problem_t
@@ -149,7 +149,7 @@ contains
       real(wp), intent(in) :: half_span  !! Distance of the crown from the springing along x [m]
       real(wp), intent(in) :: rise       !! Height of the crown above the springing [m]
       real(wp), intent(in) :: level      !! Height of the springing [m]
-      logical, intent(in) :: is_right    !! Whether it is the right half
+      logical, intent(in) :: is_right    !! True for the right half
       real(wp) :: radius, apex, way
 
       radius = 0.5_wp*(half_span**2 + rise**2)/half_span

@@ -35,7 +35,7 @@ contains
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
       real(wp), allocatable, intent(out) :: at(:)       !! The lengths, rising: (n) [m]
-      logical, allocatable, intent(out) :: is_joint(:)  !! Which of them are joints: (n)
+      logical, allocatable, intent(out) :: is_joint(:)  !! True for those at joints: (n)
       real(wp), allocatable :: row(:, :)
       real(wp) :: from, to, whole
       integer :: i, n
@@ -139,7 +139,7 @@ contains
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(in) :: curve
       type(station_t), intent(in) :: station
-      real(wp) :: across(2)  !! Direction; a unit vector but for flat arches: (2)
+      real(wp) :: across(2)  !! Direction; a unit vector except for flat arches: (2)
       type(station_t) :: left, right
 
       across = station%outward

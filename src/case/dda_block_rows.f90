@@ -91,7 +91,7 @@ contains
    !> Displacements at the end of a run
    pure subroutine tell_total_motion(system, moves, blocks)
       type(block_system_t), intent(in) :: system
-      !> Whether corners follow the motion; otherwise displacements are small
+      !> True if corners follow the motion; otherwise displacements are small
       logical, intent(in) :: moves
       type(told_blocks_t), intent(inout) :: blocks
 
@@ -313,7 +313,7 @@ contains
       end associate
    end subroutine tell_scene
 
-   !> Whether blocks have moved along a path of histories or prescribed displacements to their rest
+   !> True if blocks have moved along a path of histories or prescribed displacements to their rest
    pure logical function ends_on_path(standing)
       type(decision_t), intent(in), allocatable :: standing  !! The decision, if there is one
 

@@ -23,10 +23,10 @@ module dda_case
    !> in memory that threads share
    type :: case_t
       type(scene_plan_t) :: plan  !! What its scene needs
-      !> Whether a critical value is searched; whether tables of joints or blocks are told
+      !> True to search a critical value; to write tables of joints or blocks
       logical :: searches = .false., tells_tables = .true.
-      logical :: proves = .true.     !! Whether its verdict is proven
-      logical :: limerick = .false.  !! Whether Shi's scheme decides
+      logical :: proves = .true.     !! True if its verdict is proven
+      logical :: limerick = .false.  !! True if Shi's scheme decides
       type(deck_family_t) :: family  !! The scenes of the search
       type(search_t) :: search       !! The search
       type(critical_t) :: critical   !! What the search found
@@ -39,16 +39,16 @@ module dda_case
       character(len=:), allocatable :: restart_file
       type(error_t), allocatable :: error  !! Why the case could not be computed
       type(album_t) :: album               !! Pictures of the collapse, or of the way to rest
-      !> Whether the vehicle was put where the least load factor is carried
+      !> True if the vehicle was put where the least load factor is carried
       logical :: has_worst = .false.
-      !> Whether the least load factor was not found
+      !> True if the least load factor was not found
       logical :: misses_worst = .false.
-      !> Whether it drives the other way there: the deck has its axles the other way round then
+      !> True if it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
       character(len=:), allocatable :: jump_note  !! Jump of the factor between positions, if any
       type(proof_t) :: proof            !! What proves the verdict, where tables are told
       real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio
-      logical :: exact_known = .false.  !! Whether it is known
+      logical :: exact_known = .false.  !! True if it is known
       real(wp) :: seconds = 0.0_wp      !! Wall time of the computation [s]
    end type case_t
 

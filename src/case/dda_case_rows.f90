@@ -108,7 +108,7 @@ contains
       row%tells_condition = this%family%deck%value(output_condition)%flag
    end subroutine describe
 
-   !> Whether the friction of the deck may be that of a joint: those of lines have that of their
+   !> True if the friction of the deck may be that of a joint: those of lines have that of their
    !> analysis file, those of blocks that of the law of their materials, where there is one
    pure logical function deck_friction_acts(deck)
       type(deck_t), intent(in) :: deck

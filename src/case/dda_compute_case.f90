@@ -34,10 +34,10 @@ module dda_compute_case
    type :: least_factor_t
       real(wp) :: factor = no_limit  !! The factor
       real(wp) :: place = 0.0_wp     !! The place [m]
-      logical :: backward = .false.  !! Whether the vehicle drives the other way there
-      !> Whether the loading path there has an end; else the factor is how far it came
+      logical :: backward = .false.  !! True if the vehicle drives the other way there
+      !> True if the loading path there has an end; else the factor is how far it came
       logical :: decided = .true.
-      !> Whether no load is left whose limit may be less and was not found
+      !> True if no load is left whose limit may be less and was not found
       logical :: is_known = .true.
       !> Jump of its inverse between two positions that are all but one: the larger inverse plus the
       !> jump, where that is [m], and the smaller and the larger factor; of a path that was not
@@ -92,7 +92,7 @@ module dda_compute_case
          !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
          real(wp), intent(in) :: dead(:, :)
          type(load_arc_t), intent(in) :: arc(:)  !! The live loads: (n)
-         logical, intent(in) :: stands           !! Whether the dead load is known to stand
+         logical, intent(in) :: stands           !! True if the dead load is known to stand
          real(wp), intent(in) :: near            !! How near the place is to be [m]
          !> The least factor so far in, with these arcs out
          type(least_factor_t), intent(inout) :: least

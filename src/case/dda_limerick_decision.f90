@@ -302,7 +302,7 @@ contains
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
    end subroutine close_bracket
 
-   !> Whether a value stands and another falls
+   !> True if a value stands and another falls
    pure logical function both_sides(critical)
       type(critical_t), intent(in) :: critical
 

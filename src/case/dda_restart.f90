@@ -99,7 +99,7 @@ module dda_restart
          real(wp), intent(in) :: number(:, :)
          !> The contacts at their beginning in, with these joints out
          type(contacts_t), intent(inout) :: contacts
-         !> Whether the numbers are those of joints between the blocks
+         !> True if the numbers are those of joints between the blocks
          logical, intent(out) :: sound
       end subroutine unpack_joints
 

@@ -63,7 +63,7 @@ contains
       if (.not. are_blocks(system)) fault = "strains that leave no block"
    end procedure take_blocks
 
-   !> Whether strain has left blocks their shapes: no edge is gone, none is turned inside out
+   !> True if strain has left blocks their shapes: no edge is gone, none is turned inside out
    pure logical function are_blocks(system)
       type(block_system_t), intent(in) :: system
       integer :: b
@@ -203,7 +203,7 @@ contains
       end do
    end subroutine make_joints
 
-   !> Whether numbers are those of a joint of two blocks, of which one moves; its edges run against
+   !> True if numbers are those of a joint of two blocks, of which one moves; its edges run against
    !> one another, if they are of both blocks
    pure logical function is_joint(system, outline, whole, number)
       type(block_system_t), intent(in) :: system

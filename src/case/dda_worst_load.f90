@@ -15,10 +15,10 @@ submodule (dda_compute_case) dda_worst_load
    type :: chase_t
       type(joint_graph_t) :: graph         !! The joints
       real(wp), allocatable :: dead(:, :)  !! Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
-      logical :: stands = .false.          !! Whether they are carried
+      logical :: stands = .false.          !! True if they are carried
       integer :: missed = 0                !! Loads without a limit, before one was found
       real(wp) :: near = 0.0_wp            !! Arcs shorter than this are not halved [m]
-      !> Whether each load is carried at the least factor so far, or has its own limit found
+      !> True if each load is carried at the least factor so far, or has its own limit found
       logical :: is_last = .false.
       type(load_walk_t) :: walk            !! Forces that go from load to load
    end type chase_t
@@ -74,7 +74,7 @@ contains
       end do
    end procedure seek_least_factor
 
-   !> Whether an arc begins with the load that the arc before ends with
+   !> True if an arc begins with the load that the arc before ends with
    pure logical function goes_on(arc, k)
       type(load_arc_t), intent(in) :: arc(:)
       integer, intent(in) :: k  !! Number of the arc
@@ -160,13 +160,13 @@ contains
       call pass_between(arc, k, middle, to, chase, least)
    end subroutine pass_between
 
-   !> Whether a load of an arc is carried at a factor but for a small share of it
+   !> True if a load of an arc is carried at a factor but for a small share of it
    pure subroutine carry(arc, weight, factor, chase, carried)
       type(load_arc_t), intent(in) :: arc
       real(wp), intent(in) :: weight(3)  !! Shares of its three loads
       real(wp), intent(in) :: factor     !! The factor
       type(chase_t), intent(inout) :: chase
-      logical, intent(out) :: carried    !! Whether it is
+      logical, intent(out) :: carried    !! True if it is
       real(wp) :: load(3, size(chase%dead, 2))
       integer :: state
 

@@ -34,7 +34,7 @@ submodule (dda_compute_case) dda_worst_position
       type(vehicle_t) :: vehicle         !! The vehicle
       type(road_t) :: road               !! What it stands on
       type(fill_t), allocatable :: fill  !! Fill that it stands on
-      logical :: stands = .false.        !! Whether it stands without live loads
+      logical :: stands = .false.        !! True if it stands without live loads
    end type bridge_t
 
    !> A part of the road
@@ -141,7 +141,7 @@ contains
       end do
    end subroutine drive
 
-   !> Whether the first collapse on a loading path may come before the associated limit
+   !> True if the first collapse on a loading path may come before the associated limit
    pure logical function has_path(bridge)
       type(bridge_t), intent(in) :: bridge
       type(joint_graph_t) :: graph
@@ -181,7 +181,7 @@ contains
       end do
    end function last_of_side
 
-   !> Whether the vehicle of a deck is its own mirror image
+   !> True if the vehicle of a deck is its own mirror image
    pure logical function is_symmetric(deck)
       type(deck_t), intent(in) :: deck
 
@@ -213,7 +213,7 @@ contains
          & deck%value(vehicle_position)%place, error)
    end subroutine put_vehicle
 
-   !> Whether there is fill that the bridge can lean against
+   !> True if there is fill that the bridge can lean against
    pure logical function leans(bridge)
       type(bridge_t), intent(in) :: bridge
       type(scene_t) :: scene
@@ -261,7 +261,7 @@ contains
       bridge%vehicle = vehicle_of(deck, bridge%fill)
    end subroutine seat_vehicle
 
-   !> Whether a bridge stands without live loads, and without leaning against fill, which could only
+   !> True if a bridge stands without live loads, and without leaning against fill, which could only
    !> help
    pure logical function stands_alone(scene)
       type(scene_t), intent(in) :: scene

@@ -157,7 +157,7 @@ contains
 
    contains
 
-      !> Whether a value lies strictly between the ends of the bracket
+      !> True if a value lies strictly between the ends of the bracket
       pure logical function inside(x)
          real(wp), intent(in) :: x  !! The value
 
@@ -180,7 +180,7 @@ contains
       not_again = critical%falls + share*(critical%stands - critical%falls)
    end function not_again
 
-   !> Whether the last collapse is the one that the proposal asked for, at the tolerance, so that
+   !> True if the last collapse is the one that the proposal asked for, at the tolerance, so that
    !> another trace would tell nothing new
    pure logical function proved(search, limit, critical, proposal)
       type(search_t), intent(in) :: search
@@ -195,7 +195,7 @@ contains
          & - proposal%half) < 1.0e-3_wp*proposal%half
    end function proved
 
-   !> Whether the bracket is as narrow as the proposal asks for
+   !> True if the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)
       type(search_t), intent(in) :: search
       type(critical_t), intent(in) :: critical
@@ -212,7 +212,7 @@ contains
       real(wp), intent(in) :: value   !! The value
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! One of verdict
-      !> Whether the decision is kept whole, as of a run in time; otherwise its verdict will do
+      !> True if the decision is kept whole, as of a run in time; otherwise its verdict will do
       logical, intent(in), optional :: whole
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error

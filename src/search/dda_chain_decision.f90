@@ -1,4 +1,4 @@
-!> Whether a chain is stable: joint forces within their cones that balance the loads prove that it
+!> True if a chain is stable: joint forces within their cones that balance the loads prove that it
 !> is, a mechanism on which the loads do work that it is not; and a half model as the whole
 module dda_chain_decision
    use dda_chain, only : chain_t
@@ -23,7 +23,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
-      !> Whether it counts: not where joints of what stands may have slid on the way to its loads,
+      !> True if it counts: not where joints of what stands may have slid on the way to its loads,
       !> nor where the programme has no solution
       logical, intent(out) :: decided
       !> What a chain much like it lacks, or nothing, in; what this one lacks out

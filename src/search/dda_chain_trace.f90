@@ -38,10 +38,10 @@ submodule (dda_collapse_trace) dda_chain_trace
       real(wp) :: other = 0.0_wp   !! The value that its chord came from
       !> Nearest values that collapse and that stand, or the ends of the range: (2)
       real(wp) :: bracket(2) = 0.0_wp
-      logical :: known(2) = .false.  !! Whether they have been looked at: (2)
+      logical :: known(2) = .false.  !! True if they have been looked at: (2)
       integer :: side = 1            !! On which of the two sides the value is
-      logical :: steady = .false.    !! Whether the slope is that of its mechanism
-      !> Whether it stands at its limit, as through a range of values: that tells nothing of where
+      logical :: steady = .false.    !! True if the slope is that of its mechanism
+      !> True if it stands at its limit, as through a range of values: that tells nothing of where
       !> the range begins
       logical :: at_limit = .false.
    end type secant_t
@@ -124,7 +124,7 @@ contains
       real(wp), intent(inout) :: value          !! Where to begin in, where they cease out
       !> Change of the deficit with the value; an estimate in, or 0
       real(wp), intent(inout) :: slope
-      logical, intent(out) :: found  !! Whether they cease to collapse
+      logical, intent(out) :: found  !! True if they cease to collapse
       type(arch_rays_t) :: joined
       type(chain_t) :: chain
       type(deficit_t) :: collapsed
@@ -172,7 +172,7 @@ contains
       type(deficit_t), intent(in) :: deficit
       real(wp), intent(in) :: enough
       type(secant_t), intent(inout) :: secant
-      logical, intent(out) :: ended  !! Whether the next value is the one sought
+      logical, intent(out) :: ended  !! True if the next value is the one sought
 
       associate (value => secant%value, next => secant%next, least => deficit%least)
          secant%side = merge(1, 2, least > deficit%noise)

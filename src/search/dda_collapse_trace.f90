@@ -19,7 +19,7 @@ module dda_collapse_trace
 
    !> Where a collapse stops
    type :: proposal_t
-      logical :: usable = .false.  !! Whether it stops anywhere
+      logical :: usable = .false.  !! True if it stops anywhere
       real(wp) :: value = 0.0_wp   !! The value
       !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
       !> coordinates can tell apart
@@ -53,7 +53,7 @@ module dda_collapse_trace
          type(search_t), intent(in) :: search
          real(wp), intent(in) :: from     !! Where to begin
          real(wp), intent(in) :: limit    !! The end of the range on the side that stands
-         !> Whether the mechanism at the beginning is kept: all values before the one proposed then
+         !> True if the mechanism at the beginning is kept: all values before the one proposed then
          !> collapse
          logical, intent(in) :: frozen
          type(critical_t), intent(inout) :: critical
@@ -72,8 +72,8 @@ contains
       real(wp), intent(in) :: limit  !! The end of the range on the side that stands
       type(critical_t), intent(inout) :: critical  !! What was found so far
       type(proposal_t), intent(out) :: proposal    !! Where the collapse stops
-      !> Whether the first secant will do, as to rule out values: none of a concave margin that never
-      !> vanishes converges
+      !> True to end with the first secant, to exclude values: the secant method does not converge
+      !> where a margin has no zero
       logical, intent(in), optional :: by_tangent
       real(wp) :: x(2), margin(2), least, near, next, noise, slope, step, tolerance, unit
       integer :: i
@@ -133,7 +133,7 @@ contains
       real(wp), intent(in) :: tolerance  !! How far the margin may be off over its unit
       type(critical_t), intent(inout) :: critical
       real(wp), intent(out) :: margin, unit  !! As of `find_margin` [N/m]
-      logical, intent(out) :: found    !! Whether it could be found
+      logical, intent(out) :: found    !! True if it could be found
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
       type(load_stations_t) :: stations
@@ -156,7 +156,7 @@ contains
       critical%factorisations = critical%factorisations + n
    end subroutine margin_at
 
-   !> Whether a collapse takes power that the loads alone do not tell: what is crushed does, and a
+   !> True if a collapse takes power that the loads alone do not tell: what is crushed does, and a
    !> bar that yields
    pure logical function takes_power(fallen)
       type(decision_t), intent(in) :: fallen

@@ -38,7 +38,7 @@ module dda_critical
          !> between others that fall
          type(search_t), intent(inout) :: search
          type(critical_t), intent(inout) :: critical
-         logical, intent(out) :: done  !! Whether the search could be done so
+         logical, intent(out) :: done  !! True if the search could be done so
       end subroutine find_critical_load
 
    end interface
@@ -135,7 +135,7 @@ contains
       !> The verdict of both ends; the decisions that are made are counted
       type(critical_t), intent(inout) :: critical
       real(wp), intent(out) :: value   !! Such a value
-      logical, intent(out) :: differs  !! Whether there is one
+      logical, intent(out) :: differs  !! True if there is one
       real(wp) :: from, to
       integer :: agree, answer, try
       type(proposal_t) :: proposal

@@ -37,7 +37,7 @@ contains
       real(wp), intent(in) :: value                  !! Its parameter
       type(settings_t), intent(in) :: settings
       type(load_stations_t), intent(in) :: stations
-      logical, intent(in) :: is_balanced             !! Whether forces balance the dead loads
+      logical, intent(in) :: is_balanced             !! True if forces balance the dead loads
       type(scene_t), intent(inout) :: scene
       type(joint_graph_t), intent(inout) :: graph    !! Its joints, made anew, too
       type(graph_verdict_t), intent(inout) :: proof  !! How the path went
@@ -68,7 +68,7 @@ contains
       type(scene_t), intent(in) :: scene
       !> Where nothing slides, with the load that its forces balance
       type(coulomb_state_t), allocatable, intent(out) :: start
-      logical, intent(out) :: slides  !! Whether there is a rest and joints slide in it
+      logical, intent(out) :: slides  !! True if there is a rest and joints slide in it
       integer, intent(out) :: n       !! Factorisations
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20

@@ -129,7 +129,7 @@ contains
    !> Decide by the joint graph
    pure subroutine decide_by_graph(scene, bare, decision, album)
       type(scene_t), intent(in) :: scene
-      logical, intent(in) :: bare  !! Whether forces and motions of what stands are not asked for
+      logical, intent(in) :: bare  !! True if forces and motions of what stands are not asked for
       type(decision_t), intent(out) :: decision
       type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof
@@ -176,7 +176,7 @@ contains
       end associate
    end subroutine decide_by_graph
 
-   !> Whether joints slide in the state that Coulomb's law has led to, or have strength, of which
+   !> True if joints slide in the state that Coulomb's law has led to, or have strength, of which
    !> the path alone knows what is lost: no elastic sharing without slip is looked for then
    pure logical function has_slid(proof)
       type(graph_verdict_t), intent(in) :: proof
@@ -192,7 +192,7 @@ contains
       end associate
    end function has_slid
 
-   !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
+   !> True if a run of steps can tell what the graph does not: steps know neither bounded forces nor
    !> strength
    pure logical function may_run(scene)
       type(scene_t), intent(in) :: scene
@@ -206,7 +206,7 @@ contains
    pure subroutine share_forces(scene, decision, shared, album)
       type(scene_t), intent(in) :: scene
       type(decision_t), intent(inout) :: decision
-      logical, intent(out) :: shared  !! Whether they do
+      logical, intent(out) :: shared  !! True if they do
       type(album_t), intent(inout), optional :: album
 
       associate (outcome => decision%outcome)

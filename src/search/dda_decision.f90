@@ -71,7 +71,7 @@ module dda_decision
          type(album_t), intent(inout), optional :: album
          !> Where a dynamic run goes on and where it ended
          type(march_t), intent(inout), optional :: onward
-         !> Whether forces and motions of what stands are not asked for
+         !> True if forces and motions of what stands are not asked for
          logical, intent(in), optional :: verdict_only
          !> Proof that a static structure stands, without sliding on its way: then only the elastic
          !> sharing of its forces is left to find

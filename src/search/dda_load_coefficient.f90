@@ -25,7 +25,7 @@ module dda_load_coefficient
 
 contains
 
-   !> Whether the coefficient comes last on a path that the joint graph can follow
+   !> True if the coefficient comes last on a path that the joint graph can follow
    pure logical function can_follow(load, scene, largest)
       integer, intent(in) :: load         !! One of searched_load
       type(scene_t), intent(in) :: scene  !! The scene at the high end
@@ -49,7 +49,7 @@ contains
       end associate
    end function can_follow
 
-   !> Whether the order in which loads come is nothing to a scene
+   !> True if the order in which loads come is nothing to a scene
    pure logical function knows_no_order(settings, graph)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
@@ -57,12 +57,12 @@ contains
       knows_no_order = settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)
    end function knows_no_order
 
-   !> Whether limit analysis can rule values out, whatever leads to them: under Coulomb friction
+   !> True if limit analysis can rule values out, whatever leads to them: under Coulomb friction
    !> live loads come later than dead ones that fall, but gravity acts as it is
    pure logical function may_seek(load, scene, no_order, width)
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
-      logical, intent(in) :: no_order  !! Whether the order in which loads come is nothing to it
+      logical, intent(in) :: no_order  !! True if the order in which loads come is nothing to it
       real(wp), intent(in) :: width    !! How wide the range is
 
       may_seek = no_order
@@ -70,7 +70,7 @@ contains
          & .and. width <= acos(-1.0_wp)
    end function may_seek
 
-   !> Whether gravity that tilts so far is upright gravity and a push, but for its size
+   !> True if gravity that tilts so far is upright gravity and a push, but for its size
    pure logical function is_push(tilt)
       real(wp), intent(in) :: tilt  !! The angle from upright [rad]
 
@@ -215,7 +215,7 @@ contains
       !> The range; becomes what is not ruled out, nothing of it where high is no more than low
       real(wp), intent(inout) :: low, high
       real(wp), intent(out) :: value           !! The value, or the low end
-      logical, intent(out) :: found            !! Whether there is one
+      logical, intent(out) :: found            !! True if there is one
       integer, intent(out) :: n_factorisation  !! Factorisations
       integer, parameter :: most = 60
       type(load_decision_t) :: decision

@@ -24,8 +24,8 @@ submodule (dda_critical) dda_load_search
       type(limit_t) :: limit  !! The associated limit, with the sign of the side
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
-      logical :: stands_upright = .true.  !! Whether the path leads further than its dead loads
-      logical :: falls_dead = .false.     !! Whether no forces balance the dead loads
+      logical :: stands_upright = .true.  !! True if the path leads further than its dead loads
+      logical :: falls_dead = .false.     !! True if no forces balance the dead loads
       type(graph_verdict_t) :: proof      !! How it falls, or stands at the end of the range
    end type side_t
 
@@ -91,7 +91,7 @@ contains
       real(wp), intent(in) :: low, high  !! The range
       type(side_t), intent(inout) :: right, left
       real(wp), intent(out) :: origin    !! A value that may stand, low where none is known
-      logical, intent(out) :: may_stand  !! Whether not all of the range is known to fall
+      logical, intent(out) :: may_stand  !! True if not all of the range is known to fall
       integer, intent(out) :: n          !! Factorisations but for those of the two sides
       real(wp) :: from, to, margin
       logical :: found, no_order
@@ -186,7 +186,7 @@ contains
       end associate
    end subroutine follow_side
 
-   !> Whether a path ends at the associated limit: where nothing slides in the collapse both rules
+   !> True if a path ends at the associated limit: where nothing slides in the collapse both rules
    !> agree, and limit analysis is sharper; what does not settle so near to the limit falls there
    pure logical function is_at_limit(side)
       type(side_t), intent(in) :: side

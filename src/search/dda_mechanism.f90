@@ -138,7 +138,7 @@ contains
       end do
    end function role_of_joint
 
-   !> Whether a joint slides: it is closed, at the Coulomb limit, and its slip is more than rounding
+   !> True if a joint slides: it is closed, at the Coulomb limit, and its slip is more than rounding
    elemental logical function slides(face, slip, largest)
       type(joint_face_t), intent(in) :: face  !! Face that its force lies on
       real(wp), intent(in) :: slip            !! Its slip [m]

@@ -42,20 +42,20 @@ module dda_scene
 
    !> The chain of a family that was made last
    type :: link_t
-      logical :: known = .false.    !! Whether there is one
+      logical :: known = .false.    !! True if there is one
       real(wp) :: value = 0.0_wp    !! Its value of the parameter
       type(chain_t) :: chain        !! The chain
    end type link_t
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
-      !> Whether they are chains but for strain, arches that differ by their thickness ratio alone
+      !> True if they are chains but for strain, arches that differ by their thickness ratio alone
       logical :: chains = .false.
       type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
       type(settings_t) :: chain_settings  !! Settings of their runs
       !> What does not depend on the thickness; made by the one who searches
       type(arch_rays_t) :: rays
-      !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
+      !> True if its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them
       logical :: decides_chains = .false.
       integer :: load = 0  !! Load coefficient that the parameter is, one of searched_load

@@ -26,15 +26,15 @@ module dda_search
       !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0
       !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
-      logical :: in_time = .false.  !! Whether its runs are dynamic
-      !> Whether the end beyond the critical value is decided too; not needed where it is known to
+      logical :: in_time = .false.  !! True if its runs are dynamic
+      !> True if the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
    end type search_t
 
    !> An associated limit with its proofs
    type :: limit_t
-      logical :: known = .false.     !! Whether it is known
+      logical :: known = .false.     !! True if it is known
       real(wp) :: value(2) = 0.0_wp  !! The limit from below and from above
       !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
@@ -55,7 +55,7 @@ module dda_search
       !> Half the width that rounding and tolerance leave to the bracket
       real(wp) :: half = 0.0_wp
       real(wp) :: stop = 0.0_wp   !! Where the last collapse stops, if it does
-      logical :: stops = .false.  !! Whether that is known
+      logical :: stops = .false.  !! True if that is known
       !> Decision at falls, if there is one; without its blocks and springs
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
@@ -63,7 +63,7 @@ module dda_search
       type(link_t) :: link  !! The chain that was looked at last
       type(deficit_t) :: deficit  !! What its forces lack, where the next one begins
       real(wp) :: other = 0.0_wp      !! Value at which it falls in the other direction
-      logical :: has_other = .false.  !! Whether it does so within the range
+      logical :: has_other = .false.  !! True if it does so within the range
       integer :: others = 0           !! Values that a search in time has run beside its bracket
       !> Neighbours between which the answer of a search in time changes too: (2, n)
       real(wp), allocatable :: other_change(:, :)
@@ -71,7 +71,7 @@ module dda_search
       type(scene_t), allocatable :: scene  !! The scene of a value of the coefficient, whichever
       integer :: jumps = 0                 !! Jumps on the loading path, at fixed load
       real(wp) :: largest_jump = 0.0_wp    !! The largest of them [m]
-      logical :: current = .false.         !! Whether the blocks move
+      logical :: current = .false.         !! True if the blocks move
       integer :: decisions = 0             !! Number of decisions
       integer :: steps = 0                 !! Steps of all decisions
       integer :: passes = 0                !! Passes of the open-close loop of all decisions
@@ -84,13 +84,13 @@ module dda_search
       type(block_system_t) :: system  !! Blocks at the end
       type(contacts_t) :: contacts    !! Contacts at the end
       integer :: flow = 1             !! Flow rule of the run that gave them, one of flow_rule
-      logical :: by_graph = .false.   !! Whether the joint graph has told how it falls
+      logical :: by_graph = .false.   !! True if the joint graph has told how it falls
       !> What limit analysis says of the full load, where it was asked on the way
       type(load_decision_t), allocatable :: limit
-      !> Whether outcome and contacts are those of the left half of a row, up to its plane of
+      !> True if outcome and contacts are those of the left half of a row, up to its plane of
       !> symmetry
       logical :: halved = .false.
-      logical :: keystone = .false.  !! Whether this plane runs through the last block
+      logical :: keystone = .false.  !! True if this plane runs through the last block
    end type decision_t
 
    !> Proofs of a case and their figures
@@ -103,7 +103,7 @@ module dda_search
       real(wp), allocatable :: velocity(:, :)
       !> Value of what is searched at which the loads begin to drive them
       real(wp) :: motion_at = 0.0_wp
-      !> Whether the blocks have the same shape there
+      !> True if the blocks have the same shape there
       logical :: same_shape = .true.
       !> Scene of the forces, and of the velocities where only loads are searched
       type(scene_t) :: scene
@@ -116,7 +116,7 @@ module dda_search
       real(wp) :: power = 0.0_wp
       !> Associated limit of the load factor of a single decision, from below and from above
       real(wp) :: limit(2) = 0.0_wp
-      !> Whether there is one
+      !> True if there is one
       logical :: has_limit = .false.
       !> Least and greatest thrust of a joint: (2) [N/m]
       real(wp) :: thrust(2) = 0.0_wp
@@ -155,7 +155,7 @@ contains
    !> for their bars, which the family makes anew at any value, unless a path has moved them
    pure subroutine shed(decision, keeps_joints)
       type(decision_t), intent(inout) :: decision
-      !> Whether it keeps its joints: a load coefficient moves none
+      !> True if it keeps its joints: a load coefficient moves none
       logical, intent(in) :: keeps_joints
       type(bar_state_t), allocatable :: bar(:)
 

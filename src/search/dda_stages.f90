@@ -140,7 +140,7 @@ contains
       type(settings_t), intent(in) :: settings  !! Settings of all stages
       type(scene_t), intent(in) :: stage
       type(graph_verdict_t), intent(in) :: proof
-      !> Whether joints have slid or blocks were built in any stage; otherwise forces are those of
+      !> True if joints have slid or blocks were built in any stage; otherwise forces are those of
       !> the last shape built at once
       logical, intent(in) :: in_order
       type(decision_t), intent(inout) :: decision
@@ -179,7 +179,7 @@ contains
       integer, intent(in) :: n
       !> The state before; not allocated in the first stage
       type(coulomb_state_t), allocatable, intent(in) :: before
-      !> Whether they have: (n)
+      !> True if they have: (n)
       logical :: slid(n)
       real(wp) :: slip(n)
 

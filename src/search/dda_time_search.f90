@@ -22,7 +22,7 @@ submodule (dda_critical) dda_time_search
    type :: runs_t
       integer :: n = 0                          !! Number of decided values
       real(wp) :: value(max_runs + 2) = 0.0_wp  !! The values, increasing: (n or more)
-      logical :: falls(max_runs + 2) = .false.  !! Whether each falls: (n or more)
+      logical :: falls(max_runs + 2) = .false.  !! True if each falls: (n or more)
       !> Values of the decisions that are kept, of one that stands and one that falls
       real(wp) :: kept(2) = 0.0_wp
    end type runs_t

@@ -65,7 +65,7 @@ contains
       end associate
    end function joint_force
 
-   !> What each unknown makes of the force of one joint
+   !> Coefficients of the unknowns in the force of one joint
    pure function influence(chain, j) result(g)
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: j
@@ -102,8 +102,8 @@ contains
    end subroutine add_reaction
 
    !> Resultants of all joints, each from that of its neighbour by the balance of the block between:
-   !> the moment of a shallow arch, seen from afar, would lose its digits, and the normal force of a
-   !> thin one as the sum of those at its corners
+   !> the moment of a shallow arch about a far point would lose its digits, and the normal force of
+   !> a thin one as the sum of those at its corners
    pure subroutine carry_forces(chain, reaction, resultant, magnitude)
       type(chain_t), intent(in) :: chain
       real(wp), intent(in) :: reaction(3)
@@ -120,7 +120,7 @@ contains
 
    !> The same of arrays of known shapes
    pure subroutine carry_on(halved, n, block, joint, reaction, resultant, magnitude)
-      logical, intent(in) :: halved  !! Whether the first joint is the last one
+      logical, intent(in) :: halved  !! True if the first joint is the last one
       integer, intent(in) :: n       !! Number of blocks
       type(chain_block_t), intent(in) :: block(n)      !! The blocks
       type(chain_joint_t), intent(in) :: joint(n + 1)  !! The joints

@@ -1,6 +1,6 @@
 !> Loading of a chain of elastic joints without sliding
 !>
-!> Where no joint slides, the joints' springs, which push and never pull, know of no history: the
+!> Where no joint slides, the joints' springs, which push and never pull, have no history: the
 !> forces are those of least energy, a quadratic function of three unknowns, and corners that open
 !> are bounds. As the load grows, forces and gaps change in proportion between two events, at which
 !> a corner opens or closes. If no shear force comes to its bound at any event, none does between
@@ -22,15 +22,15 @@ module dda_chain_path
    type :: open_corner_t
       integer :: joint = 0       !! Number of the joint
       integer :: corner = 0      !! 1 or 2
-      real(wp) :: gap = 0.0_wp   !! How wide it is [m]
+      real(wp) :: gap = 0.0_wp   !! Its width [m]
       real(wp) :: rate = 0.0_wp  !! Its change along a leg
    end type open_corner_t
 
    !> Forces and gaps of a chain on its way
    type :: chain_state_t
-      !> What the three unknowns make of N1, N2, T of each joint: (3, 3, n + 1)
+      !> Coefficients of the three unknowns in N1, N2, T of each joint: (3, 3, n + 1)
       real(wp), allocatable :: influence(:, :, :)
-      !> Inverse of the springs' compliance as the unknowns see it
+      !> Inverse of the springs' compliance for the unknowns
       real(wp) :: stiffness(3, 3) = 0.0_wp
       !> N1, N2, T of each joint: (3, n + 1) [N/m]
       real(wp), allocatable :: force(:, :)
@@ -44,11 +44,11 @@ module dda_chain_path
       type(open_corner_t) :: open(3)
    end type chain_state_t
 
-   !> What changes along a leg, over its length
+   !> Changes along a leg, over its length
    type :: chain_leg_t
       !> Forces if the unknowns stayed: (3, n + 1) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> The same as the unknowns see it: work of the springs' closing
+      !> The same for the unknowns: work of the springs' closing
       real(wp) :: closing(3) = 0.0_wp
       !> Prestress [N/m]
       real(wp) :: squeeze = 0.0_wp
@@ -63,15 +63,15 @@ module dda_chain_path
 
 contains
 
-   !> See whether a chain comes to its load while all joints stick: gravity acts at once, upright,
-   !> then it tilts, then comes the push. What is not shown to stick may yet do so
+   !> Load a chain and check that all joints stick: gravity acts at once, upright,
+   !> then it tilts, then comes the push. Joints that are not shown to stick may yet do so
    pure subroutine stick_all_along(chain, tilt, face, sticks)
       type(chain_t), intent(in) :: chain
       !> Angle of gravity from upright, to the right [rad]
       real(wp), intent(in) :: tilt
       !> Faces of the joints under the load: (n + 1)
       type(joint_face_t), intent(out) :: face(:)
-      !> Whether no joint slides
+      !> True if no joint slides
       logical, intent(out) :: sticks
       type(chain_state_t) :: state, upright
       type(chain_leg_t) :: push
@@ -82,7 +82,7 @@ contains
       sticks = all(abs(whole) <= 0.0_wp)
       if (sticks .or. -whole(2) <= flattest*abs(whole(1))) return
       call stand_upright(chain, upright, push, sticks)
-      ! forces know loads by their direction alone, and no history
+      ! forces depend on the direction of the loads alone, and have no history
       slope = -whole(1)/whole(2)
       turned = tan(tilt)
       state = upright
@@ -103,7 +103,7 @@ contains
       type(chain_t), intent(in) :: chain
       type(chain_state_t), intent(out) :: state
       type(chain_leg_t), intent(out) :: push
-      logical, intent(out) :: stands  !! Whether forces hold it and no joint slides
+      logical, intent(out) :: stands  !! True if forces hold it and no joint slides
       type(chain_leg_t) :: crack
       real(wp) :: load(3, size(chain%joint)), reaction(3)
       real(wp), parameter :: to_the_side(2, 2) = reshape([0, 0, -1, 0], [2, 2])
@@ -184,10 +184,10 @@ contains
    !> Go along so many times a leg, or back along it
    pure subroutine follow(chain, times, leg, state, sticks)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: times   !! How often
+      real(wp), intent(in) :: times   !! Number of times
       type(chain_leg_t), intent(in) :: leg
       type(chain_state_t), intent(inout) :: state
-      logical, intent(out) :: sticks  !! Whether forces are found to its end, and no joint slides
+      logical, intent(out) :: sticks  !! True if forces are found to its end, and no joint slides
       type(chain_leg_t) :: way
 
       sticks = .not. abs(times) > 0.0_wp
@@ -200,7 +200,7 @@ contains
    pure subroutine move_along(chain, leg, may_slide, state, sticks)
       type(chain_t), intent(in) :: chain
       type(chain_leg_t), intent(in) :: leg
-      logical, intent(in) :: may_slide  !! Whether joints that would slide end it
+      logical, intent(in) :: may_slide  !! True if joints that would slide end it
       type(chain_state_t), intent(inout) :: state
       logical, intent(out) :: sticks
       real(wp) :: rate(3, size(chain%joint)), change(3), left, step
@@ -256,10 +256,10 @@ contains
       change = change + matmul(state%stiffness, matmul(row(:, :n), gap(:n)))
    end subroutine find_rates
 
-   !> What the unknowns do at the open corners, and what their gaps do to one another
+   !> Coefficients of the unknowns at the open corners, and of their gaps for one another
    pure subroutine open_rows(state, row, matrix)
       type(chain_state_t), intent(in) :: state
-      !> What they do: (3, 3), a column a corner
+      !> Their coefficients: (3, 3), one column per corner
       real(wp), intent(out) :: row(3, 3)
       !> Forces at the corners by unit gaps: (3, 3), of the unit matrix beyond them
       real(wp), intent(out) :: matrix(3, 3)
@@ -281,10 +281,10 @@ contains
       type(chain_state_t), intent(in) :: state
       real(wp), intent(in) :: rate(:, :)           !! Rates of the forces: (3, n + 1)
       real(wp), intent(in) :: squeeze              !! Rate of the prestress
-      real(wp), intent(in) :: longest              !! What is left of the leg
-      real(wp), intent(out) :: step                !! How far the event is
+      real(wp), intent(in) :: longest              !! Rest of the leg
+      real(wp), intent(out) :: step                !! Distance of the event
       type(open_corner_t), intent(out) :: opening  !! The corner that opens; joint 0 if none does
-      integer, intent(out) :: closing              !! Which open corner closes, or 0
+      integer, intent(out) :: closing              !! Open corner that closes, or 0
       logical :: is_open(2, size(rate, 2))
       real(wp) :: fall, force
       integer :: i, j
@@ -319,7 +319,7 @@ contains
    pure subroutine open_corner(corner, state, opens)
       type(open_corner_t), intent(in) :: corner
       type(chain_state_t), intent(inout) :: state
-      logical, intent(out) :: opens  !! Whether one could
+      logical, intent(out) :: opens  !! True if one could
       real(wp) :: matrix(3, 3), row(3, 3), share(3), turn
       integer :: closing, i, n
 
@@ -349,7 +349,7 @@ contains
       state%open(closing) = open_corner_t(corner%joint, corner%corner, turn, 0.0_wp)
    end subroutine open_corner
 
-   !> Whether a joint slides
+   !> True if a joint slides
    pure logical function slides(chain, state)
       type(chain_t), intent(in) :: chain
       type(chain_state_t), intent(in) :: state
@@ -363,7 +363,7 @@ contains
       end do
    end function slides
 
-   !> Whether no corner pulls, and none that is open pushes, but for rounding
+   !> True if no corner pulls, and none that is open pushes, except by rounding
    pure logical function holds_tight(state)
       type(chain_state_t), intent(in) :: state
       real(wp) :: most, wrong

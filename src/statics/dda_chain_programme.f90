@@ -12,8 +12,8 @@
 !> The dual simplex method exchanges bounds: the one that is broken most enters, the one whose
 !> multiplier vanishes first leaves; if that takes long, Bland's rule ends it. The inverse is made
 !> from its four rows at each exchange. Forces are those of an estimate, carried from joint to
-!> joint, plus what the small change of the unknowns adds: the moments of a shallow arch, seen from
-!> afar, would lose their digits.
+!> joint, plus what the small change of the unknowns adds: the moments of a shallow arch about a far
+!> point would lose their digits.
 module dda_chain_programme
    use dda_chain, only : chain_joint_t, chain_t
    use dda_chain_balance, only : add_reaction, carry_forces, influence
@@ -30,13 +30,13 @@ module dda_chain_programme
       real(wp) :: noise = 0.0_wp  !! Rounding error of s [N/m]
       !> Joints of the bounds; 0 for one that only keeps the unknowns finite
       integer :: joint(4) = 0
-      !> Which of their bounds: 1 and 2 at the corners, 3 and 4 of shear forces along the joint and
+      !> Number of the bound: 1 and 2 at the corners, 3 and 4 of shear forces along the joint and
       !> against it
       integer :: bound(4) = 0
       real(wp) :: share(4) = 0.0_wp     !! Multipliers of the bounds, of the sum 1
       real(wp) :: reaction(3) = 0.0_wp  !! The forces' unknowns: (3) [N/m, N/m, N]
       integer :: exchanges = 0          !! Number of exchanges
-      logical :: known = .false.        !! Whether s is known, or at least its sign
+      logical :: known = .false.        !! True if s is known, or at least its sign
    end type deficit_t
 
    !> Most exchanges; from the second number on Bland's rule chooses
@@ -52,7 +52,7 @@ module dda_chain_programme
    real(wp), parameter :: no_share = 1.0e-12_wp
    !> Smallest pivot
    real(wp), parameter :: least_pivot = 1.0e-10_wp
-   !> How far from zero the unknowns may go, over the load
+   !> Largest unknowns, over the load
    real(wp), parameter :: far = 1.0e3_wp
    !> An estimate that differs from the solution by more than this share of it is replaced
    real(wp), parameter :: far_off = 0.5_wp
@@ -63,7 +63,7 @@ module dda_chain_programme
       real(wp) :: value(4) = 0.0_wp       !! Right-hand sides: (4)
       real(wp) :: inverse(4, 4) = 0.0_wp  !! Inverse of the rows: (4, 4)
       real(wp) :: scale(3) = 0.0_wp       !! Largest force of a corner per unit of the unknowns: (3)
-      logical :: usable = .false.         !! Whether the inverse exists
+      logical :: usable = .false.         !! True if the inverse exists
    end type tableau_t
 
 contains
@@ -177,7 +177,7 @@ contains
    pure subroutine set_row(chain, joint, bound, r, tableau)
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: joint  !! Joint of its bound; 0 for one that keeps unknown r finite
-      integer, intent(in) :: bound  !! Which of its bounds
+      integer, intent(in) :: bound  !! Number of its bound
       integer, intent(in) :: r      !! Number of the row
       type(tableau_t), intent(inout) :: tableau
 
@@ -200,7 +200,7 @@ contains
       type(deficit_t), intent(inout) :: deficit
       type(tableau_t), intent(inout) :: tableau
       real(wp), intent(out) :: place(4)  !! Change of the unknowns, and s: (4)
-      logical, intent(out) :: found      !! Whether the exchanges came to an end
+      logical, intent(out) :: found      !! True if the exchanges came to an end
       real(wp) :: change(4)
       integer :: bound, joint, leaving, n, r
 
@@ -262,12 +262,12 @@ contains
       integer, intent(in) :: rough  !! Number of those among which shear forces are bounded
       type(chain_joint_t), intent(in) :: joint(n)  !! The joints
       real(wp), intent(in) :: resultant(3, n)  !! As above [N/m]
-      !> By how much a corner may be broken, and a normal or shear force be off: (2) [N/m]
+      !> Tolerances of a corner, and of a normal or shear force: (2) [N/m]
       real(wp), intent(in) :: noise(2)
       real(wp), intent(in) :: place(4)  !! Change of the unknowns, and s
-      logical, intent(in) :: first      !! Whether the first will do
+      logical, intent(in) :: first      !! True if the first suffices
       integer, intent(out) :: worst     !! Its joint
-      integer, intent(out) :: bound     !! Which of its bounds
+      integer, intent(out) :: bound     !! Number of its bound
       real(wp) :: along, least, moment, normal, room
       integer :: j
 
@@ -321,7 +321,7 @@ contains
    pure integer function first_to_vanish(deficit, share, change) result(first)
       type(deficit_t), intent(in) :: deficit
       real(wp), intent(in) :: share(4)   !! Multipliers: (4)
-      real(wp), intent(in) :: change(4)  !! What of each goes into the other one's: (4)
+      real(wp), intent(in) :: change(4)  !! Share of each in the growth of the other one's: (4)
       real(wp) :: least, ratio
       integer :: r
 

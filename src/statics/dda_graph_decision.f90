@@ -1,8 +1,8 @@
 !> Verdict of rigid blocks in reference geometry, with its certificate
 !>
-!> What no forces can balance falls under every law of friction: limit analysis decides that first,
-!> by forces or by a mechanism. What remains is decided by the loading path under Coulomb friction:
-!> dead loads at once, then what is live, from event to event, with slip remembered. The first load
+!> A load that no forces balance collapses under every law of friction. Limit analysis decides that
+!> first, by forces or by a mechanism. The rest is decided by the loading path of Coulomb friction:
+!> dead loads at once, then live loads, from event to event, with the slip so far. The first load
 !> at which the blocks fall is the collapse, and all beyond it is collapsed. Joints that break have
 !> no limit analysis: the path alone decides.
 module dda_graph_decision
@@ -43,7 +43,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Whether the verdict is enough: the way in which it falls is the mechanism of limit analysis
+      !> True if the verdict is enough: the way in which it falls is the mechanism of limit analysis
       logical, intent(in) :: bare
       type(graph_verdict_t), intent(out) :: verdict
       !> State in which a stage before has left these joints, with its load; else they are unloaded
@@ -60,7 +60,7 @@ contains
       end if
       stations = stations_of(settings, system, graph, present(start))
       call decide_by_limit(settings, system, graph, stations, bare, verdict)
-      ! a stage before has left other joints than those that a proof knows
+      ! the joints of an earlier stage are not those of a proof
       if (present(start) .and. allocated(verdict%limit)) deallocate (verdict%limit)
       if (verdict%end == path_end%collapsed) return
       dead_alone = ubound(stations%tilt, 1) == 0 .and. .not. present(start)
@@ -85,7 +85,7 @@ contains
       verdict = path
    end subroutine decide_graph
 
-   !> Decide the full load by limit analysis, and tell how it falls
+   !> Decide the full load by limit analysis, with the mechanism of a collapse
    pure subroutine decide_by_limit(settings, system, graph, stations, bare, verdict)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -123,14 +123,14 @@ contains
       end if
    end subroutine decide_by_limit
 
-   !> Follow joints that break: no limit analysis knows them, so that the path alone decides.
+   !> Follow joints that break: they have no limit analysis, so that the path alone decides.
    !> Gravity acts as it is where it points upwards, as on what hangs, or where the blocks fall
    !> upright
    pure subroutine follow_breaking(settings, system, contacts, graph, verdict)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      type(joint_graph_t), intent(inout) :: graph  !! Its joints, which the path takes over
+      type(joint_graph_t), intent(inout) :: graph  !! Its joints; the path moves them
       type(graph_verdict_t), intent(out) :: verdict
 
       logical :: upright
@@ -172,12 +172,12 @@ contains
    end subroutine see_dead_fall
 
    !> The stations of the loads. Gravity that tilts is upright at first where the blocks stand then,
-   !> for others were drawn for gravity as it is; the associated rule knows no order of loads
+   !> for others were drawn for gravity as it is; the associated rule has no order of loads
    pure type(load_stations_t) function stations_of(settings, system, graph, goes_on)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
-      logical, intent(in) :: goes_on  !! Whether a stage before has left a state
+      logical, intent(in) :: goes_on  !! True if a stage before has left a state
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
       logical :: coulomb
@@ -198,9 +198,9 @@ contains
       type(joint_graph_t), intent(in) :: graph
       type(load_stations_t), intent(in) :: stations   !! Stations of the loading path
       real(wp), intent(in) :: load(:, :)              !! The full load: (3, n_block)
-      logical, intent(in) :: bare                     !! Whether it is not asked how it falls
+      logical, intent(in) :: bare                     !! True if it is not asked how it falls
       type(load_decision_t), intent(out) :: decision  !! The decision; its factorisations are all
-      !> Whether it was decided on the way, so that what falls is in the mechanism in which it fell
+      !> True if it was decided on the way, so that what falls is in the mechanism in which it fell
       !> first
       logical, intent(out) :: on_way
       real(wp) :: dead(3, graph%n_block)
@@ -219,7 +219,7 @@ contains
       decision%n_factorisation = decision%n_factorisation + n
    end subroutine decide_full
 
-   !> Whether a collapse has no more power than rounded coordinates make
+   !> True if a collapse has no more power than rounded coordinates make
    pure logical function is_feigned(settings, system, decision)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -242,8 +242,8 @@ contains
          & tiny(1.0_wp))
    end function power_share
 
-   !> What all weights and forces could do if each went along with the motion: beside it, power that
-   !> rounded coordinates make is nothing
+   !> Largest power of all weights and forces, each along the motion. Rounded coordinates make a
+   !> small share of it
    pure real(wp) function power_of_all(settings, system, velocity) result(power)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -270,7 +270,7 @@ contains
       end do
    end function power_of_all
 
-   !> How blocks begin to fall by a load from rest
+   !> Mechanism in which blocks begin to fall from rest
    pure subroutine see_fall(settings, graph, load, verdict)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
@@ -279,7 +279,7 @@ contains
       real(wp) :: force(3, size(graph%kind)), motion(3, graph%n_block)
       integer :: n
 
-      ! accelerations know nothing of strength: the mechanism of limit analysis is all there is
+      ! accelerations do not depend on strength: the mechanism is that of limit analysis
       verdict%is_told = crushes(graph)
       if (verdict%is_told) return
       call find_first_motion(graph, load, motion, force, verdict%is_told, n)

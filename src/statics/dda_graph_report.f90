@@ -108,7 +108,7 @@ contains
       end associate
    end subroutine show_state
 
-   !> Which contacts have kept their strength
+   !> Set the contacts that have kept their strength
    pure subroutine keep_whole(state, contacts)
       type(coulomb_state_t), intent(in) :: state
       type(contacts_t), intent(inout) :: contacts
@@ -122,7 +122,7 @@ contains
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: time         !! Time of the histories [s]
       real(wp), intent(in) :: force(:, :)  !! N1, N2, T of each joint: (3, n_joint) [N/m]
-      !> Forces of the held points of blocks that can move, in their order: (3, n_pin) [N/m]
+      !> Forces of the restrained points of blocks that can move, in their order: (3, n_pin) [N/m]
       real(wp), intent(in) :: pin_force(:, :)
       type(contacts_t), intent(in) :: contacts
       !> The blocks; their strains and stresses are set
@@ -163,7 +163,7 @@ contains
       end do
    end subroutine strain_blocks
 
-   !> Add what held points do; one that is held along one axis is so by both of its forces
+   !> Add the forces of restrained points; both forces act along a single restrained axis
    pure subroutine add_pins(settings, pin_force, system, moment)
       type(settings_t), intent(in) :: settings
       real(wp), intent(in) :: pin_force(:, :)

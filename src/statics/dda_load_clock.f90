@@ -2,8 +2,8 @@
 !>
 !> A history is a path from its beginning to its end, whatever the lengths of the steps. The clock
 !> goes on when the blocks are at rest, stands still until they are again, and goes back to the last
-!> rest for a shorter stride where they do not come to rest. Points that are led from the first
-!> moment on are brought there in the second before the histories begin.
+!> rest for a shorter stride where they do not come to rest. Prescribed displacements at time 0 are
+!> applied in the second before the histories begin.
 module dda_load_clock
    use dda_kinds, only : wp
    use dda_load_stations, only : history_times, leads_at_once
@@ -20,10 +20,10 @@ module dda_load_clock
       real(wp), allocatable :: bend(:)
       real(wp) :: now = 0.0_wp           !! Time of the loads in this step [s]
       real(wp) :: rested = 0.0_wp        !! Time at which the blocks were last at rest [s]
-      real(wp) :: stride = huge(1.0_wp)  !! How far to go on from there [s]
+      real(wp) :: stride = huge(1.0_wp)  !! Time to go on from there [s]
       !> Earliest time at which they are known not to come to rest [s]
       real(wp) :: fails = huge(1.0_wp)
-      !> Whether a first step at a new time that does not settle, or moves too far, asks for a
+      !> True if a first step at a new time that does not converge, or moves too far, needs a
       !> shorter stride
       logical :: tries = .false.
    end type load_clock_t
@@ -52,7 +52,7 @@ contains
       clock%rested = clock%now
    end function new_load_clock
 
-   !> Whether anything is live
+   !> True if anything is live
    pure logical function has_path(clock)
       type(load_clock_t), intent(in) :: clock
 
@@ -60,7 +60,7 @@ contains
       if (allocated(clock%bend)) has_path = size(clock%bend) > 1
    end function has_path
 
-   !> Whether the path goes on where the clock is
+   !> True if the path goes on where the clock is
    pure logical function goes_on_at(clock)
       type(load_clock_t), intent(in) :: clock
 
@@ -82,9 +82,9 @@ contains
    !> Go back to the last rest, for a stride half as long; there is none where the stride is the
    !> shortest already
    pure subroutine set_back(falls, clock, shorter)
-      logical, intent(in) :: falls     !! Whether the blocks do not come to rest at the present time
+      logical, intent(in) :: falls     !! True if the blocks do not come to rest at the present time
       type(load_clock_t), intent(inout) :: clock
-      logical, intent(out) :: shorter  !! Whether there is a shorter stride
+      logical, intent(out) :: shorter  !! True if there is a shorter stride
 
       ! rounding must not take the shortest for a longer one
       shorter = clock%now - clock%rested > barely_longer*shortest*leg_length(clock)

@@ -1,9 +1,9 @@
 !> Stations of the loading path of a static scene, from zero to the full load
 !>
 !> Dead loads come first and at once: weight, upright, and forces on points as they are at the
-!> beginning. Then what is live comes from nothing to its value, one after the other: supports that
-!> are led, gravity that tilts, the horizontal push, live loads, histories from their beginning to
-!> their end. Between two stations everything is linear.
+!> beginning. Then what is live comes from nothing to its value, one after the other: prescribed
+!> displacements, gravity that tilts, the horizontal push, live loads, histories from their
+!> beginning to their end. Between two stations everything is linear.
 module dda_load_stations
    use dda_block_system, only : block_system_t
    use dda_boundary, only : history_t, value_at
@@ -20,7 +20,7 @@ module dda_load_stations
 
    !> Stations of the path; station 0 has the dead loads alone
    type :: load_stations_t
-      !> Share of what led supports have gone at the beginning of their histories: (0:n_leg)
+      !> Share of the prescribed displacements at the beginning of their histories: (0:n_leg)
       real(wp), allocatable :: led(:)
       !> Angle of gravity from upright, to the right: (0:n_leg) [rad]
       real(wp), allocatable :: tilt(:)
@@ -40,7 +40,7 @@ module dda_load_stations
 
 contains
 
-   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
+   !> True if nothing but weight acts, so that gravity that tilts is a push of fixed weight
    pure logical function only_weight(settings)
       type(settings_t), intent(in) :: settings
 
@@ -52,7 +52,7 @@ contains
    !> Stations of a scene, or of a later stage of it: histories alone go on there
    pure type(load_stations_t) function load_stations(settings, upright) result(stations)
       type(settings_t), intent(in) :: settings
-      !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
+      !> True if gravity is upright at first and then tilts; otherwise it is dead as it is
       logical, intent(in) :: upright
       real(wp), allocatable :: time(:)
       real(wp) :: half
@@ -101,7 +101,7 @@ contains
       integer, intent(in) :: station  !! Number of the station, from 0
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Their joints, then the pins of held points, then those of bounded forces
+      !> Their joints, then the pins of restrained points, then those of bounded forces
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(out) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
@@ -169,7 +169,7 @@ contains
       end do
    end subroutine press_carriers
 
-   !> What led points make of their pins
+   !> Openings of the pins by prescribed displacements
    pure subroutine lead_pins(stations, station, settings, system, graph, opening)
       type(load_stations_t), intent(in) :: stations
       integer, intent(in) :: station
@@ -197,7 +197,7 @@ contains
       end do
    end subroutine lead_pins
 
-   !> Whether something live acts before histories begin
+   !> True if something live acts before histories begin
    pure logical function bears_live_load(settings)
       type(settings_t), intent(in) :: settings
       integer :: i
@@ -214,7 +214,7 @@ contains
       bears_live_load = bears_live_load .and. abs(settings%load_factor) > 0.0_wp
    end function bears_live_load
 
-   !> Whether a support is led from the first moment on
+   !> True if a support has a prescribed displacement at time 0
    pure logical function leads_at_once(settings)
       type(settings_t), intent(in) :: settings
       integer :: i
@@ -263,7 +263,7 @@ contains
    pure subroutine take_times(history, time, n)
       type(history_t), intent(in) :: history
       real(wp), intent(inout) :: time(:)  !! The list, with room for them: (:) [s]
-      integer, intent(inout) :: n         !! How many times it has
+      integer, intent(inout) :: n         !! Number of its times
 
       if (bends(history) == 0) return
       time(n + 1:n + size(history%time)) = history%time

@@ -95,7 +95,7 @@ contains
       end associate
    end subroutine load_joints
 
-   !> What grows from the station before to this one
+   !> Growth from one station to the next
    pure subroutine see_leg(stations, station, settings, system, graph, couple, rate)
       type(load_stations_t), intent(in) :: stations
       integer, intent(in) :: station
@@ -155,7 +155,7 @@ contains
       call load_joints(stations, 0, settings, system, graph, couple, rate%load)
       call new_path(layered, rate%load, path)
       if (present(start)) then
-         ! what was taken away leaves its neighbours, and what was built gets its weight
+         ! a removed block releases its neighbours, and a new one gets its weight
          state = start
          rate%load = rate%load - state%load
          call follow_path(path, state, rate, 1.0_wp, result)
@@ -164,7 +164,7 @@ contains
          call apply_dead_load(rate%load, path, state, result)
       end if
       if (allocated(settings%boundary%held)) allocate (rate%opening(3, size(layered%kind)))
-      ! the path knows what they can do
+      ! the path has their laws
       deallocate (layered%kind)
       call count_up(result, verdict)
       verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
@@ -180,9 +180,9 @@ contains
       call conclude(result, verdict)
    end subroutine follow_joints
 
-   !> How a path has ended
+   !> End of a path
    pure subroutine conclude(result, verdict)
-      type(path_result_t), intent(inout) :: result  !! How its last leg ended
+      type(path_result_t), intent(inout) :: result  !! End of its last leg
       type(graph_verdict_t), intent(inout) :: verdict
 
       verdict%end = result%end

@@ -32,7 +32,7 @@ module dda_scene_graph
    !> A verdict and its proof
    type :: graph_verdict_t
       integer :: end = 0  !! One of path_end
-      !> What limit analysis says of the full load, where it was asked of that alone
+      !> Decision of the full load by limit analysis
       type(load_decision_t), allocatable :: limit
       character(len=:), allocatable :: reason  !! Why it is undecided; unallocated otherwise
       !> Flow rule that it was found under, one of flow_rule
@@ -45,12 +45,12 @@ module dda_scene_graph
       real(wp), allocatable :: force(:, :)
       !> Forces with which it goes on falling, where they are others: (3, n_joint) [N/m]
       real(wp), allocatable :: fall_force(:, :)
-      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
+      !> True if the mechanism is the one in which the blocks fall; else a run finds it
       logical :: is_told = .false.
-      logical :: on_path = .false.  !! Whether something live was followed to the state
-      !> Whether steps may prove what limit analysis did not, as no path leads to the load
+      logical :: on_path = .false.  !! True if something live was followed to the state
+      !> True if steps may prove what limit analysis did not, as no path leads to the load
       logical :: unproven = .false.
-      !> Whether forces balance the dead loads, and the path has found no state under them
+      !> True if forces balance the dead loads, and the path has found no state under them
       logical :: no_start = .false.
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0
@@ -63,9 +63,9 @@ module dda_scene_graph
 
 contains
 
-   !> Joints first, then a pin for each held point, then bounded forces, then the bars
+   !> Joints first, then a pin for each restrained point, then bounded forces, then the bars
    pure subroutine scene_graph(settings, system, contacts, graph)
-      !> Settings of the run, for held points and bounded forces
+      !> Settings of the run, for restrained points and bounded forces
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
@@ -173,7 +173,7 @@ contains
    !> Make bounded forces from joints. A force without a bound is that of a joint with the ground.
    !> One with a bound is that of a joint with a carrier: a block without weight, which a load as
    !> large as the bound presses against the block, and which a stop on the ground keeps where it
-   !> is. What the block does not take the stop does, so that its force has any value up to the
+   !> is. The stop takes the rest of the load, so that the force has any value up to the
    !> bound. The joint with the block is soft: at rest the stop carries it all
    pure subroutine add_bounded(settings, system, compliance, before, graph)
       type(settings_t), intent(in) :: settings
@@ -235,14 +235,14 @@ contains
       end do
    end function block_compliance
 
-   !> Whether no joint has cohesion, tensile strength or friction that would be spent along the way
+   !> True if no joint has cohesion, tensile strength or friction that would be spent along the way
    pure logical function has_pure_friction(contacts)
       type(contacts_t), intent(in) :: contacts
 
       has_pure_friction = .not. any(loses_strength(contacts%law(contacts%joint%law)))
    end function has_pure_friction
 
-   !> Held points of blocks that could move
+   !> Restrained points of blocks that could move
    pure function pins(settings, system) result(pin)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -255,7 +255,7 @@ contains
       end associate
    end function pins
 
-   !> What a pin sees of its block; one that holds along one axis alone does so with both forces
+   !> Rows of a pin; both forces act along a single restrained axis
    pure function pin_rows(pin, centroid) result(row)
       type(held_point_t), intent(in) :: pin
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of its block: (2) [m]
@@ -275,8 +275,8 @@ contains
 
    !> Joints without numbers
    pure subroutine allocate_joints(n, crush, graph)
-      integer, intent(in) :: n      !! How many
-      logical, intent(in) :: crush  !! Whether some crush
+      integer, intent(in) :: n      !! Number of them
+      logical, intent(in) :: crush  !! True if some crush
       type(joint_graph_t), intent(inout) :: graph
 
       allocate (graph%block(2, n), graph%kind(n))
@@ -286,7 +286,7 @@ contains
       allocate (graph%compliance(n), source=1.0_wp)
    end subroutine allocate_joints
 
-   !> Whether a scene is decided so: at rest, where the blocks are, by friction, or on a loading
+   !> True if a scene is decided so: at rest, where the blocks are, by friction, or on a loading
    !> path by strength that the first slip or opening takes
    pure logical function decides_as_graph(settings, contacts)
       type(settings_t), intent(in) :: settings
@@ -298,7 +298,7 @@ contains
          & .and. all(breaks_at_once(contacts%law(contacts%joint%law)))
    end function decides_as_graph
 
-   !> Whether limit analysis knows a scene: it is decided by friction alone
+   !> True if a scene has a limit analysis: it is decided by friction alone
    pure logical function has_limit_analysis(settings, contacts)
       type(settings_t), intent(in) :: settings
       type(contacts_t), intent(in) :: contacts
@@ -307,7 +307,7 @@ contains
       if (has_limit_analysis) has_limit_analysis = has_pure_friction(contacts)
    end function has_limit_analysis
 
-   !> Whether blocks are at rest and keep their places
+   !> True if blocks are at rest and keep their places
    pure logical function keeps_places(settings)
       type(settings_t), intent(in) :: settings
 
@@ -315,7 +315,7 @@ contains
          & .or. settings%collapse_displacement > 0.0_wp)
    end function keeps_places
 
-   !> Whether friction has a say, or strength that is lost: where joints cannot slide, or slide
+   !> True if friction matters, or strength that is lost: where joints cannot slide, or slide
    !> freely, both rules are one
    pure logical function has_friction(graph)
       type(joint_graph_t), intent(in) :: graph

@@ -19,7 +19,7 @@ contains
       curvature(2, 2) = 1.0_wp
    end subroutine hold_upright
 
-   !> Solve three equations with a symmetric matrix that is positive definite, but for directions
+   !> Solve three equations with a symmetric matrix that is positive definite, except for directions
    !> without stiffness, in which nothing moves
    pure subroutine solve_3(a, b, x)
       real(wp), intent(in) :: a(3, 3)  !! The matrix
