@@ -80,7 +80,8 @@ contains
          if (critical%fallen%by_graph) then
             call tell_whole(family, verdict%collapsed, critical)
             ! beside the critical value the graph may see no sliding: steps follow it then
-            critical%fallen%by_graph = critical%fallen%flow == flow_rule%coulomb
+            critical%fallen%by_graph = critical%fallen%flow == flow_rule%coulomb &
+               & .or. family%load /= searched_load%none
          end if
       end if
       if (allocated(critical%standing) .and. .not. (family%decides_chains &

@@ -95,7 +95,7 @@ contains
       type(graph_verdict_t), intent(inout) :: verdict
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
-      logical :: on_way
+      logical :: is_slow, on_way
 
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load)
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
@@ -109,7 +109,9 @@ contains
          verdict%mechanism = decision%velocity
          verdict%force = decision%force
          if (bare) return
-         if (.not. (on_way .or. verdict%power_share < slow)) then
+         ! a run of steps has the forces of bars
+         is_slow = verdict%power_share < slow .and. .not. allocated(settings%boundary%bar)
+         if (.not. (on_way .or. is_slow)) then
             call see_fall(settings, graph, load, verdict)
          else if (verdict%n_factorisation + few <= most) then
             call slide_along(settings, graph, load, decision%force, verdict)
