@@ -125,7 +125,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
             push(left, scene.blocks[pair[1] - 1], at, vector)
             push(left, scene.blocks[pair[0] - 1], at, -vector)
             for number in pair:
-                allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding_of(scene.blocks[number - 1])
+                allowed[number - 1] += float(np.linalg.norm(vector)) * rounding_at(scene.blocks[number - 1], points)
     most = max((abs(float(row[name] or 0)) for row in rows for name in ("normal_1", "normal_2", "shear")), default=0.0)
     finding.keep("imbalance", largest_of(left[free], scene.length) / largest,
                  TOLERANCE + digits_of(most / largest) + largest_of(allowed[free], scene.length) / largest)
@@ -134,6 +134,16 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
 def rounding_of(block: Block) -> float:
     """How far rounding of its corners may move a corner of a block, or where a force acts on it [m]."""
     return CORNERS * float(np.abs(block.corners.astype(float)).max())
+
+
+def rounding_at(block: Block, points: np.ndarray) -> np.ndarray:
+    """What rounding of corners makes of a unit force at the ends of a joint: force [1, 1] and moment [m].
+
+    The force acts elsewhere, and turns with a joint whose ends move: by much where the joint is short.
+    """
+    off, length = rounding_of(block), float(np.linalg.norm(points[1] - points[0]))
+    turn = off / length if length > 0.0 else 0.0
+    return np.array([turn, turn, off + turn * reach_of(block)])
 
 
 def reach_of(block: Block) -> float:
