@@ -6,11 +6,12 @@
 program factor_bench
    use, intrinsic :: iso_fortran_env, only : output_unit
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, elimination_t, products, set_pattern
+   use dda_block_matrix, only : block_matrix_t, elimination_t, products
    use dda_block_plan, only : choose_order
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use graph_wall, only : new_wall
+   use wall_stiffness, only : product_of, set_stiffness
    implicit none
 
    !> Walls where none is asked for
@@ -62,7 +63,7 @@ contains
       allocate (load(n_dof, graph%n_block), source=1.0_wp)
       load(:3, :) = weight + push
       do k = 1, 2
-         call fill(graph, k == 1, matrix(k))
+         call set_stiffness(graph, n_dof, k == 1, matrix(k))
          plan = least_time(1, matrix(k), factor(k), load, x)
          make(k) = least_time(2, matrix(k), factor(k), load, x)
          solve(k) = least_time(3, matrix(k), factor(k), load, x)
@@ -119,92 +120,4 @@ contains
          least_time = min(least_time, (after - before)/batch)
       end do
    end function least_time
-
-   !> Stiffness of the joints' springs, some far stiffer than others, and some that slide with
-   !> friction where the matrix is not symmetric
-   subroutine fill(graph, symmetric, matrix)
-      !> The joints
-      type(joint_graph_t), intent(in) :: graph
-      !> Whether it is
-      logical, intent(in) :: symmetric
-      !> The matrix
-      type(block_matrix_t), intent(out) :: matrix
-      integer :: pair(2, size(graph%block, 2)), e, j, c
-      real(wp) :: spring(3, 3), a(3, 3), b(3, 3)
-
-      e = 0
-      do j = 1, size(pair, 2)
-         if (any(graph%block(:, j) == 0)) cycle
-         e = e + 1
-         pair(:, e) = graph%block(:, j)
-      end do
-      call set_pattern(matrix, n_dof, graph%n_block, pair(:, :e), symmetric)
-      matrix%diagonal = 0.0_wp
-      matrix%coupling = 0.0_wp
-      matrix%upper = 0.0_wp
-      do c = 1, n_dof
-         matrix%diagonal(c, c, :) = merge(1.0e-3_wp, 1.0_wp, c <= 3)
-      end do
-      e = 0
-      do j = 1, size(pair, 2)
-         spring = 0.0_wp
-         do c = 1, 3
-            spring(c, c) = 10.0_wp**modulo(7*j + 3*c, 5)
-         end do
-         if (.not. symmetric .and. modulo(j, 3) == 0) then
-            spring(3, 1) = 0.6_wp*spring(1, 1)
-            spring(3, 2) = 0.6_wp*spring(2, 2)
-         end if
-         if (all(graph%block(:, j) > 0)) e = e + 1
-         a = 0.0_wp
-         b = 0.0_wp
-         associate (p => graph%block(1, j), q => graph%block(2, j))
-            if (p > 0) then
-               a = graph%row(:, :, 1, j)
-               matrix%diagonal(:3, :3, p) = matrix%diagonal(:3, :3, p) &
-                  & + matmul(a, matmul(spring, transpose(a)))
-            end if
-            if (q > 0) then
-               b = graph%row(:, :, 2, j)
-               matrix%diagonal(:3, :3, q) = matrix%diagonal(:3, :3, q) &
-                  & + matmul(b, matmul(spring, transpose(b)))
-            end if
-            if (p == 0 .or. q == 0) cycle
-            if (matrix%pair(1, e) == q) then
-               matrix%coupling(:3, :3, e) = matmul(b, matmul(spring, transpose(a)))
-               if (.not. symmetric) &
-                  & matrix%upper(:3, :3, e) = matmul(a, matmul(spring, transpose(b)))
-            else
-               matrix%coupling(:3, :3, e) = matmul(a, matmul(spring, transpose(b)))
-               if (.not. symmetric) &
-                  & matrix%upper(:3, :3, e) = matmul(b, matmul(spring, transpose(a)))
-            end if
-         end associate
-      end do
-   end subroutine fill
-
-   !> Product of the matrix and a vector
-   function product_of(matrix, x) result(y)
-      !> The matrix
-      type(block_matrix_t), intent(in) :: matrix
-      !> The vector: (n_dof, n_block)
-      real(wp), intent(in) :: x(:, :)
-      !> The product: (n_dof, n_block)
-      real(wp) :: y(size(x, 1), size(x, 2))
-      integer :: b, e
-
-      do b = 1, size(x, 2)
-         y(:, b) = matmul(matrix%diagonal(:, :, b), x(:, b))
-      end do
-      do e = 1, size(matrix%pair, 2)
-         associate (p => matrix%pair(1, e), q => matrix%pair(2, e))
-            y(:, p) = y(:, p) + matmul(matrix%coupling(:, :, e), x(:, q))
-            if (matrix%symmetric) then
-               y(:, q) = y(:, q) + matmul(x(:, p), matrix%coupling(:, :, e))
-            else
-               y(:, q) = y(:, q) + matmul(matrix%upper(:, :, e), x(:, p))
-            end if
-         end associate
-      end do
-   end function product_of
 end program factor_bench
