@@ -6,7 +6,7 @@ module dda_block_matrix
    implicit none
    private
 
-   public :: elimination_t, new_elimination, products, by_branches, block_matrix_t, set_pattern
+   public :: elimination_t, new_elimination, by_branches, block_matrix_t, set_pattern
 
    !> An order of elimination; a place is one in this order
    type :: elimination_t
@@ -53,19 +53,6 @@ contains
       allocate (elimination%parent, source=tree(elimination))
       allocate (elimination%below, source=count_rows(elimination))
    end subroutine new_elimination
-
-   !> Products of two blocks that a factorisation takes
-   pure real(wp) function products(elimination)
-      type(elimination_t), intent(in) :: elimination
-      integer :: j
-
-      products = 0.0_wp
-      do j = 1, size(elimination%below)
-         associate (below => real(elimination%below(j), wp))
-            products = products + below*(below + 3.0_wp)/2.0_wp
-         end associate
-      end do
-   end function products
 
    !> List couplings by rows
    pure subroutine list_columns(place, pair, elimination)

@@ -4,10 +4,9 @@
 !> eliminated by it are products of dense matrices. Columns whose rows differ a little share a
 !> panel where its zeros cost less than panels apart.
 module dda_block_plan
-   use dda_block_matrix, only : block_matrix_t, by_branches, elimination_t, new_elimination, &
-      & products
-   use dda_block_order, only : dissected_order, smallest_part
+   use dda_block_matrix, only : block_matrix_t, by_branches, elimination_t, new_elimination
    use dda_kinds, only : wp
+   use dda_minimum_degree, only : minimum_degree_order
    implicit none
    private
 
@@ -40,8 +39,6 @@ module dda_block_plan
 
    !> Bandwidth up to which the narrow order is used directly
    integer, parameter :: narrow = 3
-   !> Number of blocks below which nested dissection is not tried
-   integer, parameter :: few = 500
    !> Maximum number of unknowns per panel
    integer, parameter :: most_columns = 144
 
@@ -66,26 +63,20 @@ contains
       call list_given(matrix%pair, elimination%place, plan)
    end subroutine plan_panels
 
-   !> An order of elimination. The narrow order is eliminated from both ends to the middle; where
-   !> that is wide, minimum degree or dissection give the order, whichever takes fewer products
+   !> An order of elimination: a narrow one from both ends to the middle, of wide graphs one by
+   !> minimum degree
    pure subroutine choose_order(matrix, elimination)
       type(block_matrix_t), intent(in) :: matrix
       type(elimination_t), intent(out) :: elimination
-      type(elimination_t) :: other
-      integer :: n
 
-      n = size(matrix%place)
-      associate (place => matrix%place, pair => matrix%pair)
+      associate (n => size(matrix%place), place => matrix%place, pair => matrix%pair)
          if (matrix%width <= narrow) then
             call new_elimination(merge(2*place - 1, 2*(n + 1 - place), 2*place <= n + 1), pair, &
                & elimination)
-            return
+         else
+            call new_elimination(by_branches(minimum_degree_order(n, pair), pair), pair, &
+               & elimination)
          end if
-         call new_elimination(by_branches(dissected_order(n, pair, n), pair), pair, elimination)
-         if (n < few) return
-         call new_elimination(by_branches(dissected_order(n, pair, smallest_part), pair), pair, &
-            & other)
-         if (products(other) < products(elimination)) elimination = other
       end associate
    end subroutine choose_order
 

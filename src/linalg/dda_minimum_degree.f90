@@ -4,8 +4,12 @@
 !> of as pairs (a quotient graph), and how many neighbours a block has is bounded from above by the
 !> sizes of its groups (P. R. Amestoy, T. A. Davis and I. S. Duff, SIAM Journal on Matrix Analysis
 !> and Applications 17, 1996, 886). Blocks with the same neighbours stay together.
-submodule (dda_block_order) dda_minimum_degree
+module dda_minimum_degree
+   use dda_block_order, only : neighbour_lists
    implicit none
+   private
+
+   public :: minimum_degree_order
 
    !> The blocks of one group
    type :: group_t
@@ -24,8 +28,6 @@ submodule (dda_block_order) dda_minimum_degree
       integer, allocatable :: n_list(:)
       !> Blocks that a block stands for; 0 if another one stands for it, or if it is gone: (n_block)
       integer, allocatable :: weight(:)
-      !> Whether a block waits until the others are gone: (n_block)
-      logical, allocatable :: late(:)
       !> Bound of a block's number of neighbours: (n_block)
       integer, allocatable :: degree(:)
       !> The groups: (n_block)
@@ -48,16 +50,18 @@ submodule (dda_block_order) dda_minimum_degree
 
 contains
 
-   !> Blocks in the order of elimination, those that wait at the end as they are numbered
-   module procedure minimum_degree_order
+   !> Place of each block in the order of elimination
+   pure function minimum_degree_order(n_block, pair) result(place)
+      integer, intent(in) :: n_block     !! Number of blocks
+      integer, intent(in) :: pair(:, :)  !! Coupled blocks, perhaps given twice: (2, n_pair)
+      integer :: place(n_block)          !! The places: (n_block)
       type(quotient_t) :: q
-      integer :: b, n, n_early, least
+      integer :: b, least, n
 
-      call new_quotient(start, neighbour, late, q)
+      call new_quotient(n_block, pair, q)
       n = 0
       least = 0
-      n_early = count(.not. late)
-      do while (n < n_early)
+      do while (n < n_block)
          do while (q%first(least) == 0)
             least = least + 1
          end do
@@ -66,44 +70,42 @@ contains
          call eliminate(q, b, least)
          do while (b > 0)
             n = n + 1
-            order(n) = b
+            place(b) = n
             b = q%next_same(b)
          end do
       end do
-      order(n + 1:) = pack([(b, b=1, size(late))], late)
-   end procedure minimum_degree_order
+   end function minimum_degree_order
 
    !> The whole graph
-   pure subroutine new_quotient(start, neighbour, late, q)
-      integer, intent(in) :: start(:), neighbour(:)
-      logical, intent(in) :: late(:)
+   pure subroutine new_quotient(n, pair, q)
+      integer, intent(in) :: n           !! Number of blocks
+      integer, intent(in) :: pair(:, :)
       type(quotient_t), intent(out) :: q
-      integer :: b, i, n
+      integer, allocatable :: neighbour(:)
+      integer :: b, i
 
-      n = size(late)
       allocate (q%n_group(n), q%n_list(n), q%degree(n), q%group_size(n), source=0)
       allocate (q%outside(n), q%mark(n), q%counted(n), q%next_same(n), source=0)
       allocate (q%next(n), q%previous(n), q%first(0:n), source=0)
       allocate (q%weight(n), source=1)
       allocate (q%group(n))
-      q%start = start
+      call neighbour_lists(n, pair, q%start, neighbour)
       q%list = neighbour
-      q%late = late
       q%last_same = [(b, b=1, n)]
       q%n_left = n
       do b = 1, n
          q%mark(b) = b
-         do i = start(b), start(b + 1) - 1
+         do i = q%start(b), q%start(b + 1) - 1
             if (q%mark(neighbour(i)) == b) cycle
             q%mark(neighbour(i)) = b
-            q%list(start(b) + q%n_list(b)) = neighbour(i)
+            q%list(q%start(b) + q%n_list(b)) = neighbour(i)
             q%n_list(b) = q%n_list(b) + 1
          end do
          q%degree(b) = q%n_list(b)
       end do
       q%mark = 0
       do b = n, 1, -1
-         if (.not. late(b)) call put_in(q, b)
+         call put_in(q, b)
       end do
    end subroutine new_quotient
 
@@ -129,7 +131,7 @@ contains
          end do
       end do
       do i = 1, size(member)
-         if (.not. q%late(member(i))) call take_out(q, member(i))
+         call take_out(q, member(i))
          call renew(q, p, member(i))
       end do
       call join_same(q, member)
@@ -137,7 +139,6 @@ contains
          b = member(i)
          if (q%weight(b) == 0) cycle
          q%degree(b) = min(q%degree(b) + q%group_size(p), q%n_left) - q%weight(b)
-         if (q%late(b)) cycle
          call put_in(q, b)
          least = min(least, q%degree(b))
       end do
@@ -220,7 +221,7 @@ contains
       q%n_list(b) = n
       q%list(q%start(b):q%start(b) + n - 1) = kept(:n)
       q%degree(b) = min(q%degree(b), degree)
-      if (n > 1 .or. q%late(b)) return
+      if (n > 1) return
       ! nothing but the newest group
       q%group_size(p) = q%group_size(p) - q%weight(b)
       q%n_left = q%n_left - q%weight(b)
@@ -236,7 +237,7 @@ contains
       do i = 1, size(member)
          associate (b => member(i))
             key(i) = -1
-            if (q%weight(b) == 0 .or. q%late(b)) cycle
+            if (q%weight(b) == 0) cycle
             key(i) = sum(modulo(q%list(q%start(b):q%start(b) + q%n_list(b) - 1), 32768))
             do k = 1, i - 1
                if (key(k) /= key(i)) cycle
@@ -305,4 +306,4 @@ contains
       if (q%next(b) > 0) q%previous(q%next(b)) = q%previous(b)
    end subroutine take_out
 
-end submodule dda_minimum_degree
+end module dda_minimum_degree

@@ -6,10 +6,11 @@
 program factor_bench
    use, intrinsic :: iso_fortran_env, only : output_unit
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, elimination_t, products
+   use dda_block_matrix, only : block_matrix_t, elimination_t
    use dda_block_plan, only : choose_order
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
+   use dense_reference, only : products
    use graph_wall, only : new_wall
    use wall_stiffness, only : product_of, set_stiffness
    implicit none

@@ -1,12 +1,13 @@
 !> Full matrices and Gaussian elimination: what the banded solver is measured against
 module dense_reference
-   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_matrix, only : block_matrix_t, elimination_t, set_pattern
    use dda_kinds, only : wp
    use random_numbers, only : draw, draw_index, random_t
    implicit none
    private
 
    public :: full_matrix, full_solution, fill_positive_definite, fill_springs, draw_pairs, shuffled
+   public :: products
 
 contains
 
@@ -176,4 +177,17 @@ contains
       call draw(random, key)
       number = [(count(key <= key(i)), i=1, size(number))]
    end subroutine shuffled
+   !> Products of two blocks that a factorisation takes
+   pure real(wp) function products(elimination)
+      type(elimination_t), intent(in) :: elimination
+      integer :: j
+
+      products = 0.0_wp
+      do j = 1, size(elimination%below)
+         associate (below => real(elimination%below(j), wp))
+            products = products + below*(below + 3.0_wp)/2.0_wp
+         end associate
+      end do
+   end function products
+
 end module dense_reference
