@@ -4,18 +4,33 @@ module dda_lapack
    implicit none
    private
 
-   public :: dgemm, dgemv, dgetrf, dgetrs, dlacn2, dlaswp, dpotrf, dpotrs, dtrsm, dtrsv
+   public :: dgelsy, dgemm, dgemv, dgetrf, dgetrs, dlacn2, dlaswp, dpotrf, dsyrk, dtrsm, dtrsv
 
    interface
+
+      !> Least squares by factors that show the rank
+      pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+         import :: wp
+         integer, intent(in) :: m                   !! Rows
+         integer, intent(in) :: n                   !! Columns, or order of a matrix
+         integer, intent(in) :: nrhs                !! Right-hand sides
+         integer, intent(in) :: lda, ldb, lwork     !! Rows of a and b, size of the work space
+         real(wp), intent(inout) :: a(lda, *)       !! Matrix in, its factors out: (lda, n)
+         real(wp), intent(inout) :: b(ldb, *)       !! Loads in, solutions out: (ldb, nrhs)
+         integer, intent(inout) :: jpvt(*)          !! 0 for columns that may change places: (n)
+         real(wp), intent(in) :: rcond              !! Reciprocal of the largest condition number
+         integer, intent(out) :: rank               !! Columns that count
+         real(wp), intent(out) :: work(lwork)       !! Work space
+         !> 0, or the number of the argument or pivot that ends the work
+         integer, intent(out) :: info
+      end subroutine dgelsy
 
       !> c = alpha a b + beta c, with transposes where transa or transb is "T"
       pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
          import :: wp
          character, intent(in) :: transa, transb    !! "T": the transpose
-         integer, intent(in) :: m                   !! Rows
-         integer, intent(in) :: n                   !! Columns, or order of a matrix
+         integer, intent(in) :: m, n, lda, ldb
          integer, intent(in) :: k                   !! Columns of the first factor
-         integer, intent(in) :: lda, ldb            !! Rows of a and b
          integer, intent(in) :: ldc                 !! Rows of c
          real(wp), intent(in) :: alpha, beta        !! Factors
          real(wp), intent(in) :: a(lda, *)          !! First factor: (lda, k)
@@ -41,7 +56,6 @@ module dda_lapack
          integer, intent(in) :: m, n, lda
          real(wp), intent(inout) :: a(lda, *)       !! Matrix in, factor out: (lda, n)
          integer, intent(out) :: ipiv(*)            !! Exchanges of rows: (n)
-         !> 0, or the number of the pivot that ends the factorisation
          integer, intent(out) :: info
       end subroutine dgetrf
 
@@ -50,7 +64,7 @@ module dda_lapack
          import :: wp
          character, intent(in) :: trans
          integer, intent(in) :: n, lda, ldb
-         integer, intent(in) :: nrhs                !! Right-hand sides
+         integer, intent(in) :: nrhs
          real(wp), intent(in) :: a(lda, *)
          integer, intent(in) :: ipiv(*)
          real(wp), intent(inout) :: b(ldb, *)       !! Loads in, solutions out: (ldb, nrhs)
@@ -89,15 +103,15 @@ module dda_lapack
          integer, intent(out) :: info
       end subroutine dpotrf
 
-      !> Solve with the factor of dpotrf
-      pure subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
+      !> c = alpha a a' + beta c, one triangle of it
+      pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
          import :: wp
-         character, intent(in) :: uplo
-         integer, intent(in) :: n, nrhs, lda, ldb
+         character, intent(in) :: uplo, trans
+         integer, intent(in) :: n, k, lda, ldc
+         real(wp), intent(in) :: alpha, beta
          real(wp), intent(in) :: a(lda, *)
-         real(wp), intent(inout) :: b(ldb, *)
-         integer, intent(out) :: info
-      end subroutine dpotrs
+         real(wp), intent(inout) :: c(ldc, *)
+      end subroutine dsyrk
 
       !> Solve with a triangle for many right-hand sides
       pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
