@@ -1,15 +1,12 @@
 !> Block factorisation and substitution: the solver of every step (Shi: df20, df21)
 !>
-!>    matrix = L D L',  D diagonal,  the diagonal of L ones;   matrix = L U if it is not symmetric
+!>    matrix = L L',  or with a diagonal D = L D L';   matrix = L U if it is not symmetric
 !>
 !> Only blocks that are not zero are stored, in panels of columns with the same rows, which are
 !> eliminated one after the other. The chain of an arch is eliminated from both ends, so that its
 !> mirror images feel the same rounding and the processor has two panels to work on. A panel whose
 !> numbers and whose predecessors have not changed keeps its factor. Rows change places, where a
 !> matrix is not symmetric, within three unknowns of a block alone.
-!>
-!> The condition number is estimated with the factor itself: a case that runs beside others must not
-!> call LAPACK.
 module dda_block_factor
    use dda_block_matrix, only : block_matrix_t
    use dda_block_plan, only : elimination_plan_t, plan_panels

@@ -1,7 +1,7 @@
-!> Factors of a dense panel: narrow column groups inline, updates by BLAS
+!> Factors of a dense panel: of narrow ones inline, of wide ones by LAPACK
 module dda_front_factor
    use dda_kinds, only : wp
-   use dda_lapack, only : dgemm, dlaswp, dtrsm
+   use dda_lapack, only : dgemm, dlaswp, dpotrf, dtrsm
    implicit none
    private
 
@@ -12,7 +12,7 @@ module dda_front_factor
 
 contains
 
-   !> Factor one panel
+   !> Factor one panel: L L' of a wide one, L D L' of a narrow one, or L U
    pure subroutine factor_front(symmetric, width, below, front, exchange, info)
       logical, intent(in) :: symmetric                       !! Whether the matrix is
       integer, intent(in) :: width                           !! Columns of the panel
@@ -20,62 +20,47 @@ contains
       real(wp), intent(inout) :: front(width + below, *)     !! The panel
       integer, intent(inout) :: exchange(width)              !! Exchanges of its rows
       integer, intent(out) :: info                           !! 0 if it has a factor
+      integer :: height
 
-      if (symmetric) then
-         call factor_symmetric(width, width + below, front, info)
+      height = width + below
+      if (.not. symmetric) then
+         call factor_pair(width, height, below, front, front(1, width + 1), exchange, info)
+      else if (width <= narrow) then
+         call factor_narrow(width, height, front, info)
       else
-         call factor_pair(width, width + below, below, front, front(1, width + 1), exchange, info)
+         call dpotrf("L", width, front, height, info)
+         ! OpenBLAS lets NaN pass
+         if (.not. front(width, width) > 0.0_wp) info = width
+         if (info /= 0 .or. below == 0) return
+         call dtrsm("R", "L", "T", "N", below, width, 1.0_wp, front, height, front(width + 1, 1), &
+            & height)
       end if
    end subroutine factor_front
 
-   !> Factor a panel into L D L', a few columns at a time: D stands on the diagonal of L, whose own
-   !> is ones. Blocks that nothing holds move as their load over their mass to the last bit, which
-   !> roots on the diagonal would spoil
-   pure subroutine factor_symmetric(width, height, front, info)
+   !> Factor a narrow panel into L D L', three columns at a time: D stands on the diagonal of L,
+   !> whose own is ones. Blocks that nothing holds move as their load over their mass to the last
+   !> bit, which roots on the diagonal would spoil
+   pure subroutine factor_narrow(width, height, front, info)
       integer, intent(in) :: width
       integer, intent(in) :: height                !! Rows of the panel
       real(wp), intent(inout) :: front(height, *)  !! Its columns
       integer, intent(out) :: info
-      real(wp) :: scaled(narrow, width)
-      integer :: behind, c, k, n
-
-      do c = 1, width, narrow
-         n = min(narrow, width + 1 - c)
-         behind = c + n
-         call factor_narrow(n, height + 1 - c, height, front(c, c), info)
-         if (info /= 0) return
-         if (behind > width) return
-         do k = c, behind - 1
-            scaled(k + 1 - c, behind:width) = front(behind:width, k)*front(k, k)
-         end do
-         call dgemm("N", "N", height + 1 - behind, width + 1 - behind, n, -1.0_wp, &
-            & front(behind, c), height, scaled(1, behind), narrow, 1.0_wp, front(behind, behind), &
-            & height)
-      end do
-   end subroutine factor_symmetric
-
-   !> The same for a few columns, three at a time
-   pure subroutine factor_narrow(n, height, ld, a, info)
-      integer, intent(in) :: n               !! Columns
-      integer, intent(in) :: height          !! Rows
-      integer, intent(in) :: ld              !! Distance of two columns
-      real(wp), intent(inout) :: a(ld, *)    !! The columns
-      integer, intent(out) :: info
-      real(wp) :: factor(3)
       integer :: c, j, k
 
-      do c = 1, n, 3
+      do c = 1, width, 3
          do k = c, c + 2
             do j = c, k - 1
-               a(k:height, k) = a(k:height, k) - a(k:height, j)*(a(k, j)*a(j, j))
+               front(k:height, k) = front(k:height, k) &
+                  & - front(k:height, j)*(front(k, j)*front(j, j))
             end do
             info = k
-            if (.not. a(k, k) > 0.0_wp) return
-            a(k + 1:height, k) = a(k + 1:height, k)/a(k, k)
+            if (.not. front(k, k) > 0.0_wp) return
+            front(k + 1:height, k) = front(k + 1:height, k)/front(k, k)
          end do
-         do k = c + 3, n
-            factor = [(a(k, j)*a(j, j), j=c, c + 2)]
-            call take_triple(height + 1 - k, a(k, c), a(k, c + 1), a(k, c + 2), factor, a(k, k))
+         do k = c + 3, width
+            call take_triple(height + 1 - k, front(k, c), front(k, c + 1), front(k, c + 2), &
+               & [front(k, c)*front(c, c), front(k, c + 1)*front(c + 1, c + 1), &
+               & front(k, c + 2)*front(c + 2, c + 2)], front(k, k))
          end do
       end do
       info = 0
@@ -123,8 +108,9 @@ contains
 
    !> Factor a few columns
    pure subroutine factor_columns(n, height, ld, a, exchange, info)
-      integer, intent(in) :: n, height, ld
-      real(wp), intent(inout) :: a(ld, *)
+      integer, intent(in) :: n             !! Columns
+      integer, intent(in) :: height, ld    !! Their rows, and the distance of two of them
+      real(wp), intent(inout) :: a(ld, *)  !! The columns
       integer, intent(out) :: exchange(n)  !! Exchanges of rows
       integer, intent(out) :: info
       real(wp) :: row(n)

@@ -8,14 +8,11 @@ module dda_fronts
    use dda_block_plan, only : elimination_plan_t, find_rows
    use dda_front_factor, only : factor_front, narrow, take_triple
    use dda_kinds, only : wp
-   use dda_lapack, only : dgemm, dgemv, dlaswp, dtrsv
+   use dda_lapack, only : dgemm, dgemv, dlaswp, dsyrk, dtrsv
    implicit none
    private
 
    public :: assemble_fronts, eliminate_fronts, substitute_fronts
-
-   !> Columns of a symmetric product per call
-   integer, parameter :: many = 48
 
 contains
 
@@ -123,8 +120,7 @@ contains
       integer, intent(in) :: below                        !! Rows below its diagonal
       real(wp), intent(in) :: front(width + below, *)     !! The panel
       real(wp), intent(inout) :: share(below, *)  !! The products: (below, below)
-      real(wp) :: scaled(width, many)
-      integer :: c, height, j, k, n
+      integer :: c, height, k
 
       height = width + below
       if (.not. symmetric) then
@@ -135,19 +131,14 @@ contains
             share(k:below, k) = 0.0_wp
             do c = 1, width, 3
                call take_triple(below + 1 - k, front(width + k, c), front(width + k, c + 1), &
-                  & front(width + k, c + 2), [(-front(width + k, j)*front(j, j), j=c, c + 2)], &
-                  & share(k, k))
+                  & front(width + k, c + 2), [-front(width + k, c)*front(c, c), &
+                  & -front(width + k, c + 1)*front(c + 1, c + 1), &
+                  & -front(width + k, c + 2)*front(c + 2, c + 2)], share(k, k))
             end do
          end do
       else
-         do c = 1, below, many
-            n = min(many, below + 1 - c)
-            do k = 1, width
-               scaled(k, :n) = front(width + c:width + c + n - 1, k)*front(k, k)
-            end do
-            call dgemm("N", "N", below + 1 - c, n, width, 1.0_wp, front(width + c, 1), height, &
-               & scaled, width, 0.0_wp, share(c, c), below)
-         end do
+         call dsyrk("L", "N", below, width, 1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
+            & below)
       end if
    end subroutine multiply_front
 
@@ -262,7 +253,7 @@ contains
 
       if (.not. symmetric) call dlaswp(1, z, height, 1, width, exchange, 1)
       if (width > narrow) then
-         call dtrsv("L", "N", "U", width, front, height, z, 1)
+         call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, z, 1)
          if (width < height) call dgemv("N", height - width, width, -1.0_wp, &
             & front(width + 1, 1), height, z, 1, 0.0_wp, z(width + 1), 1)
          return
@@ -293,18 +284,15 @@ contains
          end do
          return
       end if
-      do c = 1, width
-         z(c) = z(c)/front(c, c)
-      end do
       if (width > narrow) then
          if (width < height) call dgemv("T", height - width, width, -1.0_wp, front(width + 1, 1), &
             & height, z(width + 1), 1, 1.0_wp, z, 1)
-         call dtrsv("L", "T", "U", width, front, height, z, 1)
+         call dtrsv("L", "T", "N", width, front, height, z, 1)
       else
          do c = width - 2, 1, -3
-            one = z(c)
-            two = z(c + 1)
-            three = z(c + 2)
+            one = z(c)/front(c, c)
+            two = z(c + 1)/front(c + 1, c + 1)
+            three = z(c + 2)/front(c + 2, c + 2)
             do i = c + 3, height
                one = one - front(i, c)*z(i)
                two = two - front(i, c + 1)*z(i)
