@@ -28,8 +28,8 @@ program blas_threads
 
    !> Orders of the matrices
    integer, parameter :: order(4) = [9, 30, 60, 144]
-   !> Factorisations of each order: less than a second together
-   integer, parameter :: times(4) = [20000, 4000, 1000, 100]
+   !> Factorisations of each order and thread: 100000 together, in about a second
+   integer, parameter :: times(4) = [40000, 8000, 2000, 200]
    procedure(threads_of_openblas), pointer :: kind_of_threads
    type(c_funptr) :: address
    integer :: k, n_wrong

@@ -1,0 +1,84 @@
+"""LAPACK in the program: two threads change no bit, and the kernels of another processor no digit that counts."""
+
+from __future__ import annotations
+
+import csv
+import platform
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+#: Cases of walls: panels of more than 12 columns, which LAPACK factors
+CASES = {
+    "limit": "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n",
+    "path": "&search parameter = 'horizontal_coefficient' /\n",
+    "deformable": "&analysis unknowns = 6 /\n&load horizontal_coefficient = 0.1 /\n",
+}
+
+
+def wall(courses: int, bricks: int) -> str:
+    """Bricks of 2 by 1 in running bond on a fixed floor, half a brick at the ends of every other course."""
+    text = f"block fixed\n0 -1\n{2 * bricks} -1\n{2 * bricks} 0\n0 0\n"
+    for course in range(courses):
+        heads = [2 * brick for brick in range(bricks + 1)]
+        if course % 2:
+            heads = [0, *(head + 1 for head in heads[:-1]), 2 * bricks]
+        for left, right in zip(heads, heads[1:]):
+            text += f"block\n{left} {course}\n{right} {course}\n{right} {course + 1}\n{left} {course + 1}\n"
+    return text
+
+
+def run(folder: Path, out: str, *options: str) -> dict[str, list[dict[str, str]]]:
+    """Rows of results and joints in order of their cases, without the seconds that they took."""
+    done = run_dda("run", "wall.nml", "--quiet", "--out", out, *options, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    tables = {}
+    for name in ("results", "joints"):
+        with (folder / out / f"{name}.csv").open(newline="") as table:
+            tables[name] = sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+    for row in tables["results"]:
+        del row["seconds"]
+    return tables
+
+
+def write(folder: Path, case: str, courses: int) -> None:
+    """Write a deck of four frictions and its wall."""
+    (folder / "wall.blocks").write_text(wall(courses, courses))
+    (folder / "wall.nml").write_text("&scene kind = 'blocks', geometry = 'wall.blocks' /\n" + CASES[case] +
+                                     "&sweep parameter = 'friction_deg', values = 25, 30, 35, 40 /\n")
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_two_threads_change_no_bit_of_a_wall(tmp_path: Path, case: str) -> None:
+    write(tmp_path, case, 8)
+    assert run(tmp_path, "one") == run(tmp_path, "two", "--jobs", "2")
+
+
+def other_kernels() -> list[str]:
+    """OpenBLAS kernels that this processor can run and that differ in the length of their vectors."""
+    flags = Path("/proc/cpuinfo").read_text()
+    return ["Prescott"] + ["Haswell"] * (" avx2 " in flags) + ["SkylakeX"] * (" avx512vl " in flags)
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="kernels of other processors")
+@pytest.mark.parametrize(("case", "table", "columns"), [
+    ("limit", "results", ["critical", "critical_low", "critical_high"]),
+    ("path", "results", ["critical", "critical_low", "critical_high"]),
+    ("deformable", "joints", ["normal_force", "shear_force", "opening_intrados", "opening_extrados", "slip"]),
+])
+def test_kernels_of_another_processor_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str, table: str,
+                                            columns: list[str]) -> None:
+    write(tmp_path, case, 8)
+    found = {}
+    for kernel in other_kernels():
+        monkeypatch.setenv("OPENBLAS_CORETYPE", kernel)
+        found[kernel] = run(tmp_path, kernel)
+    first, *others = found.values()
+    for column in columns:
+        values = [float(row[column]) for row in first[table]]
+        assert max(map(abs, values)) > 0.0
+        for other in others:
+            assert [row["verdict"] for row in first["results"]] == [row["verdict"] for row in other["results"]]
+            assert [float(row[column]) for row in other[table]] == pytest.approx(
+                values, rel=0.0, abs=1e-12 * max(map(abs, values)))
