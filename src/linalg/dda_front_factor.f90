@@ -8,7 +8,7 @@ module dda_front_factor
    public :: factor_front, narrow, take_triple
 
    !> Columns up to which inline elimination is faster than BLAS
-   integer, parameter :: narrow = 12
+   integer, parameter :: narrow = 36
 
 contains
 

@@ -211,99 +211,109 @@ contains
       integer, intent(in) :: exchange(*)
       !> Right-hand side in, solution out: (n_dof, n_block)
       real(wp), intent(inout) :: x(plan%n_dof, *)
-      real(wp) :: z(plan%n_dof, plan%highest)
-      integer :: height, p, width
+      real(wp) :: rest(plan%n_dof, plan%most_rows)
+      integer :: below, i, k, p, width
 
       do p = 1, size(plan%first) - 1
-         width = plan%first(p + 1) - plan%first(p)
-         height = width + plan%first_row(p + 1) - plan%first_row(p)
-         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1), &
-            & own => x(:, plan%first(p):plan%first(p + 1) - 1))
-            z(:, :width) = own
-            z(:, width + 1:height) = 0.0_wp
-            call substitute_down(plan%symmetric, plan%n_dof*width, plan%n_dof*height, &
-               & number(plan%start(p)), exchange(plan%n_dof*(plan%first(p) - 1) + 1), z)
-            own = z(:, :width)
-            x(:, row) = x(:, row) + z(:, width + 1:height)
-         end associate
+         k = plan%first_row(p) - 1
+         below = plan%first_row(p + 1) - 1 - k
+         width = plan%n_dof*(plan%first(p + 1) - plan%first(p))
+         rest(:, :below) = 0.0_wp
+         call substitute_down(plan%symmetric, width, plan%n_dof*below, number(plan%start(p)), &
+            & exchange(plan%n_dof*(plan%first(p) - 1) + 1), x(1, plan%first(p)), rest)
+         do i = 1, below
+            x(:, plan%row(k + i)) = x(:, plan%row(k + i)) + rest(:, i)
+         end do
       end do
       do p = size(plan%first) - 1, 1, -1
-         width = plan%first(p + 1) - plan%first(p)
-         height = width + plan%first_row(p + 1) - plan%first_row(p)
-         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1), &
-            & own => x(:, plan%first(p):plan%first(p + 1) - 1))
-            z(:, :width) = own
-            z(:, width + 1:height) = x(:, row)
-            call substitute_up(plan%symmetric, plan%n_dof*width, plan%n_dof*height, &
-               & number(plan%start(p)), z)
-            own = z(:, :width)
-         end associate
+         k = plan%first_row(p) - 1
+         below = plan%first_row(p + 1) - 1 - k
+         width = plan%n_dof*(plan%first(p + 1) - plan%first(p))
+         do i = 1, below
+            rest(:, i) = x(:, plan%row(k + i))
+         end do
+         call substitute_up(plan%symmetric, width, plan%n_dof*below, number(plan%start(p)), rest, &
+            & x(1, plan%first(p)))
       end do
    end subroutine substitute_fronts
 
    !> Solve with L of a panel, and take the solution from the rows below
-   pure subroutine substitute_down(symmetric, width, height, front, exchange, z)
+   pure subroutine substitute_down(symmetric, width, below, front, exchange, x, rest)
       logical, intent(in) :: symmetric
-      integer, intent(in) :: width, height
-      real(wp), intent(in) :: front(height, *)  !! The panel
-      integer, intent(in) :: exchange(width)    !! Exchanges of its rows
-      !> Right-hand side and zeros in, solution and what the rows below get out: (height)
-      real(wp), intent(inout) :: z(height)
-      integer :: c
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: front(width + below, *)  !! The panel
+      integer, intent(in) :: exchange(width)           !! Exchanges of its rows
+      real(wp), intent(inout) :: x(width)              !! Right-hand side in, solution out
+      real(wp), intent(inout) :: rest(below)           !! Zeros in, what the rows below get out
+      integer :: c, height
 
-      if (.not. symmetric) call dlaswp(1, z, height, 1, width, exchange, 1)
+      height = width + below
+      if (.not. symmetric) call dlaswp(1, x, width, 1, width, exchange, 1)
       if (width > narrow) then
-         call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, z, 1)
-         if (width < height) call dgemv("N", height - width, width, -1.0_wp, &
-            & front(width + 1, 1), height, z, 1, 0.0_wp, z(width + 1), 1)
+         call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, x, 1)
+         if (below > 0) call dgemv("N", below, width, -1.0_wp, front(width + 1, 1), height, x, 1, &
+            & 0.0_wp, rest, 1)
          return
       end if
       do c = 1, width, 3
-         z(c + 1) = z(c + 1) - front(c + 1, c)*z(c)
-         z(c + 2) = z(c + 2) - front(c + 2, c)*z(c) - front(c + 2, c + 1)*z(c + 1)
-         call take_triple(height - c - 2, front(c + 3, c), front(c + 3, c + 1), &
-            & front(c + 3, c + 2), z(c:c + 2), z(c + 3))
+         x(c + 1) = x(c + 1) - front(c + 1, c)*x(c)
+         x(c + 2) = x(c + 2) - front(c + 2, c)*x(c) - front(c + 2, c + 1)*x(c + 1)
+         if (c + 2 < width) call take_triple(width - c - 2, front(c + 3, c), front(c + 3, c + 1), &
+            & front(c + 3, c + 2), x(c:c + 2), x(c + 3))
+         call take_triple(below, front(width + 1, c), front(width + 1, c + 1), &
+            & front(width + 1, c + 2), x(c:c + 2), rest)
       end do
    end subroutine substitute_down
 
    !> Solve with the transpose of L of a panel, or with U
-   pure subroutine substitute_up(symmetric, width, height, front, z)
+   pure subroutine substitute_up(symmetric, width, below, front, known, x)
       logical, intent(in) :: symmetric
-      integer, intent(in) :: width, height
-      real(wp), intent(in) :: front(height, *)
-      !> Right-hand side and solution of the rows below in, solution out: (height)
-      real(wp), intent(inout) :: z(height)
-      real(wp) :: one, two, three
-      integer :: c, i
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: front(width + below, *)
+      real(wp), intent(in) :: known(below)      !! Solution of the rows below
+      real(wp), intent(inout) :: x(width)       !! Right-hand side in, solution out
+      integer :: c, height
 
+      height = width + below
       if (.not. symmetric) then
-         call take_right(width, height - width, front(1, width + 1), z(width + 1:), z)
+         call take_right(width, below, front(1, width + 1), known, x)
          do c = width, 1, -1
-            z(c) = z(c)/front(c, c)
-            z(:c - 1) = z(:c - 1) - front(:c - 1, c)*z(c)
+            x(c) = x(c)/front(c, c)
+            x(:c - 1) = x(:c - 1) - front(:c - 1, c)*x(c)
          end do
-         return
-      end if
-      if (width > narrow) then
-         if (width < height) call dgemv("T", height - width, width, -1.0_wp, front(width + 1, 1), &
-            & height, z(width + 1), 1, 1.0_wp, z, 1)
-         call dtrsv("L", "T", "N", width, front, height, z, 1)
+      else if (width > narrow) then
+         if (below > 0) call dgemv("T", below, width, -1.0_wp, front(width + 1, 1), height, &
+            & known, 1, 1.0_wp, x, 1)
+         call dtrsv("L", "T", "N", width, front, height, x, 1)
       else
+         do c = 1, width
+            x(c) = x(c)/front(c, c)
+         end do
          do c = width - 2, 1, -3
-            one = z(c)/front(c, c)
-            two = z(c + 1)/front(c + 1, c + 1)
-            three = z(c + 2)/front(c + 2, c + 2)
-            do i = c + 3, height
-               one = one - front(i, c)*z(i)
-               two = two - front(i, c + 1)*z(i)
-               three = three - front(i, c + 2)*z(i)
-            end do
-            z(c + 2) = three
-            z(c + 1) = two - front(c + 2, c + 1)*z(c + 2)
-            z(c) = one - front(c + 1, c)*z(c + 1) - front(c + 2, c)*z(c + 2)
+            call take_rows(below, front(width + 1, c), front(width + 1, c + 1), &
+               & front(width + 1, c + 2), known, x(c))
+            if (c + 2 < width) call take_rows(width - c - 2, front(c + 3, c), front(c + 3, c + 1), &
+               & front(c + 3, c + 2), x(c + 3), x(c))
+            x(c + 1) = x(c + 1) - front(c + 2, c + 1)*x(c + 2)
+            x(c) = x(c) - front(c + 1, c)*x(c + 1) - front(c + 2, c)*x(c + 2)
          end do
       end if
    end subroutine substitute_up
+
+   !> Take products of three columns and a vector from three numbers
+   pure subroutine take_rows(n, one, two, three, known, x)
+      integer, intent(in) :: n                            !! Rows
+      real(wp), intent(in) :: one(n), two(n), three(n)    !! The columns
+      real(wp), intent(in) :: known(n)                    !! The vector
+      real(wp), intent(inout) :: x(3)                     !! The numbers
+      integer :: i
+
+      do i = 1, n
+         x(1) = x(1) - one(i)*known(i)
+         x(2) = x(2) - two(i)*known(i)
+         x(3) = x(3) - three(i)*known(i)
+      end do
+   end subroutine take_rows
 
    !> Take what stands to the right of the diagonal of a panel
    pure subroutine take_right(width, below, right, known, x)
