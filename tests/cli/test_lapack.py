@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from dda_command import run_dda
 
-#: Cases of walls: panels of more than 12 columns, which LAPACK factors
+#: Cases of walls
 CASES = {
     "limit": "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n",
     "path": "&search parameter = 'horizontal_coefficient' /\n",
