@@ -1,4 +1,4 @@
-# LAPACK and BLAS: the target voussoir_lapack, and a check that two threads may call them at the same
+# LAPACK, BLAS and AMD of SuiteSparse: the target voussoir_lapack, and a check that two threads may call them at the same
 # time, for cases run side by side. Where the library that FindLAPACK finds is not safe, an OpenBLAS
 # with threads beside it is taken, and named in the program's RPATH.
 
@@ -54,5 +54,11 @@ if(NOT safe)
 endif()
 list(JOIN lapack ", " names)
 message(STATUS "LAPACK: ${names}")
+find_library(VOUSSOIR_AMD amd)
+if(NOT VOUSSOIR_AMD)
+  message(FATAL_ERROR "AMD of SuiteSparse was not found. On Debian and Ubuntu: sudo apt-get install "
+    "libsuitesparse-dev")
+endif()
+list(APPEND lapack ${VOUSSOIR_AMD})
 add_library(voussoir_lapack INTERFACE)
 target_link_libraries(voussoir_lapack INTERFACE ${lapack} ${CMAKE_DL_LIBS})

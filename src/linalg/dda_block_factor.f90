@@ -53,19 +53,17 @@ contains
       logical :: anew(size(factor%plan%first) - 1)
       integer :: p
 
-      anew = .true.
-      if (present(changed) .and. factor%usable) then
-         anew = .false.
-         associate (plan => factor%plan)
-            do p = 1, size(anew)
-               if (any(changed(plan%block(plan%first(p):plan%first(p + 1) - 1)))) anew(p) = .true.
-               if (anew(p)) anew(plan%panel(plan%row(plan%first_row(p): &
-                  & plan%first_row(p + 1) - 1))) = .true.
-            end do
-         end associate
-      end if
-      call assemble_fronts(factor%plan, matrix, anew, factor%number)
-      call eliminate_fronts(factor%plan, anew, factor%number, factor%exchange, factor%usable)
+      anew = .not. (present(changed) .and. factor%usable)
+      associate (plan => factor%plan)
+         do p = 1, size(anew)
+            if (present(changed)) anew(p) = anew(p) .or. &
+               & any(changed(plan%block(plan%first(p):plan%first(p + 1) - 1)))
+            if (anew(p)) anew(plan%panel(plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))) &
+               & = .true.
+         end do
+         call assemble_fronts(plan, matrix, anew, factor%number)
+         call eliminate_fronts(plan, anew, factor%number, factor%exchange, factor%usable)
+      end associate
    end subroutine factorise
 
    !> Solve for one right-hand side
@@ -87,50 +85,41 @@ contains
       type(block_factor_t), intent(in) :: factor
       real(wp) :: condition  !! Estimate of the condition number, at least 1
       real(wp) :: root(matrix%n_dof, size(matrix%diagonal, 3))
-      integer :: b, c
+      integer :: c
 
       condition = huge(condition)
       if (.not. factor%usable) return
-      do b = 1, size(root, 2)
-         do c = 1, matrix%n_dof
-            root(c, b) = sqrt(matrix%diagonal(c, c, b))
-         end do
+      do c = 1, matrix%n_dof
+         root(c, :) = sqrt(matrix%diagonal(c, c, :))
       end do
-      condition = max(1.0_wp, scaled_norm(matrix, root)*inverse_norm(factor, root))
+      condition = max(1.0_wp, scaled_norm(matrix, 1.0_wp/root)*inverse_norm(factor, root))
    end function factored_condition
 
-   !> Largest sum of magnitudes of a column of the scaled matrix
-   pure function scaled_norm(matrix, root) result(norm)
-      !> The matrix; entries of the same pair count apart, which can only enlarge the norm
+   !> Largest sum of magnitudes of a column of the scaled matrix; entries of the same pair count
+   !> apart, which can only enlarge it
+   pure function scaled_norm(matrix, scale) result(norm)
       type(block_matrix_t), intent(in) :: matrix
-      !> Roots of its diagonal: (n_dof, n_block)
-      real(wp), intent(in) :: root(:, :)
-      !> The norm
-      real(wp) :: norm
-      real(wp) :: column(size(root, 1), size(root, 2)), one(size(root, 1))
+      real(wp), intent(in) :: scale(:, :)  !! Factors of rows and columns: (n_dof, n_block)
+      real(wp) :: norm, column(size(scale, 1), size(scale, 2))
       integer :: b, e
 
-      one = 1.0_wp
-      do b = 1, size(root, 2)
-         column(:, b) = matmul(one/root(:, b), abs(matrix%diagonal(:, :, b)))/root(:, b)
+      do b = 1, size(scale, 2)
+         column(:, b) = matmul(scale(:, b), abs(matrix%diagonal(:, :, b)))
       end do
       do e = 1, size(matrix%pair, 2)
          associate (row => matrix%pair(1, e), col => matrix%pair(2, e))
-            column(:, col) = column(:, col) &
-               & + matmul(one/root(:, row), abs(matrix%coupling(:, :, e)))/root(:, col)
-            column(:, row) = column(:, row) &
-               & + matmul(abs(matrix%coupling(:, :, e)), one/root(:, col))/root(:, row)
+            column(:, col) = column(:, col) + matmul(scale(:, row), abs(matrix%coupling(:, :, e)))
+            column(:, row) = column(:, row) + matmul(abs(matrix%coupling(:, :, e)), scale(:, col))
          end associate
       end do
-      norm = maxval(column)
+      norm = maxval(scale*column)
    end function scaled_norm
 
    !> One-norm of the inverse of the scaled matrix from below (LAPACK's dlacn2)
    pure function inverse_norm(factor, root) result(norm)
       type(block_factor_t), intent(in) :: factor
       real(wp), intent(in) :: root(:, :)  !! Roots of the matrix's diagonal: (n_dof, n_block)
-      real(wp) :: norm                    !! The norm
-      real(wp) :: v(size(root)), x(size(root, 1), size(root, 2))
+      real(wp) :: norm, v(size(root)), x(size(root, 1), size(root, 2))
       integer :: kase, state(3), sign_of(size(root))
 
       kase = 0

@@ -4,41 +4,31 @@
 !> eliminated by it are products of dense matrices. Columns whose rows differ a little share a
 !> panel where its zeros cost less than panels apart.
 module dda_block_plan
-   use dda_block_matrix, only : block_matrix_t, by_branches, elimination_t, new_elimination
+   use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp
-   use dda_minimum_degree, only : minimum_degree_order
+   use dda_sort, only : list_by_owner
    implicit none
    private
 
-   public :: elimination_plan_t, plan_panels, choose_order, find_rows
+   public :: elimination_plan_t, plan_panels, find_rows
 
    !> Panels; a place is one in the order of elimination
    type :: elimination_plan_t
-      !> Unknowns of one block
-      integer :: n_dof = 0
-      !> Whether the matrix is symmetric
-      logical :: symmetric = .true.
-      !> Block at each place: (n_block)
-      integer, allocatable :: block(:)
-      !> Panel of each place: (n_block)
-      integer, allocatable :: panel(:)
-      !> First place of each panel, and one beyond the last: (n_panel + 1)
-      integer, allocatable :: first(:)
-      !> First number of each panel, and one beyond the last: (n_panel + 1)
-      integer, allocatable :: start(:)
-      !> First of each panel's rows in the list, and one beyond the last: (n_panel + 1)
-      integer, allocatable :: first_row(:)
-      !> Rows of the panels below their diagonals, as places, rising in each panel
-      integer, allocatable :: row(:)
-      !> Panel of each coupling, and where it stands in it: row and column, as blocks from zero on;
-      !> the panel is negative where the coupling's first block has the column: (3, n_entry)
+      integer :: n_dof = 0              !! Unknowns of one block
+      logical :: symmetric = .true.     !! Whether the matrix is symmetric
+      integer, allocatable :: block(:)  !! Block at each place: (n_block)
+      integer, allocatable :: panel(:)  !! Panel of each place: (n_block)
+      integer, allocatable :: below(:)  !! Rows below the diagonal of each column: (n_block)
+      integer, allocatable :: first(:)  !! First place of each panel, and one beyond: (n_panel + 1)
+      integer, allocatable :: start(:)  !! First number of each panel, and one beyond
+      integer, allocatable :: first_row(:)  !! First of each panel's rows, and one beyond
+      integer, allocatable :: row(:)    !! Rows of the panels below their diagonals, rising in each
+      !> Panel of each coupling, and its row and column there, as blocks from zero on: (3, n_entry)
       integer, allocatable :: given(:, :)
       !> Most rows of a panel, below its diagonal and altogether, as blocks
       integer :: most_rows = 0, highest = 0
    end type elimination_plan_t
 
-   !> Bandwidth up to which the narrow order is used directly
-   integer, parameter :: narrow = 3
    !> Maximum number of unknowns per panel
    integer, parameter :: most_columns = 144
 
@@ -48,65 +38,74 @@ contains
    pure subroutine plan_panels(matrix, plan)
       type(block_matrix_t), intent(in) :: matrix  !! The matrix, of which the pattern counts
       type(elimination_plan_t), intent(out) :: plan
-      type(elimination_t) :: elimination
-      integer :: i, n
+      integer :: first(size(matrix%place) + 1)  !! First coupling of each row, and one beyond
+      integer :: parent(size(matrix%place))     !! Column that each goes into first; 0 for a root
+      integer, allocatable :: column(:)         !! Columns of the couplings, row by row
+      integer :: i
 
-      n = size(matrix%place)
-      call choose_order(matrix, elimination)
       plan%n_dof = matrix%n_dof
       plan%symmetric = matrix%symmetric
-      allocate (plan%block(n), plan%panel(n))
-      plan%block(elimination%place) = [(i, i=1, n)]
-      call choose_panels(plan%n_dof, elimination, plan%first, plan%panel)
-      call list_rows(elimination, plan)
+      allocate (plan%block(size(parent)), plan%panel(size(parent)), plan%below(size(parent)))
+      plan%block(matrix%place) = [(i, i=1, size(parent))]
+      call list_by_owner(matrix%place(matrix%pair(1, :)), first, column)
+      column = matrix%place(matrix%pair(2, column))
+      call grow_tree(first, column, parent, plan%below)
+      call choose_panels(plan%n_dof, parent, plan%below, plan%first, plan%panel)
+      call list_rows(first, column, parent, plan)
       call lay_out(plan)
-      call list_given(matrix%pair, elimination%place, plan)
+      call list_given(matrix%pair, matrix%place, plan)
    end subroutine plan_panels
 
-   !> An order of elimination: a narrow one from both ends to the middle, of wide graphs one by
-   !> minimum degree
-   pure subroutine choose_order(matrix, elimination)
-      type(block_matrix_t), intent(in) :: matrix
-      type(elimination_t), intent(out) :: elimination
+   !> Elimination tree and numbers of rows (Liu 1990): a row has its couplings, and from the column
+   !> of each the way to the root of the tree
+   pure subroutine grow_tree(first, column, parent, below)
+      integer, intent(in) :: first(:), column(:)
+      integer, intent(out) :: parent(:)
+      integer, intent(out) :: below(:)  !! Rows below the diagonal of each column: (n_block)
+      integer :: g, i, j, seen(size(parent))
 
-      associate (n => size(matrix%place), place => matrix%place, pair => matrix%pair)
-         if (matrix%width <= narrow) then
-            call new_elimination(merge(2*place - 1, 2*(n + 1 - place), 2*place <= n + 1), pair, &
-               & elimination)
-         else
-            call new_elimination(by_branches(minimum_degree_order(n, pair), pair), pair, &
-               & elimination)
-         end if
-      end associate
-   end subroutine choose_order
+      parent = 0
+      below = 0
+      do i = 1, size(parent)
+         seen(i) = i
+         do g = first(i), first(i + 1) - 1
+            j = column(g)
+            do while (seen(j) /= i)
+               seen(j) = i
+               below(j) = below(j) + 1
+               if (parent(j) == 0) parent(j) = i
+               j = parent(j)
+            end do
+         end do
+      end do
+   end subroutine grow_tree
 
    !> Group columns: a panel takes the one before it in where that saves work
-   pure subroutine choose_panels(n_dof, elimination, first, panel)
+   pure subroutine choose_panels(n_dof, parent, below, first, panel)
       integer, intent(in) :: n_dof  !! Unknowns of one block
-      type(elimination_t), intent(in) :: elimination
-      !> First column of each panel, and one beyond the last: (n_panel + 1)
+      integer, intent(in) :: parent(:), below(:)
       integer, allocatable, intent(out) :: first(:)
-      integer, intent(out) :: panel(:)  !! Panel of each column: (n_block)
-      integer :: head(size(panel) + 1), j, m, n, parent
+      integer, intent(out) :: panel(:)
+      integer :: head(size(panel) + 1), j, m, n, next
       real(wp) :: cost(size(panel)), joint
 
       n = 0
       do j = 1, size(panel)
          n = n + 1
          head(n) = j
-         cost(n) = work(1, elimination%below(j))
+         cost(n) = work(1, below(j))
          do while (n > 1)
             m = j - head(n - 1) + 1
-            parent = elimination%parent(head(n) - 1)
-            if (parent == 0 .or. parent > j .or. m*n_dof > most_columns) exit
-            joint = work(m, elimination%below(j))
+            next = parent(head(n) - 1)
+            if (next == 0 .or. next > j .or. m*n_dof > most_columns) exit
+            joint = work(m, below(j))
             if (joint > cost(n - 1) + cost(n)) exit
             n = n - 1
             cost(n) = joint
          end do
       end do
       head(n + 1) = size(panel) + 1
-      allocate (first(n + 1), source=head(:n + 1))
+      first = head(:n + 1)
       do j = 1, n
          panel(first(j):first(j + 1) - 1) = j
       end do
@@ -129,37 +128,31 @@ contains
    end function work
 
    !> Rows of each panel: those of its last column
-   pure subroutine list_rows(elimination, plan)
-      type(elimination_t), intent(in) :: elimination
+   pure subroutine list_rows(first, column, parent, plan)
+      integer, intent(in) :: first(:), column(:), parent(:)
       type(elimination_plan_t), intent(inout) :: plan
-      integer, dimension(size(plan%panel)) :: seen
-      integer, dimension(size(plan%first)) :: next
-      integer :: g, i, j, pass
+      integer :: g, i, j, next(size(plan%first)), p, seen(size(parent))
 
-      allocate (plan%first_row(size(next)))
-      next = 0
-      do pass = 1, 2
-         seen = 0
-         do i = 1, size(plan%panel)
-            do g = elimination%first(i), elimination%first(i + 1) - 1
-               j = plan%first(plan%panel(elimination%column(g)) + 1) - 1
-               do while (j < i)
-                  if (seen(j) == i) exit
-                  seen(j) = i
-                  if (pass == 2) plan%row(next(plan%panel(j))) = i
-                  next(plan%panel(j)) = next(plan%panel(j)) + 1
-                  j = plan%first(plan%panel(elimination%parent(j)) + 1) - 1
-               end do
+      next(1) = 1
+      do p = 1, size(next) - 1
+         next(p + 1) = next(p) + plan%below(plan%first(p + 1) - 1)
+      end do
+      plan%first_row = next
+      ! one more: where a last panel without rows would begin
+      allocate (plan%row(next(size(next))), source=1)
+      seen = 0
+      do i = 1, size(parent)
+         do g = first(i), first(i + 1) - 1
+            j = plan%first(plan%panel(column(g)) + 1) - 1
+            do while (j < i)
+               if (seen(j) == i) exit
+               seen(j) = i
+               p = plan%panel(j)
+               plan%row(next(p)) = i
+               next(p) = next(p) + 1
+               j = plan%first(plan%panel(parent(j)) + 1) - 1
             end do
          end do
-         if (pass == 2) exit
-         plan%first_row(1) = 1
-         do i = 1, size(next) - 1
-            plan%first_row(i + 1) = plan%first_row(i) + next(i)
-         end do
-         next = plan%first_row
-         ! one more: where a last panel without rows would begin
-         allocate (plan%row(plan%first_row(size(next))), source=1)
       end do
    end subroutine list_rows
 
@@ -186,22 +179,13 @@ contains
       integer, intent(in) :: pair(:, :)                !! Coupled blocks: (2, n_entry)
       integer, intent(in) :: place(:)                  !! Place of each block: (n_block)
       type(elimination_plan_t), intent(inout) :: plan  !! The plan; receives the couplings
-      integer :: e, k, p
+      integer :: at(1), e, n, p
 
       allocate (plan%given(3, size(pair, 2)))
       do e = 1, size(pair, 2)
-         associate (low => minval(place(pair(:, e))), high => maxval(place(pair(:, e))))
-            p = plan%panel(low)
-            plan%given(:, e) = [p, high, low] - [0, plan%first(p), plan%first(p)]
-            if (high >= plan%first(p + 1)) then
-               k = plan%first_row(p)
-               do while (plan%row(k) /= high)
-                  k = k + 1
-               end do
-               plan%given(2, e) = k - plan%first_row(p) + plan%first(p + 1) - plan%first(p)
-            end if
-            if (place(pair(1, e)) == low) plan%given(1, e) = -p
-         end associate
+         p = plan%panel(place(pair(2, e)))
+         call find_rows(plan, p, place(pair(1:1, e)), at, n)
+         plan%given(:, e) = [p, at, place(pair(2, e)) - plan%first(p)]
       end do
    end subroutine list_given
 

@@ -7,7 +7,6 @@ module dda_lapack
    public :: dgelsy, dgemm, dgemv, dgetrf, dgetrs, dlacn2, dlaswp, dpotrf, dsyrk, dtrsm, dtrsv
 
    interface
-
       !> Least squares by factors that show the rank
       pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
          import :: wp

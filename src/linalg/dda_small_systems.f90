@@ -14,10 +14,9 @@ contains
       real(wp), intent(inout), contiguous :: a(:, :)  !! Matrix in, factors out: (n, n)
       integer, intent(out), contiguous :: exchange(:) !! Row that each changed places with: (n)
       logical, intent(out) :: regular                 !! Whether no pivot is 0
-      integer :: info, n
+      integer :: info
 
-      n = size(a, 1)
-      call dgetrf(n, n, a, max(1, n), exchange, info)
+      call dgetrf(size(a, 1), size(a, 1), a, max(1, size(a, 1)), exchange, info)
       regular = info == 0
    end subroutine eliminate_full
 
@@ -26,10 +25,9 @@ contains
       real(wp), intent(in), contiguous :: a(:, :)
       integer, intent(in), contiguous :: exchange(:)  !! Exchanges of rows: (n)
       real(wp), intent(inout), contiguous :: x(:)     !! Right-hand side in, solution out: (n)
-      integer :: info, n
+      integer :: info
 
-      n = size(x)
-      call dgetrs("N", n, 1, a, max(1, n), exchange, x, max(1, n), info)
+      call dgetrs("N", size(x), 1, a, max(1, size(x)), exchange, x, max(1, size(x)), info)
    end subroutine substitute_full
 
    !> Lower triangle L of a = L L'

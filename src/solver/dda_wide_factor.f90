@@ -34,14 +34,9 @@ contains
             & height_of(plan, p), number(plan%start(p)))
       end do
       do e = 1, size(plan%given, 2)
-         p = abs(plan%given(1, e))
-         if (plan%given(1, e) > 0) then
-            call add_block(plan%given(2, e), plan%given(3, e), coupling(:, :, e), &
-               & height_of(plan, p), number(plan%start(p)))
-         else
-            call add_block(plan%given(2, e), plan%given(3, e), transpose(coupling(:, :, e)), &
-               & height_of(plan, p), number(plan%start(p)))
-         end if
+         p = plan%given(1, e)
+         call add_block(plan%given(2, e), plan%given(3, e), coupling(:, :, e), &
+            & height_of(plan, p), number(plan%start(p)))
       end do
       do p = 1, size(plan%first) - 1
          height = height_of(plan, p)

@@ -216,7 +216,7 @@ contains
       logical :: peaks
 
       call refresh(springs, equations)
-      most = merge(max_changes, min(max_changes, few_changes), equations%matrix%width <= 1)
+      most = merge(max_changes, min(max_changes, few_changes), equations%matrix%has_chains)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1

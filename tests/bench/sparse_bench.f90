@@ -7,7 +7,7 @@ program sparse_bench
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_ptr
    use, intrinsic :: iso_fortran_env, only : output_unit
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t
+   use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use graph_wall, only : new_wall
@@ -129,6 +129,7 @@ contains
       real(wp), intent(in) :: load(:, :)               !! Right-hand side: (n_dof, n_block)
       real(wp), intent(inout) :: x(:, :)               !! Receives the solution: (n_dof, n_block)
       real(wp), intent(inout) :: least                 !! Least time [s]
+      type(block_matrix_t) :: pattern
       real(wp) :: start, finish
       integer :: n
 
@@ -141,6 +142,7 @@ contains
          else if (solver == 3) then
             call mumps_work(handle, work, x)
          else if (work == 1) then
+            call set_pattern(pattern, matrix%n_dof, size(load, 2), matrix%pair)
             call plan_factor(matrix, factor)
          else if (work == 2) then
             call factorise(matrix, factor)

@@ -1,6 +1,7 @@
 !> Full matrices and Gaussian elimination: what the banded solver is measured against
 module dense_reference
-   use dda_block_matrix, only : block_matrix_t, elimination_t, set_pattern
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_plan, only : elimination_plan_t, plan_panels
    use dda_kinds, only : wp
    use random_numbers, only : draw, draw_index, random_t
    implicit none
@@ -177,17 +178,14 @@ contains
       call draw(random, key)
       number = [(count(key <= key(i)), i=1, size(number))]
    end subroutine shuffled
+
    !> Products of two blocks that a factorisation takes
-   pure real(wp) function products(elimination)
-      type(elimination_t), intent(in) :: elimination
-      integer :: j
+   pure real(wp) function products(matrix)
+      !> The matrix, of which the pattern counts
+      type(block_matrix_t), intent(in) :: matrix
+      type(elimination_plan_t) :: plan
 
-      products = 0.0_wp
-      do j = 1, size(elimination%below)
-         associate (below => real(elimination%below(j), wp))
-            products = products + below*(below + 3.0_wp)/2.0_wp
-         end associate
-      end do
+      call plan_panels(matrix, plan)
+      products = 0.5_wp*sum(real(plan%below, wp)*(real(plan%below, wp) + 3.0_wp))
    end function products
-
 end module dense_reference

@@ -12,8 +12,6 @@ module lapack_reference
    type :: band_factor_t
       !> Unknowns of one block
       integer :: n_dof = 0
-      !> Place of each block in the order of elimination: (n_block)
-      integer, allocatable :: place(:)
       !> Lower factor: (width of the band + 1, number of unknowns)
       real(wp), allocatable :: band(:, :)
       !> Whether the matrix was positive definite, so that the factor can be used
@@ -118,29 +116,31 @@ contains
       type(block_matrix_t), intent(in) :: matrix
       !> Receives the band
       type(band_factor_t), intent(inout) :: factor
+      real(wp) :: block(matrix%n_dof, matrix%n_dof)
       integer :: b, c, e, first, offset, nd, kd
 
       nd = matrix%n_dof
-      kd = nd*(matrix%width + 1) - 1
+      kd = nd*(maxval([0, abs(matrix%pair(1, :) - matrix%pair(2, :))]) + 1) - 1
       factor%n_dof = nd
-      factor%place = matrix%place
       if (allocated(factor%band)) then
          if (any(shape(factor%band) /= [kd + 1, nd*size(matrix%place)])) deallocate (factor%band)
       end if
       if (.not. allocated(factor%band)) allocate (factor%band(kd + 1, nd*size(matrix%place)))
       factor%band = 0.0_wp
       do b = 1, size(matrix%place)
-         first = nd*(matrix%place(b) - 1)
+         first = nd*(b - 1)
          do c = 1, nd
             factor%band(1:nd - c + 1, first + c) = matrix%diagonal(c:nd, c, b)
          end do
       end do
       do e = 1, size(matrix%pair, 2)
-         first = nd*(matrix%place(matrix%pair(2, e)) - 1)
-         offset = nd*(matrix%place(matrix%pair(1, e)) - 1) - first
+         first = nd*(minval(matrix%pair(:, e)) - 1)
+         offset = nd*(maxval(matrix%pair(:, e)) - 1) - first
+         block = matrix%coupling(:, :, e)
+         if (matrix%pair(1, e) < matrix%pair(2, e)) block = transpose(block)
          do c = 1, nd
             associate (column => factor%band(offset - c + 2:offset - c + 1 + nd, first + c))
-               column = column + matrix%coupling(:, c, e)
+               column = column + block(:, c)
             end associate
          end do
       end do
@@ -152,18 +152,11 @@ contains
       type(band_factor_t), intent(in) :: factor
       !> Right-hand side in, solution out: (n_dof, n_block)
       real(wp), intent(inout) :: x(:, :)
-      real(wp) :: ordered(size(x, 1), size(x, 2))
-      integer :: b, info, n, kd
+      integer :: info, n, kd
 
-      do b = 1, size(x, 2)
-         ordered(:, factor%place(b)) = x(:, b)
-      end do
       kd = size(factor%band, 1) - 1
       n = size(factor%band, 2)
-      call dpbtrs("L", n, kd, 1, factor%band, kd + 1, ordered, n, info)
-      do b = 1, size(x, 2)
-         x(:, b) = ordered(:, factor%place(b))
-      end do
+      call dpbtrs("L", n, kd, 1, factor%band, kd + 1, x, n, info)
    end subroutine substitute
 
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the

@@ -1,0 +1,257 @@
+!> A dense panel: factors, products and substitutions, of narrow panels inline, of wide ones by
+!> LAPACK
+!>
+!> The panel has w columns with w rows on the diagonal and m rows below it. A symmetric one is
+!> factored into L D L' if it is narrow, D on the diagonal of L, whose own is ones, and into L L' if
+!> it is wide; another one into L U. Blocks that nothing holds move as their load over their mass to
+!> the last bit, which the roots of L L' would spoil.
+module dda_front
+   use dda_kinds, only : wp
+   use dda_lapack, only : dgemm, dgemv, dlaswp, dpotrf, dsyrk, dtrsm, dtrsv
+   implicit none
+   private
+
+   public :: factor_front, multiply_front, substitute_down, substitute_up
+
+   !> Columns up to which inline elimination of symmetric panels is faster than LAPACK
+   integer, parameter :: narrow = 36
+   !> Columns that are eliminated inline at a time where a panel is not symmetric
+   integer, parameter :: few = 12
+
+contains
+
+   !> Factor a panel
+   pure subroutine factor_front(symmetric, width, below, front, exchange, info)
+      logical, intent(in) :: symmetric                     !! Whether the matrix is
+      integer, intent(in) :: width                         !! Columns of the panel
+      integer, intent(in) :: below                         !! Rows below its diagonal
+      real(wp), intent(inout) :: front(width + below, *)   !! The panel
+      integer, intent(inout) :: exchange(width)            !! Exchanges of its rows
+      integer, intent(out) :: info                         !! 0 if it has a factor
+      integer :: height
+
+      height = width + below
+      if (.not. symmetric) then
+         call factor_pair(width, height, below, front, front(1, width + 1), exchange, info)
+      else if (width <= narrow) then
+         call factor_narrow(width, height, front, info)
+      else
+         call dpotrf("L", width, front, height, info)
+         ! OpenBLAS lets NaN pass
+         if (.not. front(width, width) > 0.0_wp) info = width
+         if (info /= 0 .or. below == 0) return
+         call dtrsm("R", "L", "T", "N", below, width, 1.0_wp, front, height, front(width + 1, 1), &
+            & height)
+      end if
+   end subroutine factor_front
+
+   !> Factor a narrow panel into L D L', column by column
+   pure subroutine factor_narrow(width, height, front, info)
+      integer, intent(in) :: width, height
+      real(wp), intent(inout) :: front(height, *)
+      integer, intent(out) :: info
+      real(wp) :: factor(narrow)
+      integer :: c, k
+
+      do k = 1, width
+         do c = 1, k - 1
+            factor(c) = front(k, c)*front(c, c)
+         end do
+         call subtract_product(height + 1 - k, k - 1, height, front(k, 1), factor, front(k, k))
+         info = k
+         if (.not. front(k, k) > 0.0_wp) return
+         front(k + 1:height, k) = front(k + 1:height, k)/front(k, k)
+      end do
+      info = 0
+   end subroutine factor_narrow
+
+   !> Factor a panel that is not symmetric, a few columns at a time. Rows change places within three
+   !> unknowns of a block alone: pivots among blocks of which one is held far more stiffly than the
+   !> other would cost the soft one its digits
+   pure subroutine factor_pair(width, height, below, front, right, exchange, info)
+      integer, intent(in) :: width, height, below
+      real(wp), intent(inout) :: front(height, *)
+      real(wp), intent(inout) :: right(width, *)   !! Its rows to the right of the diagonal
+      integer, intent(inout) :: exchange(width)
+      integer, intent(out) :: info
+      integer :: behind, c, n
+
+      do c = 1, width, few
+         n = min(few, width + 1 - c)
+         behind = c + n
+         call factor_columns(n, height + 1 - c, height, front(c, c), exchange(c:behind - 1), info)
+         if (info /= 0) return
+         exchange(c:behind - 1) = exchange(c:behind - 1) + c - 1
+         call dlaswp(c - 1, front, height, c, behind - 1, exchange, 1)
+         call eliminate_rows(width + 1 - behind, height, height, front(1, behind))
+         call eliminate_rows(below, width, width, right)
+      end do
+
+   contains
+
+      !> Take the columns from others
+      pure subroutine eliminate_rows(m, rows, ld, other)
+         integer, intent(in) :: m, rows, ld         !! Others, their rows, distance of two of them
+         real(wp), intent(inout) :: other(ld, *)    !! The others
+
+         if (m < 1) return
+         call dlaswp(m, other, ld, c, behind - 1, exchange, 1)
+         call dtrsm("L", "L", "N", "U", n, m, 1.0_wp, front(c, c), height, other(c, 1), ld)
+         if (rows < behind) return
+         call dgemm("N", "N", rows + 1 - behind, m, n, -1.0_wp, front(behind, c), height, &
+            & other(c, 1), ld, 1.0_wp, other(behind, 1), ld)
+      end subroutine eliminate_rows
+   end subroutine factor_pair
+
+   !> Factor a few columns
+   pure subroutine factor_columns(n, height, ld, a, exchange, info)
+      integer, intent(in) :: n, height, ld !! Columns, their rows, the distance of two of them
+      real(wp), intent(inout) :: a(ld, *)  !! The columns
+      integer, intent(out) :: exchange(n)  !! Exchanges of rows
+      integer, intent(out) :: info
+      real(wp) :: row(n)
+      integer :: j, k, p
+
+      do k = 1, n
+         p = k - 1 + maxloc(abs(a(k:3*((k + 2)/3), k)), dim=1)
+         exchange(k) = p
+         info = k
+         if (.not. abs(a(p, k)) > 0.0_wp) return
+         row = a(p, :n)
+         a(p, :n) = a(k, :n)
+         a(k, :n) = row
+         a(k + 1:height, k) = a(k + 1:height, k)/a(k, k)
+         do j = k + 1, n
+            a(k + 1:height, j) = a(k + 1:height, j) - a(k + 1:height, k)*a(k, j)
+         end do
+      end do
+      info = 0
+   end subroutine factor_columns
+
+   !> Product of the rows below the diagonal that elimination takes from other panels, with its
+   !> sign; of a symmetric panel the lower triangle
+   pure subroutine multiply_front(symmetric, width, below, front, share)
+      logical, intent(in) :: symmetric
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: front(width + below, *)
+      real(wp), intent(inout) :: share(below, *)  !! The product: (below, below)
+      real(wp) :: factor(narrow)
+      integer :: c, height, k
+
+      height = width + below
+      if (.not. symmetric) then
+         call dgemm("N", "N", below, below, width, -1.0_wp, front(width + 1, 1), height, &
+            & front(1, width + 1), width, 0.0_wp, share, below)
+      else if (width > narrow) then
+         call dsyrk("L", "N", below, width, -1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
+            & below)
+      else
+         do k = 1, below
+            do c = 1, width
+               factor(c) = front(width + k, c)*front(c, c)
+            end do
+            share(k:below, k) = 0.0_wp
+            call subtract_product(below + 1 - k, width, height, front(width + k, 1), factor, &
+               & share(k, k))
+         end do
+      end if
+   end subroutine multiply_front
+
+   !> Solve with L, and take the solution from the rows below
+   pure subroutine substitute_down(symmetric, width, below, front, exchange, x, rest)
+      logical, intent(in) :: symmetric
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: front(width + below, *)
+      integer, intent(in) :: exchange(width)
+      real(wp), intent(inout) :: x(width)      !! Right-hand side in, solution out
+      real(wp), intent(inout) :: rest(below)   !! Zeros in, what the rows below get out
+      integer :: c, height
+
+      height = width + below
+      if (.not. symmetric) call dlaswp(1, x, width, 1, width, exchange, 1)
+      if (width > merge(narrow, few, symmetric)) then
+         call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, x, 1)
+      else
+         do c = 1, width, 3
+            x(c + 1) = x(c + 1) - front(c + 1, c)*x(c)
+            x(c + 2) = x(c + 2) - front(c + 2, c)*x(c) - front(c + 2, c + 1)*x(c + 1)
+            if (c + 2 < width) call subtract_product(width - c - 2, 3, height, front(c + 3, c), &
+               & x(c), x(c + 3))
+         end do
+      end if
+      if (below > 0) call subtract_product(below, width, height, front(width + 1, 1), x, rest)
+   end subroutine substitute_down
+
+   !> Solve with the transpose of L, or with U
+   pure subroutine substitute_up(symmetric, width, below, front, known, x)
+      logical, intent(in) :: symmetric
+      integer, intent(in) :: width, below
+      real(wp), intent(in) :: front(width + below, *)
+      real(wp), intent(in) :: known(below)      !! Solution of the rows below
+      real(wp), intent(inout) :: x(width)       !! Right-hand side in, solution out
+      integer :: c, height
+
+      height = width + below
+      if (.not. symmetric) then
+         if (below > 0) call subtract_product(width, below, width, front(1, width + 1), known, x)
+         do c = width, 1, -1
+            x(c) = x(c)/front(c, c)
+            x(:c - 1) = x(:c - 1) - front(:c - 1, c)*x(c)
+         end do
+      else if (width > narrow) then
+         if (below > 0) call dgemv("T", below, width, -1.0_wp, front(width + 1, 1), height, &
+            & known, 1, 1.0_wp, x, 1)
+         call dtrsv("L", "T", "N", width, front, height, x, 1)
+      else
+         do c = 1, width
+            x(c) = x(c)/front(c, c)
+         end do
+         do c = width - 2, 1, -3
+            if (below > 0) call subtract_rows(below, height, front(width + 1, c), known, x(c))
+            if (c + 2 < width) call subtract_rows(width - c - 2, height, front(c + 3, c), &
+               & x(c + 3), x(c))
+            x(c + 1) = x(c + 1) - front(c + 2, c + 1)*x(c + 2)
+            x(c) = x(c) - front(c + 1, c)*x(c + 1) - front(c + 2, c)*x(c + 2)
+         end do
+      end if
+   end subroutine substitute_up
+
+   !> x - a b, of few columns inline
+   pure subroutine subtract_product(n, m, ld, a, b, x)
+      integer, intent(in) :: n, m, ld         !! Rows, columns, and the distance of two columns
+      real(wp), intent(in) :: a(ld, *)        !! Matrix: (n, m)
+      real(wp), intent(in) :: b(m)            !! Vector
+      real(wp), intent(inout) :: x(n)         !! Vector that the product is taken from
+      integer :: c, i
+
+      if (m > narrow) then
+         call dgemv("N", n, m, -1.0_wp, a, ld, b, 1, 1.0_wp, x, 1)
+         return
+      end if
+      do c = 1, m - 2, 3
+         do i = 1, n
+            x(i) = x(i) - (a(i, c)*b(c) + a(i, c + 1)*b(c + 1) + a(i, c + 2)*b(c + 2))
+         end do
+      end do
+      do c = m - modulo(m, 3) + 1, m
+         do i = 1, n
+            x(i) = x(i) - a(i, c)*b(c)
+         end do
+      end do
+   end subroutine subtract_product
+
+   !> x - a' b of three columns
+   pure subroutine subtract_rows(n, ld, a, b, x)
+      integer, intent(in) :: n, ld
+      real(wp), intent(in) :: a(ld, *)        !! Matrix: (n, 3)
+      real(wp), intent(in) :: b(n)
+      real(wp), intent(inout) :: x(3)
+      integer :: i
+
+      do i = 1, n
+         x(1) = x(1) - a(i, 1)*b(i)
+         x(2) = x(2) - a(i, 2)*b(i)
+         x(3) = x(3) - a(i, 3)*b(i)
+      end do
+   end subroutine subtract_rows
+end module dda_front
