@@ -90,7 +90,7 @@ contains
    pure subroutine list_neighbours(pair, start, neighbour)
       integer, intent(in) :: pair(:, :)
       integer, intent(out) :: start(:)  !! First of each block, and one beyond: (n_block + 1)
-      integer, allocatable, intent(out) :: neighbour(:)
+      integer, allocatable, intent(out) :: neighbour(:)  !! The neighbours, block by block
       integer, allocatable :: side(:)
       integer :: b, first, flat(2*size(pair, 2)), i, n, seen(size(start))
 
@@ -114,7 +114,7 @@ contains
 
    !> Blocks that have one neighbour or none when those before them are gone: all of a tree
    pure subroutine peel_leaves(start, neighbour, block, n)
-      integer, intent(in) :: start(:), neighbour(:)
+      integer, intent(in) :: start(:), neighbour(:)  !! Lists of all blocks
       integer, intent(out) :: block(:)  !! The blocks in order
       integer, intent(out) :: n         !! How many there are
       integer :: b, head, i, left(size(block))

@@ -59,8 +59,8 @@ contains
    !> Elimination tree and numbers of rows (Liu 1990): a row has its couplings, and from the column
    !> of each the way to the root of the tree
    pure subroutine grow_tree(first, column, parent, below)
-      integer, intent(in) :: first(:), column(:)
-      integer, intent(out) :: parent(:)
+      integer, intent(in) :: first(:), column(:)  !! Couplings by rows
+      integer, intent(out) :: parent(:)  !! Column that each goes into: (n_block)
       integer, intent(out) :: below(:)  !! Rows below the diagonal of each column: (n_block)
       integer :: g, i, j, seen(size(parent))
 
@@ -83,9 +83,9 @@ contains
    !> Group columns: a panel takes the one before it in where that saves work
    pure subroutine choose_panels(n_dof, parent, below, first, panel)
       integer, intent(in) :: n_dof  !! Unknowns of one block
-      integer, intent(in) :: parent(:), below(:)
-      integer, allocatable, intent(out) :: first(:)
-      integer, intent(out) :: panel(:)
+      integer, intent(in) :: parent(:), below(:)  !! Rows of each column
+      integer, allocatable, intent(out) :: first(:)  !! First column of each panel
+      integer, intent(out) :: panel(:)  !! Panel of each column: (n_block)
       integer :: head(size(panel) + 1), j, m, n, next
       real(wp) :: cost(size(panel)), joint
 
@@ -129,7 +129,7 @@ contains
 
    !> Rows of each panel: those of its last column
    pure subroutine list_rows(first, column, parent, plan)
-      integer, intent(in) :: first(:), column(:), parent(:)
+      integer, intent(in) :: first(:), column(:), parent(:)  !! Couplings by rows, tree
       type(elimination_plan_t), intent(inout) :: plan
       integer :: g, i, j, next(size(plan%first)), p, seen(size(parent))
 

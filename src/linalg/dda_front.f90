@@ -47,8 +47,8 @@ contains
 
    !> Factor a narrow panel into L D L', column by column
    pure subroutine factor_narrow(width, height, front, info)
-      integer, intent(in) :: width, height
-      real(wp), intent(inout) :: front(height, *)
+      integer, intent(in) :: width, height  !! Columns and rows of the panel
+      real(wp), intent(inout) :: front(height, *)  !! The panel
       integer, intent(out) :: info
       real(wp) :: factor(narrow)
       integer :: c, k
@@ -69,8 +69,8 @@ contains
    !> unknowns of a block alone: pivots among blocks of which one is held far more stiffly than the
    !> other would cost the soft one its digits
    pure subroutine factor_pair(width, height, below, front, right, exchange, info)
-      integer, intent(in) :: width, height, below
-      real(wp), intent(inout) :: front(height, *)
+      integer, intent(in) :: width, height, below  !! Columns, rows, rows below
+      real(wp), intent(inout) :: front(height, *)  !! The panel
       real(wp), intent(inout) :: right(width, *)   !! Its rows to the right of the diagonal
       integer, intent(inout) :: exchange(width)
       integer, intent(out) :: info
@@ -244,8 +244,8 @@ contains
    pure subroutine subtract_rows(n, ld, a, b, x)
       integer, intent(in) :: n, ld
       real(wp), intent(in) :: a(ld, *)        !! Matrix: (n, 3)
-      real(wp), intent(in) :: b(n)
-      real(wp), intent(inout) :: x(3)
+      real(wp), intent(in) :: b(n)  !! Vector
+      real(wp), intent(inout) :: x(3)  !! Vector that the products are taken from
       integer :: i
 
       do i = 1, n
