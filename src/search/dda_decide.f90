@@ -27,6 +27,7 @@ contains
 
    !> Decide a static structure, or run a dynamic one
    module procedure decide
+      type(decision_t) :: blank
       logical :: bare, shared
 
       bare = .false.
@@ -36,7 +37,7 @@ contains
          allocate (decision%limit, source=stands)
          if (shared) return
          ! how joints slide that the elastic sharing overloads is known of the path alone
-         decision = decision_t()
+         decision = blank
          if (present(album)) album = blank_album(album)
       end if
       if (scene%settings%dynamic) then
