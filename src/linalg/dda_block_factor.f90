@@ -4,7 +4,7 @@
 !>
 !> Only blocks that are not zero are stored, in panels of columns with the same rows, which are
 !> eliminated one after the other. The chain of an arch is eliminated from both ends, so that its
-!> mirror images feel the same rounding and the processor has two panels to work on. A panel whose
+!> mirror images have the same rounding and the processor has two panels to work on. A panel whose
 !> numbers and whose predecessors have not changed keeps its factor. Rows change places, where a
 !> matrix is not symmetric, within three unknowns of a block alone.
 module dda_block_factor
@@ -21,10 +21,10 @@ module dda_block_factor
 
    !> Factor of a block matrix
    type :: block_factor_t
-      type(elimination_plan_t) :: plan  !! Which numbers there are
+      type(elimination_plan_t) :: plan  !! Panels and their places
       real(wp), allocatable :: number(:)    !! The numbers
       integer, allocatable :: exchange(:)   !! Exchanges of rows, where the matrix is not symmetric
-      !> Whether the factor can be used: the matrix was positive definite, or if it is not
+      !> True if the factor can be used: the matrix was positive definite, or if it is not
       !> symmetric, no pivot was zero
       logical :: usable = .false.
    end type block_factor_t

@@ -14,12 +14,12 @@ module dda_block_matrix
    type :: block_matrix_t
       integer :: n_dof = 0                !! Unknowns of one block
       integer, allocatable :: place(:)    !! Place of each block in the elimination: (n_block)
-      logical :: has_chains = .true.      !! Whether the couplings join the blocks to chains
+      logical :: has_chains = .true.      !! True if the couplings join the blocks to chains
       integer, allocatable :: pair(:, :)  !! Coupled blocks, that placed later first: (2, n_entry)
       real(wp), allocatable :: diagonal(:, :, :)  !! Diagonal blocks: (n_dof, n_dof, n_block)
       !> Blocks below the diagonal, rows of pair(1), columns of pair(2): (n_dof, n_dof, n_entry)
       real(wp), allocatable :: coupling(:, :, :)
-      logical :: symmetric = .true.       !! Whether the blocks above the diagonal are transposes
+      logical :: symmetric = .true.       !! True if the blocks above the diagonal are transposes
       !> Blocks above the diagonal, rows of pair(2), columns of pair(1), where they are no
       !> transposes: (n_dof, n_dof, n_entry), otherwise without entries
       real(wp), allocatable :: upper(:, :, :)
@@ -27,7 +27,7 @@ module dda_block_matrix
 
    interface
       !> Order of a symmetric matrix with little fill. The function's status is left out: where
-      !> memory runs out, the order stays as it is
+      !> memory runs out, the order is unchanged
       pure subroutine amd_order(n, start, column, order, control, info) bind(c)
          import :: c_int, c_ptr
          integer(c_int), intent(in), value :: n         !! Rows
@@ -49,7 +49,7 @@ contains
       integer, intent(in) :: n_dof       !! Unknowns of one block
       integer, intent(in) :: n_block     !! Number of blocks
       integer, intent(in) :: pair(:, :)  !! Coupled blocks, both between 1 and n_block: (2, n_entry)
-      !> Whether the numbers will be symmetric; they are if it is not given
+      !> True if the numbers will be symmetric; the default
       logical, intent(in), optional :: symmetric
       integer :: block(n_block), i
 
@@ -73,7 +73,7 @@ contains
    pure subroutine elimination_order(n_block, pair, block, has_chains)
       integer, intent(in) :: n_block, pair(:, :)
       integer, intent(out) :: block(:)     !! The blocks: (n_block)
-      logical, intent(out) :: has_chains   !! Whether the graph consists of chains
+      logical, intent(out) :: has_chains   !! True if the graph consists of chains
       integer, allocatable :: neighbour(:)
       integer :: i, n, start(n_block + 1)
 
@@ -116,7 +116,7 @@ contains
    pure subroutine peel_leaves(start, neighbour, block, n)
       integer, intent(in) :: start(:), neighbour(:)  !! Lists of all blocks
       integer, intent(out) :: block(:)  !! The blocks in order
-      integer, intent(out) :: n         !! How many there are
+      integer, intent(out) :: n         !! Number of them
       integer :: b, head, i, left(size(block))
 
       left = start(2:) - start(:size(block))

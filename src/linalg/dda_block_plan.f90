@@ -15,7 +15,7 @@ module dda_block_plan
    !> Panels; a place is one in the order of elimination
    type :: elimination_plan_t
       integer :: n_dof = 0              !! Unknowns of one block
-      logical :: symmetric = .true.     !! Whether the matrix is symmetric
+      logical :: symmetric = .true.     !! True if the matrix is symmetric
       integer, allocatable :: block(:)  !! Block at each place: (n_block)
       integer, allocatable :: panel(:)  !! Panel of each place: (n_block)
       integer, allocatable :: below(:)  !! Rows below the diagonal of each column: (n_block)
@@ -111,8 +111,8 @@ contains
       end do
    end subroutine choose_panels
 
-   !> What a panel costs, in products of two blocks: its own, those that go to other panels and the
-   !> places of these, what its numbers cost in substitutions, and what any panel costs. Measured on
+   !> Cost of a panel, in products of two blocks: its own, those that go to other panels and the
+   !> places of these, its numbers in substitutions, and a constant. Measured on
    !> walls of 36 to 10000 blocks: times hardly change where these figures are halved or doubled
    pure real(wp) function work(n_column, n_row)
       integer, intent(in) :: n_column  !! Its columns
@@ -195,7 +195,7 @@ contains
       integer, intent(in) :: t       !! The panel
       integer, intent(in) :: row(:)  !! The rows, of which it has all
       integer, intent(out) :: at(:)  !! Their places from zero on
-      integer, intent(out) :: n      !! How many are among its columns
+      integer, intent(out) :: n      !! Number of those among its columns
       integer :: i, k
 
       n = 0

@@ -22,7 +22,7 @@ contains
 
    !> Factor a panel
    pure subroutine factor_front(symmetric, width, below, front, exchange, info)
-      logical, intent(in) :: symmetric                     !! Whether the matrix is
+      logical, intent(in) :: symmetric                     !! True if the matrix is
       integer, intent(in) :: width                         !! Columns of the panel
       integer, intent(in) :: below                         !! Rows below its diagonal
       real(wp), intent(inout) :: front(width + below, *)   !! The panel

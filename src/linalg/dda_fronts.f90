@@ -19,7 +19,7 @@ contains
    pure subroutine assemble_fronts(plan, matrix, anew, number)
       type(elimination_plan_t), intent(in) :: plan
       type(block_matrix_t), intent(in) :: matrix
-      logical, intent(in) :: anew(:)           !! Panels to be made anew: (n_panel)
+      logical, intent(in) :: anew(:)           !! Panels to be factored: (n_panel)
       real(wp), intent(inout) :: number(*)     !! Numbers of the panels
       integer :: b, c, e, height, k, nd, p, r, width
 
@@ -70,7 +70,7 @@ contains
       logical, intent(in) :: anew(:)
       real(wp), intent(inout) :: number(*)
       integer, intent(inout) :: exchange(*)  !! Exchanges of rows in the panels: (n_dof*n_block)
-      !> Whether all pivots of a symmetric matrix are positive, those of another one not zero
+      !> True if all pivots of a symmetric matrix are positive, those of another one not zero
       logical, intent(out) :: usable
       real(wp), allocatable :: share(:)
       integer :: below, info, p, width
@@ -128,7 +128,7 @@ contains
    pure subroutine add_share(nd, row, column, lower, below, share, height, panel)
       integer, intent(in) :: nd, below, height
       integer, intent(in) :: row(:), column(:)  !! Places of the blocks in the panel, from zero on
-      logical, intent(in) :: lower              !! Whether those above the diagonal are left out
+      logical, intent(in) :: lower              !! True if those above the diagonal are omitted
       real(wp), intent(in) :: share(below, *)
       real(wp), intent(inout) :: panel(height, *)    !! The panel
       integer :: c, first, i, j, last, length, r

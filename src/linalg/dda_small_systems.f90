@@ -13,7 +13,7 @@ contains
    pure subroutine eliminate_full(a, exchange, regular)
       real(wp), intent(inout), contiguous :: a(:, :)  !! Matrix in, factors out: (n, n)
       integer, intent(out), contiguous :: exchange(:) !! Row that each changed places with: (n)
-      logical, intent(out) :: regular                 !! Whether no pivot is 0
+      logical, intent(out) :: regular                 !! True if no pivot is 0
       integer :: info
 
       call dgetrf(size(a, 1), size(a, 1), a, max(1, size(a, 1)), exchange, info)
