@@ -13,10 +13,9 @@
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : add_springs, joint_stiffness
-   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix
+   use dda_coulomb_law, only : add_springs, damped_mass, joint_stiffness
    use dda_joint_graph, only : joint_motion
-   use dda_joint_places, only : lay_out_joints
+   use dda_joint_matrix, only : factor_joints, joint_matrix_t, lay_out_joints
    use dda_kinds, only : small, wp
    use dda_small_systems, only : eliminate_full, substitute_full
    implicit none
@@ -37,7 +36,7 @@ module dda_coulomb_equations
    !> A factor, and what has changed since
    type :: coulomb_equations_t
       !> Matrix and factor
-      type(coulomb_matrix_t) :: base
+      type(joint_matrix_t) :: base
       !> Whether the equations can be solved
       logical :: usable = .false.
       !> Pivots that a search for faces may take, and factorisations of the matrix altogether
@@ -95,8 +94,8 @@ contains
       integer :: j, n_joint
 
       n_joint = size(joints%shear_role)
-      call lay_out_joints(joints%graph, .false., equations%base%matrix, equations%base%factor, &
-         & equations%base%entry)
+      call lay_out_joints(joints%graph%block, 3, joints%graph%n_block, .false., &
+         & equations%base%matrix, equations%base%factor, equations%base%entry)
       equations%most_answers = max(least_answers, min(max_answer, &
          & most_numbers/(3*max(1, joints%graph%n_block))))
       allocate (equations%base_face(3, n_joint), source=0_small)
@@ -140,20 +139,19 @@ contains
    pure subroutine factor_faces(equations, joints)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp) :: stiffness(3, 3)
+      real(wp) :: stiffness(3, 3, size(equations%place))
       integer :: i, j
 
       equations%usable = equations%base%n_factorisation < equations%most_factorisations
       if (.not. equations%usable) return
-      call begin_matrix(equations%base, joints, equations%damping)
       do j = 1, size(equations%place)
-         stiffness = joint_stiffness(joints, j, equations%face(:, j))
+         stiffness(:, :, j) = joint_stiffness(joints, j, equations%face(:, j))
          do i = 1, 3
-            stiffness(i, i) = stiffness(i, i) + equations%viscosity/joints%graph%compliance(j)
+            stiffness(i, i, j) = stiffness(i, i, j) + equations%viscosity/joints%graph%compliance(j)
          end do
-         call add_stiffness(equations%base, joints, j, stiffness)
       end do
-      call factor_matrix(equations%base)
+      call factor_joints(damped_mass(joints, equations%damping), joints%graph%block, &
+         & joints%graph%row, stiffness, equations%base)
       equations%usable = equations%base%factor%usable
       equations%base_face = equations%face
       equations%place(equations%joint(:equations%n_change)) = 0_small

@@ -1,335 +1,306 @@
-!> Coulomb's law by an interior-point method: forces and motion under a sudden load
+!> Joint forces under Coulomb's law by an interior-point method
 !>
-!>    A f + load = damping*mass*v,   C f + gap + A'v = F_flow' z,   s = F f >= 0, z >= 0, s z = 0
+!>    A d = load + R f,   gap + R' d + C f = F_flow' z,   b = F f + bound >= 0,   z >= 0,   b z = 0
 !>
-!> The rows of F are N1, N2, friction*(N1 + N2) + T and friction*(N1 + N2) - T; those of F_flow are
-!> N1, N2, T and -T, for joints that slide do not open. With d = z/s the spring of a joint is the
-!> inverse of
+!> A is a multiple of the mass: that of a time step, or the damping of a sudden load. The rows of F
+!> give the distances of forces from their bounds: n1, n2, friction*(n1 + n2) + T and
+!> friction*(n1 + n2) - T. Those of F_flow are n1, n2, T and -T, for joints that slide do not open:
+!> the problem is not convex, and the search may end before a solution. With a dilatancy of 1 F_flow
+!> is F, and the problem convex.
 !>
-!>    K = C + F_flow' d F, a lower triangle: the normal springs know nothing of friction
-!>
-!> so that an iteration is one assembly and one factorisation, with a predictor and a corrector
-!> (Mehrotra 1992) and one length of step for all.
+!> With r = z/b a joint is a spring, the inverse of C + F_flow' r F, so that an iteration is one
+!> factorisation with a predictor and a corrector (Mehrotra 1992). Springs and steps are closed
+!> forms without differences of large numbers: elimination in the nearly singular 3x3 matrix, or
+!> distances as sums of forces, would lose all digits.
 module dda_coulomb_interior
    use dda_block_factor, only : substitute
-   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : imbalance
-   use dda_coulomb_matrix, only : add_stiffness, begin_matrix, coulomb_matrix_t, factor_matrix
-   use dda_joint_graph, only : joint_motion, open_joints, push_blocks
+   use dda_joint_matrix, only : add_row_forces, factor_joints, joint_matrix_t, row_openings
    use dda_kinds, only : small, wp
    implicit none
    private
 
-   public :: coulomb_interior_t, interior_motion, enough, sharp
+   public :: coulomb_iterate_t, coulomb_lack_t, coulomb_problem_t, absent, distances, find_lack
+   public :: improve, mean_product
 
-   !> Accepted and best residual of equations and work
-   real(wp), parameter :: enough = 1.0e-6_wp, sharp = 1.0e-10_wp
+   !> The problem
+   type :: coulomb_problem_t
+      !> Matrix of each block without joints: (n_dof, n_dof, n_block)
+      real(wp), allocatable :: base(:, :, :)
+      real(wp), allocatable :: load(:, :)        !! Loads: (n_dof, n_block)
+      integer, allocatable :: block(:, :)        !! Blocks of each joint, 0 if fixed: (2, n_joint)
+      real(wp), allocatable :: row(:, :, :, :)   !! Rows of the joints: (n_dof, 3, 2, n_joint)
+      real(wp), allocatable :: gap(:, :)         !! Openings without motion and forces: (3, n_joint)
+      !> Compliance of each force, `absent` for a force that a joint does not have: (3, n_joint)
+      real(wp), allocatable :: soft(:, :)
+      real(wp), allocatable :: shift(:, :)  !! Tension that corners carry, and a zero: (3, n_joint)
+      real(wp), allocatable :: friction(:)       !! Coefficients of friction: (n_joint)
+      real(wp), allocatable :: limit(:)          !! Shear force without normal force: (n_joint)
+      logical(small), allocatable :: bounded(:, :)  !! Bounds that exist: (4, n_joint)
+      !> Opening that counts as much as a unit of force: (3, n_joint)
+      real(wp), allocatable :: unit(:, :)
+      real(wp) :: dilatancy = 0.0_wp  !! Opening by slip, over friction times slip: 0 or 1
+      integer :: max_corrections = 0  !! Most corrections of a step until forces balance
+   end type coulomb_problem_t
 
    !> An iterate, or a step from it
-   type :: coulomb_interior_t
-      real(wp), allocatable :: motion(:, :)  !! Motion: (3, n_block)
+   type :: coulomb_iterate_t
+      real(wp), allocatable :: motion(:, :)  !! Motion: (n_dof, n_block)
       real(wp), allocatable :: force(:, :)   !! N1, N2, T: (3, n_joint)
-      real(wp), allocatable :: slack(:, :)   !! Distance of the forces from each face: (4, n_joint)
-      real(wp), allocatable :: flow(:, :)    !! Opening or slip at each face: (4, n_joint)
-   end type coulomb_interior_t
+      real(wp), allocatable :: slack(:, :)   !! Distance of the forces from each bound: (4, n_joint)
+      real(wp), allocatable :: flow(:, :)    !! Opening or slip at each bound: (4, n_joint)
+   end type coulomb_iterate_t
 
-   !> What an iterate leaves of the equations
-   type :: rest_t
-      real(wp), allocatable :: balance(:, :)  !! Of the balance of the blocks: (3, n_block)
-      real(wp), allocatable :: opening(:, :)  !! Of the opening of the joints: (3, n_joint)
-      real(wp) :: slack = 0.0_wp              !! The most of the slacks
-   end type rest_t
+   !> Residuals of the equations at an iterate
+   type :: coulomb_lack_t
+      real(wp), allocatable :: balance(:, :)   !! Of the balance of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: opening(:, :)   !! Of the openings: (3, n_joint)
+      real(wp), allocatable :: distance(:, :)  !! Of the distances from bounds: (4, n_joint)
+   end type coulomb_lack_t
+
+   !> One joint at its bounds
+   type :: joint_yield_t
+      real(wp) :: soft      !! Compliance of the shear force
+      real(wp) :: friction  !! Coefficient of friction
+      real(wp) :: opening   !! Opening per slip: dilatancy times friction
+      real(wp) :: ratio(4)  !! Flow over distance at each bound
+      real(wp) :: own(2)    !! Stiffness of the normal forces without friction
+      real(wp) :: wide      !! Stiffness of the shear bound by opening with slip
+      real(wp) :: both      !! Compliance of shear at both bounds, times compliance
+      real(wp) :: det       !! Determinant of normal and shear yield
+   end type joint_yield_t
+
+   !> Compliance of a force that a joint does not have
+   real(wp), parameter :: absent = sqrt(huge(1.0_wp))
+   !> Imbalance of a step that is not worth a correction, in units of force
+   real(wp), parameter :: rounding = 1.0e-15_wp
 
 contains
 
-   !> Motion under a load from rest without forces; false in settled if it was not found
-   pure subroutine interior_motion(joints, matrix, load, damping, tolerance, x, settled)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(coulomb_matrix_t), intent(inout) :: matrix
-      !> The load: (3, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Multiple of the mass
-      real(wp), intent(in) :: damping
-      !> Enough, sharp or between: the faces of joints that carry next to nothing depend on it
-      real(wp), intent(in) :: tolerance
-      !> The iterate; one that is there goes on
-      type(coulomb_interior_t), intent(inout) :: x
-      !> Whether it was found
-      logical, intent(out) :: settled
-      integer, parameter :: max_iteration = 150, patience = 15, few = 3
-      real(wp), parameter :: shortfall = 0.995_wp, nothing = 1.0e-30_wp
-      type(coulomb_interior_t) :: step
-      type(rest_t) :: rest
-      real(wp) :: best, gap, length, mean, merit
-      integer :: i, n_face, waited
-      logical(small) :: face(4, size(joints%shear_role))
+   !> Distances of forces from their bounds
+   pure function distances(q, force) result(slack)
+      type(coulomb_problem_t), intent(in) :: q
+      real(wp), intent(in) :: force(:, :)         !! The forces: (3, n_joint)
+      real(wp) :: slack(4, size(q%friction))      !! The distances: (4, n_joint)
 
-      call list_faces(joints, face)
-      n_face = count(face)
-      if (.not. allocated(x%motion)) call begin(joints, load, face, x)
-      step = x
-      best = huge(1.0_wp)
-      waited = 0
-      do i = 1, max_iteration
-         call find_rest(joints, load, damping, face, x, rest)
-         mean = sum(x%slack*x%flow, face)/real(max(1, n_face), wp)
-         gap = mean*real(n_face, wp)/max(abs(sum(load*x%motion)), nothing)
-         merit = max(gap, max(maxval(abs(rest%balance)), rest%slack)/maxval(abs(load)), &
-            & maxval(abs(rest%opening))/max(maxval(abs(x%motion)), nothing))
-         waited = merge(0, waited + 1, merit < 0.9_wp*best)
-         best = min(best, merit)
-         if (merit < tolerance .or. waited >= merge(few, patience, best < enough) &
-            & .or. .not. merit <= huge(1.0_wp)) exit
-         call factor_springs(joints, matrix, damping, face, x)
-         if (.not. matrix%factor%usable) exit
-         step%flow = -x%slack*x%flow
-         call find_step(joints, matrix, damping, face, x, rest, step)
-         length = longest(face, x, step, 1.0_wp)
-         step%flow = -x%slack*x%flow - step%slack*step%flow + mean*min(1.0_wp, &
-            & (sum((x%slack + length*step%slack)*(x%flow + length*step%flow), face) &
-            & /(real(max(1, n_face), wp)*max(mean, tiny(mean))))**3)
-         call find_step(joints, matrix, damping, face, x, rest, step)
-         length = longest(face, x, step, min(max(shortfall, 1.0_wp - gap), 1.0_wp - 1.0e-6_wp))
-         x%motion = x%motion + length*step%motion
-         x%force = x%force + length*step%force
-         x%slack = x%slack + length*step%slack
-         x%flow = x%flow + length*step%flow
-      end do
-      settled = merit < enough
-   end subroutine interior_motion
+      slack(:2, :) = force(:2, :) + q%shift(:2, :)
+      slack(4, :) = q%limit + q%friction*(slack(1, :) + slack(2, :))
+      slack(3, :) = slack(4, :) + force(3, :)
+      slack(4, :) = slack(4, :) - force(3, :)
+   end function distances
 
-   !> Which faces the forces of each joint have
-   pure subroutine list_faces(joints, face)
-      type(coulomb_joints_t), intent(in) :: joints
-      logical(small), intent(out) :: face(:, :)  !! Whether there is a face: (4, n_joint)
+   !> Residuals of the equations at an iterate
+   pure subroutine find_lack(q, x, lack)
+      type(coulomb_problem_t), intent(in) :: q
+      type(coulomb_iterate_t), intent(in) :: x
+      type(coulomb_lack_t), intent(inout) :: lack
+      integer :: n_joint
 
-      face(:2, :) = joints%end_role == end_role%contact
-      face(3, :) = joints%shear_role == shear_role%frictional
-      face(4, :) = face(3, :)
-   end subroutine list_faces
+      n_joint = size(q%friction)
+      if (.not. allocated(lack%balance)) allocate (lack%balance, mold=q%load)
+      if (.not. allocated(lack%opening)) allocate (lack%opening(3, n_joint))
+      call find_balance(q, q%load, x%motion, x%force, lack%balance)
+      call row_openings(size(q%load, 1), n_joint, q%block, q%row, x%motion, lack%opening)
+      lack%opening = -lack%opening - q%gap - q%soft*x%force
+      lack%opening(1, :) = lack%opening(1, :) + x%flow(1, :) &
+         & + q%dilatancy*q%friction*(x%flow(3, :) + x%flow(4, :))
+      lack%opening(2, :) = lack%opening(2, :) + x%flow(2, :) &
+         & + q%dilatancy*q%friction*(x%flow(3, :) + x%flow(4, :))
+      lack%opening(3, :) = lack%opening(3, :) + x%flow(3, :) - x%flow(4, :)
+      where (.not. q%soft < absent) lack%opening = 0.0_wp
+      lack%distance = merge(distances(q, x%force) - x%slack, 0.0_wp, q%bounded)
+   end subroutine find_lack
 
-   !> An iterate in the middle of the cones
-   pure subroutine begin(joints, load, face, x)
-      type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: load(:, :)
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(out) :: x
-      real(wp) :: push
-      integer :: j, n_joint
+   !> Load and joint forces that motion does not balance
+   pure subroutine find_balance(q, load, motion, force, balance)
+      type(coulomb_problem_t), intent(in) :: q
+      real(wp), intent(in) :: load(:, :)      !! The load: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)    !! Motion: (n_dof, n_block)
+      real(wp), intent(in) :: force(:, :)     !! Joint forces: (3, n_joint)
+      real(wp), intent(out) :: balance(:, :)  !! The rest: (n_dof, n_block)
+      integer :: b, c
 
-      n_joint = size(face, 2)
-      push = max(1.0_wp, sqrt(sum(abs(load))))
-      allocate (x%motion(size(load, 1), size(load, 2)), source=0.0_wp)
-      allocate (x%force(3, n_joint), source=0.0_wp)
-      allocate (x%slack(4, n_joint), x%flow(4, n_joint), source=1.0_wp)
-      where (face(:2, :)) x%force(:2, :) = push
-      do j = 1, n_joint
-         x%slack(:, j) = slack_of(joints, x%force(:, j), j)
-      end do
-      where (face)
-         x%slack = max(x%slack, 1.0e-3_wp*push)
-      elsewhere
-         x%slack = 1.0_wp
-         x%flow = 0.0_wp
-      end where
-   end subroutine begin
-
-   !> Distance of the forces of a joint from its faces
-   pure function slack_of(joints, force, j) result(slack)
-      type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: force(3)  !! N1, N2, T
-      integer, intent(in) :: j          !! Number of the joint
-      real(wp) :: slack(4), bound
-
-      bound = joints%graph%friction(j)*(force(1) + force(2))
-      slack = [force(:2), bound + force(3), bound - force(3)]
-   end function slack_of
-
-   !> What an iterate leaves of the equations
-   pure subroutine find_rest(joints, load, damping, face, x, rest)
-      type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: load(:, :), damping
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      type(rest_t), intent(inout) :: rest
-      integer :: j, n_joint
-
-      n_joint = size(face, 2)
-      if (.not. allocated(rest%balance)) &
-         & allocate (rest%balance(size(load, 1), size(load, 2)), rest%opening(3, n_joint))
-      call imbalance(joints, load - damping*joints%graph%mass*x%motion, x%force, rest%balance)
-      call joint_motion(joints%graph, x%motion, rest%opening)
-      do j = 1, n_joint
-         rest%opening(:, j) = -rest%opening(:, j) - joints%graph%compliance(j)*x%force(:, j)
-      end do
-      if (allocated(joints%graph%gap)) &
-         & rest%opening(:2, :) = rest%opening(:2, :) - joints%graph%gap
-      rest%opening(:2, :) = rest%opening(:2, :) + x%flow(:2, :)
-      rest%opening(3, :) = rest%opening(3, :) + x%flow(3, :) - x%flow(4, :)
-      where (joints%end_role == end_role%absent) rest%opening(:2, :) = 0.0_wp
-      where (joints%shear_role == shear_role%absent) rest%opening(3, :) = 0.0_wp
-      rest%slack = 0.0_wp
-      do j = 1, n_joint
-         rest%slack = max(rest%slack, maxval(abs(lack_of(joints, face, x, j))))
-      end do
-   end subroutine find_rest
-
-   !> What an iterate leaves of the slacks of a joint
-   pure function lack_of(joints, face, x, j) result(lack)
-      type(coulomb_joints_t), intent(in) :: joints
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      integer, intent(in) :: j  !! Number of the joint
-      real(wp) :: lack(4)       !! Distance of its forces from each face less the slack: (4)
-
-      lack = merge(slack_of(joints, x%force(:, j), j) - x%slack(:, j), 0.0_wp, face(:, j))
-   end function lack_of
-
-   !> Assemble the springs of an iterate and factor their equations
-   pure subroutine factor_springs(joints, matrix, damping, face, x)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(coulomb_matrix_t), intent(inout) :: matrix
-      real(wp), intent(in) :: damping
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      real(wp) :: ratio(4), spring(3, 3)
-      integer :: i, j
-
-      call begin_matrix(matrix, joints, damping)
-      do j = 1, size(face, 2)
-         spring = 0.0_wp
-         ratio = ratio_of(x, face, j)
-         do i = 1, 2
-            if (joints%end_role(i, j) == end_role%absent) cycle
-            spring(i, i) = 1.0_wp/(joints%graph%compliance(j) + ratio(i))
+      balance = load
+      call add_row_forces(size(load, 1), size(force, 2), q%block, q%row, force, balance)
+      do b = 1, size(load, 2)
+         do c = 1, size(load, 1)
+            balance(:, b) = balance(:, b) - q%base(:, c, b)*motion(c, b)
          end do
-         if (joints%shear_role(j) /= shear_role%absent) then
-            spring(3, 3) = 1.0_wp/(joints%graph%compliance(j) + ratio(3) + ratio(4))
-            do i = 1, 2
-               spring(3, i) = -joints%graph%friction(j)*(ratio(3) - ratio(4))*spring(i, i) &
-                  & *spring(3, 3)
-            end do
-         end if
-         call add_stiffness(matrix, joints, j, spring)
       end do
-      call factor_matrix(matrix)
-   end subroutine factor_springs
+   end subroutine find_balance
 
-   !> The step that brings what is left to nothing, corrected until forces balance
-   pure subroutine find_step(joints, matrix, damping, face, x, rest, step)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(coulomb_matrix_t), intent(in) :: matrix
-      real(wp), intent(in) :: damping
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      type(rest_t), intent(in) :: rest
-      !> The step; its flow is what it is to change of the products of slack and flow before
-      type(coulomb_interior_t), intent(inout) :: step
-      integer, parameter :: max_correction = 3
-      real(wp), parameter :: rounding = 1.0e-15_wp
-      real(wp) :: drive(3), force(3), last, more(4), motion(3, size(step%motion, 2)), opening(3)
-      integer :: j, turn
+   !> One iteration: a predictor, and a corrector towards equal products of distance and flow
+   pure subroutine improve(q, lack, share, matrix, x, length)
+      type(coulomb_problem_t), intent(in) :: q
+      type(coulomb_lack_t), intent(in) :: lack        !! Residuals of the iterate
+      real(wp), intent(in) :: share                   !! Step over the distance to the first bound
+      type(joint_matrix_t), intent(inout) :: matrix   !! Its factor is made anew
+      !> The iterate; unchanged where the factor is not usable
+      type(coulomb_iterate_t), intent(inout) :: x
+      real(wp), intent(out) :: length                 !! Step over the full one
+      type(coulomb_iterate_t) :: step
+      type(joint_yield_t) :: yield(size(q%friction))
+      real(wp) :: aim, mean
+      integer :: k
 
+      length = 0.0_wp
+      do k = 1, size(yield)
+         yield(k) = yield_of(q, x, k)
+      end do
+      call factor_joints(q%base, q%block, q%row, spring_stiffness(yield), matrix)
+      if (.not. matrix%factor%usable) return
+      step = x
+      step%flow = -x%slack*x%flow
+      call find_step(q, yield, matrix, x, lack, step)
+      length = longest(q, x, step, 1.0_wp)
+      mean = mean_product(q, x%slack, x%flow)
+      aim = mean*min(1.0_wp, mean_product(q, x%slack + length*step%slack, &
+         & x%flow + length*step%flow)/max(mean, tiny(mean)))**3
+      step%flow = -x%slack*x%flow - length*step%slack*step%flow
+      do k = 1, 4
+         step%flow(k, :) = step%flow(k, :) + aim*q%unit(min(k, 3), :)
+      end do
+      call find_step(q, yield, matrix, x, lack, step)
+      length = longest(q, x, step, share)
+      x%motion = x%motion + length*step%motion
+      x%force = x%force + length*step%force
+      x%slack = x%slack + length*step%slack
+      x%flow = x%flow + length*step%flow
+   end subroutine improve
+
+   !> The step that removes all residuals
+   pure subroutine find_step(q, yield, matrix, x, lack, step)
+      type(coulomb_problem_t), intent(in) :: q
+      type(joint_yield_t), intent(in) :: yield(:)  !! The joints at their bounds: (n_joint)
+      type(joint_matrix_t), intent(in) :: matrix
+      type(coulomb_iterate_t), intent(in) :: x
+      type(coulomb_lack_t), intent(in) :: lack
+      !> The step; its flow in is the change of the products of distance and flow
+      type(coulomb_iterate_t), intent(inout) :: step
+      real(wp) :: last, motion(size(x%motion, 1), size(x%motion, 2))
+      real(wp), dimension(3, size(x%force, 2)) :: force, opening
+      real(wp), dimension(4, size(x%force, 2)) :: slack, source
+      integer :: turn
+
+      source = merge((step%flow - x%flow*lack%distance)/x%slack, 0.0_wp, q%bounded)
       step%motion = 0.0_wp
       step%force = 0.0_wp
-      motion = rest%balance
-      do j = 1, size(face, 2)
-         step%slack(:, j) = lack_of(joints, face, x, j)
-         call answer_joint(joints, face, x, j, drive_of(face, x, rest, step, j), force, more)
-         call push_blocks(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), force, motion)
-      end do
-      last = huge(1.0_wp)
-      do turn = 0, max_correction
+      step%slack = lack%distance
+      motion = lack%balance
+      opening = lack%opening
+      last = huge(last)
+      call yield_joints(yield, opening, source, force, slack)
+      call add_row_forces(size(motion, 1), size(force, 2), q%block, q%row, force, motion)
+      do turn = 0, q%max_corrections
          call substitute(matrix%factor, motion)
          step%motion = step%motion + motion
-         do j = 1, size(face, 2)
-            drive = 0.0_wp
-            if (turn == 0) drive = drive_of(face, x, rest, step, j)
-            call open_joints(1, joints%graph%block(:, j), joints%graph%row(:, :, :, j), motion, &
-               & opening)
-            call answer_joint(joints, face, x, j, drive - opening, force, more)
-            step%force(:, j) = step%force(:, j) + force
-            step%slack(:, j) = step%slack(:, j) + more
-         end do
-         call imbalance(joints, rest%balance - damping*joints%graph%mass*step%motion, step%force, &
-            & motion)
+         call row_openings(size(motion, 1), size(force, 2), q%block, q%row, motion, force)
+         opening = opening - force
+         call yield_joints(yield, opening, source, force, slack)
+         step%force = step%force + force
+         step%slack = step%slack + merge(slack, 0.0_wp, q%bounded)
+         if (turn == q%max_corrections) exit
+         call find_balance(q, lack%balance, step%motion, step%force, motion)
          if (.not. maxval(abs(motion)) < 0.5_wp*last .or. maxval(abs(motion)) < rounding) exit
          last = maxval(abs(motion))
+         opening = 0.0_wp
+         source = 0.0_wp
       end do
-      step%flow = merge((step%flow - x%flow*step%slack)/x%slack, 0.0_wp, face)
+      step%flow = merge((step%flow - x%flow*step%slack)/x%slack, 0.0_wp, q%bounded)
    end subroutine find_step
 
-   !> What the springs of a joint are pressed together by, while the step has the slacks that lack
-   pure function drive_of(face, x, rest, step, j) result(drive)
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x, step
-      type(rest_t), intent(in) :: rest
+   !> One joint at its bounds
+   pure type(joint_yield_t) function yield_of(q, x, j) result(y)
+      type(coulomb_problem_t), intent(in) :: q
+      type(coulomb_iterate_t), intent(in) :: x
       integer, intent(in) :: j  !! Number of the joint
-      real(wp) :: drive(3)
-      real(wp) :: source(4)
 
-      source = merge(step%flow(:, j)/x%slack(:, j) - ratio_of(x, face, j)*step%slack(:, j), &
-         & 0.0_wp, face(:, j))
-      drive = rest%opening(:, j) + source(:3)
-      drive(3) = drive(3) - source(4)
-   end function drive_of
+      y%soft = q%soft(3, j)
+      y%friction = q%friction(j)
+      y%opening = q%dilatancy*q%friction(j)
+      y%ratio = merge(x%flow(:, j)/x%slack(:, j), 0.0_wp, q%bounded(:, j))
+      y%own = 1.0_wp/(q%soft(1:2, j) + y%ratio(1:2))
+      y%wide = y%opening*y%friction*sum(y%own)
+      y%both = y%soft*(y%ratio(3) + y%ratio(4)) + 4.0_wp*y%ratio(3)*y%ratio(4)
+      y%det = y%soft + y%ratio(3) + y%ratio(4) + y%wide*y%both
+   end function yield_of
 
-   !> Forces of the springs of a joint under a drive, and what they add to its slacks, as sums that
-   !> cancel nothing
-   pure subroutine answer_joint(joints, face, x, j, drive, force, more)
-      type(coulomb_joints_t), intent(in) :: joints
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      integer, intent(in) :: j          !! Number of the joint
-      real(wp), intent(in) :: drive(3)  !! What the springs are pressed together by
-      real(wp), intent(out) :: force(3)  !! N1, N2, T
-      real(wp), intent(out) :: more(4)   !! What is added to the slacks
-      real(wp) :: bound, r(4), spring
-      integer :: i
+   !> Stiffness of all joints at their bounds
+   pure function spring_stiffness(yield) result(stiffness)
+      type(joint_yield_t), intent(in) :: yield(:)
+      real(wp) :: stiffness(3, 3, size(yield))  !! Stiffness: (3, 3, n_joint)
+      integer :: j, k
 
-      r = ratio_of(x, face, j)
-      more = 0.0_wp
-      force = 0.0_wp
-      associate (c => joints%graph%compliance(j))
-         do i = 1, 2
-            if (joints%end_role(i, j) /= end_role%absent) force(i) = drive(i)/(c + r(i))
-         end do
-         more(:2) = merge(force(:2), 0.0_wp, face(:2, j))
-         if (joints%shear_role(j) == shear_role%absent) return
-         spring = 1.0_wp/(c + r(3) + r(4))
-         bound = joints%graph%friction(j)*(force(1) + force(2))
-         force(3) = (drive(3) - (r(3) - r(4))*bound)*spring
-         if (.not. face(3, j)) return
-         more(3) = (bound*(c + 2.0_wp*r(4)) + drive(3))*spring
-         more(4) = (bound*(c + 2.0_wp*r(3)) - drive(3))*spring
-      end associate
-   end subroutine answer_joint
+      do j = 1, size(yield)
+         associate (y => yield(j), s => stiffness(:, :, j), r => yield(j)%ratio, &
+            & cross => yield(j)%opening*yield(j)%friction*yield(j)%both)
+            do k = 1, 2
+               s(k, k) = y%own(k)*(y%soft + r(3) + r(4) + cross*y%own(3 - k))/y%det
+               s(k, 3 - k) = -y%own(k)*y%own(3 - k)*cross/y%det
+               s(3, k) = -y%friction*(r(3) - r(4))*y%own(k)/y%det
+               s(k, 3) = -y%opening*(r(3) - r(4))*y%own(k)/y%det
+            end do
+            s(3, 3) = (1.0_wp + y%wide*(r(3) + r(4)))/y%det
+         end associate
+      end do
+   end function spring_stiffness
 
-   !> Flow over slack at the faces of a joint
-   pure function ratio_of(x, face, j) result(ratio)
-      type(coulomb_interior_t), intent(in) :: x
-      logical(small), intent(in) :: face(:, :)
-      integer, intent(in) :: j  !! Number of the joint
-      real(wp) :: ratio(4)      !! None where there is no face: (4)
+   !> Forces of the joints by openings that are to be closed and by flows at constant forces, and
+   !> the distances that these forces add
+   pure subroutine yield_joints(yield, opening, source, force, slack)
+      type(joint_yield_t), intent(in) :: yield(:)
+      real(wp), intent(in) :: opening(:, :)  !! Openings and slip: (3, n_joint)
+      real(wp), intent(in) :: source(:, :)   !! Flows at constant forces: (4, n_joint)
+      real(wp), intent(out) :: force(:, :)   !! The forces: (3, n_joint)
+      real(wp), intent(out) :: slack(:, :)   !! The distances: (4, n_joint)
+      real(wp) :: close(2), other(2), press, r(2), s(2)
+      integer :: j
 
-      ratio = merge(x%flow(:, j)/x%slack(:, j), 0.0_wp, face(:, j))
-   end function ratio_of
+      do j = 1, size(yield)
+         r = yield(j)%ratio(3:4)
+         other = r([2, 1])
+         s = source(3:4, j)
+         close = opening(1:2, j) + source(1:2, j)
+         press = yield(j)%friction*dot_product(yield(j)%own, close)
+         associate (y => yield(j), w => yield(j)%wide, slip => opening(3, j))
+            ! slip at both bounds of friction opens
+            force(1:2, j) = y%own*(close + y%opening*(sum((y%soft + 2.0_wp*other)*s) &
+               & - (r(1) - r(2))*slip - y%both*press)/y%det)
+            force(3, j) = (slip*(1.0_wp + w*sum(r)) + s(1)*(1.0_wp + 2.0_wp*w*r(2)) &
+               & - s(2)*(1.0_wp + 2.0_wp*w*r(1)) - (r(1) - r(2))*press)/y%det
+            slack(1:2, j) = force(1:2, j)
+            slack(3:4, j) = (press*(y%soft + 2.0_wp*other) &
+               & + [slip, -slip]*(1.0_wp + 2.0_wp*w*other) &
+               & + s*(1.0_wp + w*(y%soft + 4.0_wp*other)) + s([2, 1])*(w*y%soft - 1.0_wp))/y%det
+         end associate
+      end do
+   end subroutine yield_joints
 
-   !> The longest step, 1 at most, that keeps a share of every slack and flow
-   pure real(wp) function longest(face, x, step, share)
-      logical(small), intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x, step
-      real(wp), intent(in) :: share  !! How much of the way to the first zero is gone
-      integer :: i, j
+   !> Mean product of distance and flow, in squares of a force
+   pure real(wp) function mean_product(q, slack, flow)
+      type(coulomb_problem_t), intent(in) :: q
+      real(wp), intent(in) :: slack(:, :)  !! Distances: (4, n_joint)
+      real(wp), intent(in) :: flow(:, :)   !! Flows: (4, n_joint)
+
+      mean_product = (sum(slack(:3, :)*flow(:3, :)/q%unit, q%bounded(:3, :)) &
+         & + sum(slack(4, :)*flow(4, :)/q%unit(3, :), q%bounded(4, :))) &
+         & /real(max(1, count(q%bounded)), wp)
+   end function mean_product
+
+   !> The longest step, 1 at most, that keeps a share of every distance and flow
+   pure real(wp) function longest(q, x, step, share)
+      type(coulomb_problem_t), intent(in) :: q
+      type(coulomb_iterate_t), intent(in) :: x, step
+      real(wp), intent(in) :: share  !! Step over the distance to the first zero
+      integer :: j, k
 
       longest = 1.0_wp
-      do j = 1, size(face, 2)
-         do i = 1, 4
-            if (.not. face(i, j)) cycle
-            if (step%slack(i, j) < 0.0_wp) &
-               & longest = min(longest, -share*x%slack(i, j)/step%slack(i, j))
-            if (step%flow(i, j) < 0.0_wp) &
-               & longest = min(longest, -share*x%flow(i, j)/step%flow(i, j))
+      do j = 1, size(x%slack, 2)
+         do k = 1, 4
+            if (.not. q%bounded(k, j)) cycle
+            if (step%slack(k, j)*longest < -share*x%slack(k, j)) &
+               & longest = -share*x%slack(k, j)/step%slack(k, j)
+            if (step%flow(k, j)*longest < -share*x%flow(k, j)) &
+               & longest = -share*x%flow(k, j)/step%flow(k, j)
          end do
       end do
    end function longest

@@ -18,7 +18,7 @@ module dda_coulomb_law
    implicit none
    private
 
-   public :: coulomb_state_t, face, face_enum, break_joint, strength
+   public :: coulomb_state_t, face, face_enum, break_joint, damped_mass, strength
    public :: unloaded_state, add_springs, apply_law, force_faces, imbalance, joint_stiffness
    public :: shear_face, spring_forces
 
@@ -217,6 +217,19 @@ contains
       end do
       state%slip(j) = state%slip(j) + joints%graph%compliance(j)*(state%force(3, j) - shear)
    end subroutine break_joint
+
+   !> Matrix of each block without joints: a multiple of its mass
+   pure function damped_mass(joints, damping) result(matrix)
+      type(coulomb_joints_t), intent(in) :: joints
+      real(wp), intent(in) :: damping                  !! The multiple
+      real(wp) :: matrix(3, 3, joints%graph%n_block)  !! The matrices: (3, 3, n_block)
+      integer :: k
+
+      matrix = 0.0_wp
+      do k = 1, 3
+         matrix(k, k, :) = damping*joints%graph%mass(k, :)
+      end do
+   end function damped_mass
 
    !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)

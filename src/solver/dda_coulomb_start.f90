@@ -6,8 +6,9 @@
 !> damping has the last word.
 submodule (dda_loading_path) dda_coulomb_start
    use dda_coulomb_equations, only : path_damping, solve_equations, use_faces
-   use dda_coulomb_interior, only : coulomb_interior_t, enough, interior_motion, sharp
+   use dda_coulomb_interior, only : coulomb_iterate_t
    use dda_coulomb_law, only : apply_law, force_faces, imbalance, unloaded_state
+   use dda_damped_motion, only : enough, interior_motion, sharp
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : small
    use dda_load_jump, only : jump_to_balance
@@ -83,7 +84,7 @@ contains
       logical, intent(out) :: stands  !! Whether its forces balance the load
       integer, parameter :: most_passes = 12
       real(wp), parameter :: least = 1.0e-13_wp
-      type(coulomb_interior_t) :: inner
+      type(coulomb_iterate_t) :: inner
       real(wp) :: damping, left, last
       integer :: passes, rounds
       logical :: settled
@@ -97,7 +98,7 @@ contains
       do while (damping >= 0.5_wp*least)
          call settle_faces(joints, equations, load, damping, most_passes, state, left, passes)
          if (passes == 0) then
-            if (damping < first) inner = coulomb_interior_t()
+            if (damping < first) inner = coulomb_iterate_t()
             call take_interior(joints, equations, load, damping, sharp, inner, state, settled)
             if (settled) call settle_faces(joints, equations, load, damping, most_passes, state, &
                & left, passes)
@@ -167,7 +168,7 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load(:, :), damping
       real(wp), intent(in) :: tolerance                 !! Tolerance of the interior springs
-      type(coulomb_interior_t), intent(inout) :: inner  !! The iterate, from which it goes on
+      type(coulomb_iterate_t), intent(inout) :: inner  !! The iterate, from which it goes on
       type(coulomb_state_t), intent(out) :: state
       logical, intent(out) :: settled                   !! Whether the interior springs have settled
       type(coulomb_state_t) :: unloaded

@@ -10,7 +10,7 @@ module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise, substitute
    use dda_block_matrix, only : block_matrix_t
    use dda_joint_graph, only : joint_graph_t, unit_of_length
-   use dda_joint_places, only : lay_out_joints
+   use dda_joint_matrix, only : lay_out_joints
    use dda_joint_rays, only : joint_rays, joint_spring, n_side, ray_rates, &
       & scaled_rows
    use dda_joint_strips, only : joint_strip_t, list_strips, part_opening, soften_spring
@@ -53,7 +53,8 @@ contains
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
 
       springs%length = unit_of_length(graph)
-      call lay_out_joints(graph, .true., springs%matrix, springs%factor, springs%entry)
+      call lay_out_joints(graph%block, 3, graph%n_block, .true., springs%matrix, springs%factor, &
+         & springs%entry)
       allocate (springs%stiffness(n_side, size(graph%block, 2)))
       call list_strips(graph, springs%strip)
    end subroutine plan_matrix

@@ -7,10 +7,11 @@
 module dda_contact_faces
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & residual_of, residual_t
-   use dda_contact_springs, only : contact_springs_t, factor_springs, lay_out, respond
+   use dda_block_factor, only : substitute
    use dda_friction_cone, only : cone_kind, joint_face_t, shear_bound
+   use dda_joint_matrix, only : add_row_forces, factor_joints, joint_matrix_t, row_openings, &
+      & lay_out_joints
    use dda_kinds, only : wp
-   use dda_spring_products, only : add_forces
    implicit none
    private
 
@@ -30,15 +31,17 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(contact_springs_t) :: springs
+      type(joint_matrix_t) :: springs
       type(joint_face_t) :: face(size(p%joint))
       real(wp), dimension(3, size(p%joint)) :: centre, now, trial
+      real(wp) :: stiff(3, 3, size(p%joint))
       type(residual_t) :: left
       real(wp) :: motion(size(p%load, 1), size(p%load, 2))
       integer :: changes, last, pass, turn
       logical :: stale
 
-      call lay_out(p, springs)
+      call lay_out_joints(p%block, size(p%load, 1), size(p%load, 2), .false., springs%matrix, &
+         & springs%factor, springs%entry)
       now = force
       centre = force
       motion = move_blocks(p, now)
@@ -51,12 +54,12 @@ contains
             if (pass == max_passes) return
             pass = pass + 1
             passes = passes + 1
-            call set_springs(p, face, springs)
-            call factor_springs(p, springs)
+            call set_springs(p, face, stiff)
+            call factor_joints(p%base, p%block, p%row, stiff, springs)
             if (.not. springs%factor%usable) return
          end if
          call take_faces(p, face, now)
-         call solve_faces(p, springs, face, centre, now, motion)
+         call solve_faces(p, springs, stiff, centre, now, motion)
          call change_faces(p, tolerance, now, motion, face, changes)
          if (changes > 0) then
             if (2*changes > last) return
@@ -88,34 +91,34 @@ contains
 
       opening = openings(p, force, motion)
       do i = 1, size(face)
-         pushed = force(:, i) + p%springs%shift(:, i)
+         pushed = force(:, i) + p%shift(:, i)
          do k = 1, 3
             if (p%give(k, k, i) > 0.0_wp) pushed(k) = pushed(k) - opening(k, i)/p%give(k, k, i)
          end do
          do k = 1, 2
             face(i)%open(k) = .not. (p%give(k, k, i) > 0.0_wp .and. pushed(k) > 0.0_wp)
          end do
-         if (abs(pushed(3)) > shear_bound(p%springs%cone(i), max(0.0_wp, &
-            & force(:, i) + p%springs%shift(:, i))) .or. all(face(i)%open)) &
+         if (abs(pushed(3)) > shear_bound(p%cone(i), max(0.0_wp, &
+            & force(:, i) + p%shift(:, i))) .or. all(face(i)%open)) &
             & face(i)%slip = merge(1, -1, pushed(3) > 0.0_wp)
          if (.not. p%give(3, 3, i) > 0.0_wp) face(i)%slip = 0
       end do
    end subroutine read_faces
 
    !> Springs that hold the joints on their faces
-   pure subroutine set_springs(p, face, springs)
+   pure subroutine set_springs(p, face, stiffness)
       type(contact_problem_t), intent(in) :: p
       type(joint_face_t), intent(in) :: face(:)
-      type(contact_springs_t), intent(inout) :: springs
+      real(wp), intent(out) :: stiffness(:, :, :)  !! Stiffness of the joints: (3, 3, n_joint)
       integer :: i, k
 
-      springs%stiff = 0.0_wp
+      stiffness = 0.0_wp
       do i = 1, size(face)
-         associate (stiff => springs%stiff(:, :, i))
+         associate (stiff => stiffness(:, :, i))
             do k = 1, 2
                if (face(i)%open(k)) cycle
                stiff(k, k) = firmness(p, k, i)
-               stiff(3, k) = real(face(i)%slip, wp)*p%springs%cone(i)%friction*stiff(k, k)
+               stiff(3, k) = real(face(i)%slip, wp)*p%cone(i)%friction*stiff(k, k)
             end do
             if (face(i)%slip == 0 .and. p%give(3, 3, i) > 0.0_wp) stiff(3, 3) = firmness(p, 3, i)
          end associate
@@ -146,42 +149,41 @@ contains
       integer :: i
 
       do i = 1, size(face)
-         associate (shift => p%springs%shift(:, i), f => force(:, i))
+         associate (shift => p%shift(:, i), f => force(:, i))
             where (face(i)%open) f(1:2) = -shift(1:2)
-            if (face(i)%slip /= 0) f(3) = face(i)%slip*shear_bound(p%springs%cone(i), f + shift)
+            if (face(i)%slip /= 0) f(3) = face(i)%slip*shear_bound(p%cone(i), f + shift)
          end associate
       end do
    end subroutine take_faces
 
    !> Forces on their faces and the motion that they make
-   pure subroutine solve_faces(p, springs, face, centre, force, motion)
+   pure subroutine solve_faces(p, springs, stiff, centre, force, motion)
       type(contact_problem_t), intent(in) :: p
-      type(contact_springs_t), intent(in) :: springs  !! Springs with their factor
-      type(joint_face_t), intent(in) :: face(:)
-      real(wp), intent(in) :: centre(:, :)            !! Forces before: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)          !! Forces on their faces
-      real(wp), intent(inout) :: motion(:, :)         !! The motion: (n_dof, n_block) [m]
-      real(wp) :: balance(size(motion, 1), size(motion, 2)), step(size(motion, 1), size(motion, 2))
-      real(wp), dimension(3, size(face)) :: change, lack, opening
+      type(joint_matrix_t), intent(in) :: springs       !! Factor of the springs
+      real(wp), intent(in) :: stiff(:, :, :)            !! Their stiffness: (3, 3, n_joint)
+      real(wp), intent(in) :: centre(:, :)              !! Forces before: (3, n_joint) [N/m]
+      real(wp), intent(inout), contiguous :: force(:, :)   !! Forces on their faces
+      real(wp), intent(inout), contiguous :: motion(:, :)  !! The motion: (n_dof, n_block) [m]
+      real(wp) :: step(size(motion, 1), size(motion, 2))
+      real(wp), dimension(3, size(force, 2)) :: change, lack, opening
       integer :: b, i, k
 
       lack = -openings(p, force, motion)
-      do i = 1, size(face)
+      do i = 1, size(force, 2)
          do k = 1, 3
             lack(k, i) = lack(k, i) - tie(p, k, i)*(force(k, i) - centre(k, i))
          end do
+         change(:, i) = force(:, i) + matmul(stiff(:, :, i), lack(:, i))
       end do
-      balance = p%load
-      call add_forces(p%springs, force, balance)
-      do b = 1, size(balance, 2)
-         balance(:, b) = balance(:, b) - matmul(p%base(:, :, b), motion(:, b))
+      step = p%load
+      call add_row_forces(size(step, 1), size(force, 2), p%block, p%row, change, step)
+      do b = 1, size(step, 2)
+         step(:, b) = step(:, b) - matmul(p%base(:, :, b), motion(:, b))
       end do
-      do i = 1, size(face)
-         change(:, i) = matmul(springs%stiff(:, :, i), lack(:, i))
-      end do
-      call respond(p, springs, balance, change, step, opening)
-      do i = 1, size(face)
-         force(:, i) = force(:, i) + matmul(springs%stiff(:, :, i), lack(:, i) - opening(:, i))
+      call substitute(springs%factor, step)
+      call row_openings(size(step, 1), size(force, 2), p%block, p%row, step, opening)
+      do i = 1, size(force, 2)
+         force(:, i) = force(:, i) + matmul(stiff(:, :, i), lack(:, i) - opening(:, i))
       end do
       motion = motion + step
    end subroutine solve_faces
@@ -199,7 +201,7 @@ contains
       changes = 0
       opening = openings(p, force, motion)
       do i = 1, size(face)
-         normal = force(:, i) + p%springs%shift(:, i)
+         normal = force(:, i) + p%shift(:, i)
          do k = 1, 2
             if (.not. p%give(k, k, i) > 0.0_wp) cycle
             if (merge(opening(k, i), p%give(k, k, i)*normal(k), face(i)%open(k)) &
@@ -209,8 +211,8 @@ contains
          end do
          if (.not. p%give(3, 3, i) > 0.0_wp) cycle
          excess = p%give(3, 3, i)*(abs(force(3, i)) &
-            & - min(shear_bound(p%springs%cone(i), max(0.0_wp, normal)), 2.0_wp*abs(force(3, i))))
-         sticks = p%springs%cone(i)%kind == cone_kind%no_slip
+            & - min(shear_bound(p%cone(i), max(0.0_wp, normal)), 2.0_wp*abs(force(3, i))))
+         sticks = p%cone(i)%kind == cone_kind%no_slip
          if (all(face(i)%open)) then
             if (face(i)%slip == 0) changes = changes + 1
             if (face(i)%slip == 0) face(i)%slip = 1

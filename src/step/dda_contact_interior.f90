@@ -1,29 +1,23 @@
-!> Contact forces of one group by an interior-point method
+!> Contact forces of one group by the interior point (`dda_coulomb_interior`)
 !>
-!>    A d = load + R f,   gap + R' d + C (f - f0) = F_flow' z,   b = F f >= 0, z >= 0, b z = 0
+!> Coulomb's law comes first. Its problem is not convex: with steep friction, or where blocks are
+!> confined, the search need not come to an end, and the forces that come nearest to the law count.
 !>
-!> The rows of F are the distances from the bounds: n1, n2, bound + T and bound - T; those of F_flow
-!> are n1, n2, T and -T: what slides does not open (Coulomb). The problem is not convex: with steep
-!> friction, or where blocks are confined, the search need not come to an end, and the forces that
-!> come nearest to the law count.
+!> The convex problem always ends: joints that slide open by friction times their slip, less an
+!> offset that is given (De Saxce; Acary and Cadoux). The nearer the offset to that product, the
+!> nearer are the forces to Coulomb's law; at any offset they add no energy.
 !>
-!> With F in place of F_flow it is convex, and ends always: what slides opens by friction times its
-!> slip, less an offset that is given (De Saxce; Acary and Cadoux). The nearer the offset to that
-!> product, the nearer are the forces to Coulomb's law; whatever it is, they bring in no energy.
-!>
-!> C is far below what the blocks give, and f0 the force before: of all forces that stop the blocks
-!> those nearest to it count, so that shear is remembered. Predictor and corrector by Mehrotra
-!> (1992).
+!> Each force has a compliance far below that of the blocks, about the force before: of all forces
+!> that stop the blocks those nearest to it count, so that shear is remembered.
 module dda_contact_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & residual_of, residual_t
-   use dda_contact_springs, only : factor_springs, lay_out, respond
    use dda_contact_types, only : unbounded
-   use dda_contact_yield, only : force_of_flows, interior_search_t, iterate_t, &
-      & set_yielding_springs, set_joint_step
+   use dda_coulomb_interior, only : absent, coulomb_iterate_t, coulomb_lack_t, coulomb_problem_t, &
+      & distances, find_lack, improve
    use dda_friction_cone, only : cone_kind
+   use dda_joint_matrix, only : joint_matrix_t, lay_out_joints
    use dda_kinds, only : wp
-   use dda_spring_products, only : add_forces
    implicit none
    private
 
@@ -32,7 +26,7 @@ module dda_contact_interior
    !> Compliance of the regularisation over that of the blocks
    real(wp), parameter :: compliance = 1.0e-6_wp
    !> Maximum number of iterations
-   integer, parameter :: most_turns = 30
+   integer, parameter :: max_iterations = 30
    !> Maximum number of iterations of the convex problem
    integer, parameter :: max_convex_iterations = 60
    !> Iterations without progress before termination
@@ -57,34 +51,39 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(interior_search_t) :: search
-      type(iterate_t) :: z
-      real(wp) :: gone, least, left
+      type(coulomb_problem_t) :: q
+      type(joint_matrix_t) :: matrix
+      type(coulomb_lack_t) :: lack
+      type(coulomb_iterate_t) :: x
+      real(wp) :: least, left, length
       integer :: turn, waited
       logical :: has_restarted
 
-      call pose(p, force, search)
-      call begin(p, search, force, near, z)
+      q = interior_problem(p, force)
+      call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .false., matrix%matrix, &
+         & matrix%factor, matrix%entry)
+      call begin(p, q, force, near, x)
       least = huge(least)
       waited = 0
-      gone = 0.0_wp
+      length = 0.0_wp
       has_restarted = .false.
-      do turn = 1, most_turns
-         call see_lack(p, z, search, left)
-         call keep_better(p, admissible(p, z%force), force, residual)
+      do turn = 1, max_iterations
+         call find_lack(q, x, lack)
+         left = most_of(q, x, lack)
+         call keep_better(p, admissible(p, x%force), force, residual)
          waited = merge(0, waited + 1, left < 0.9_wp*least)
          least = min(least, left)
          if (residual%opening <= tolerance .or. waited == patience &
             & .or. .not. left <= huge(left)) return
-         if (turn > 1 .and. turn <= patience .and. gone < stuck .and. .not. has_restarted) then
+         if (turn > 1 .and. turn <= patience .and. length < stuck .and. .not. has_restarted) then
             has_restarted = .true.
-            call begin(p, search, force, afar, z)
-            call see_lack(p, z, search, left)
+            call begin(p, q, force, afar, x)
+            call find_lack(q, x, lack)
             least = huge(least)
          end if
-         call improve(p, search, z, gone)
+         call improve(q, lack, share, matrix, x, length)
          passes = passes + 1
-         if (.not. search%springs%factor%usable) return
+         if (.not. matrix%factor%usable) return
       end do
    end subroutine solve_interior
 
@@ -96,25 +95,31 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(interior_search_t) :: search
-      type(iterate_t) :: z
-      real(wp) :: gone, left, opening(3, size(p%joint))
+      type(coulomb_problem_t) :: q
+      type(joint_matrix_t) :: matrix
+      type(coulomb_lack_t) :: lack
+      type(coulomb_iterate_t) :: x
+      real(wp) :: left, length, offset(size(p%joint)), opening(3, size(p%joint))
       integer :: turn
 
-      call pose(p, force, search)
+      q = interior_problem(p, force)
+      call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .false., matrix%matrix, &
+         & matrix%factor, matrix%entry)
       opening = openings(p, force, move_blocks(p, force))
-      search%convex = .true.
-      where (search%bounded(3, :)) search%offset = p%springs%cone%friction*abs(opening(3, :))
-      call begin(p, search, force, convex_lift, z)
+      offset = merge(p%friction*abs(opening(3, :)), 0.0_wp, q%bounded(3, :))
+      q%gap(1:2, :) = q%gap(1:2, :) + spread(offset, 1, 2)
+      q%dilatancy = 1.0_wp
+      call begin(p, q, force, convex_lift, x)
       do turn = 1, max_convex_iterations
-         call see_lack(p, z, search, left)
+         call find_lack(q, x, lack)
+         left = most_of(q, x, lack)
          if (left <= tolerance .or. .not. left <= huge(left)) exit
-         call improve(p, search, z, gone)
+         call improve(q, lack, share, matrix, x, length)
          passes = passes + 1
-         if (.not. search%springs%factor%usable) return
+         if (.not. matrix%factor%usable) return
       end do
       if (.not. left <= tolerance) return
-      force = admissible(p, z%force)
+      force = admissible(p, x%force)
       residual = residual_of(p, force, move_blocks(p, force))
    end subroutine solve_convex
 
@@ -132,206 +137,78 @@ contains
       residual = left
    end subroutine keep_better
 
-   !> What there is to search for
-   pure subroutine pose(p, force, search)
+   !> The problem with bounds, units and regularisation about given forces
+   pure type(coulomb_problem_t) function interior_problem(p, force) result(q)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: force(:, :)
-      type(interior_search_t), intent(out) :: search
-      integer :: i, k, n
+      integer :: k, n
 
+      q = p%coulomb_problem_t
       n = size(p%joint)
-      call lay_out(p, search%springs)
-      allocate (search%given(3, n), search%bounded(4, n))
-      allocate (search%unit(3, n), search%soft(3, n), source=0.0_wp)
-      allocate (search%balance, mold=p%load)
-      allocate (search%offset(n), source=0.0_wp)
-      allocate (search%opening(3, n), search%distance(4, n), search%product(4, n), source=0.0_wp)
-      do i = 1, n
-         do k = 1, 3
-            search%unit(k, i) = p%give(k, k, i)
-            search%given(k, i) = p%give(k, k, i) > 0.0_wp
-         end do
-         search%bounded(1:2, i) = search%given(1:2, i) .and. p%springs%shift(1:2, i) < unbounded
-         search%bounded(3:4, i) = search%given(3, i) &
-            & .and. p%springs%cone(i)%kind /= cone_kind%no_slip
+      allocate (q%bounded(4, n), q%unit(3, n))
+      do k = 1, 3
+         q%unit(k, :) = merge(p%give(k, k, :), 1.0_wp, p%give(k, k, :) > 0.0_wp)
       end do
-      where (.not. search%given) search%unit = 1.0_wp
-      where (.not. p%soft > 0.0_wp) search%soft = compliance*search%unit
-      search%before = force
-   end subroutine pose
+      where (.not. p%soft > 0.0_wp)
+         q%soft = compliance*q%unit
+         q%gap = q%gap - q%soft*force
+      end where
+      do k = 1, 3
+         where (.not. p%give(k, k, :) > 0.0_wp) q%soft(k, :) = absent
+         if (k < 3) q%bounded(k, :) = p%give(k, k, :) > 0.0_wp .and. p%shift(k, :) < unbounded
+      end do
+      q%bounded(3, :) = p%give(3, 3, :) > 0.0_wp .and. p%cone%kind /= cone_kind%no_slip
+      q%bounded(4, :) = q%bounded(3, :)
+   end function interior_problem
 
    !> Where the search begins: forces and their motion, with distances and flows lifted off zero by
    !> the same product everywhere, but where one is larger
-   pure subroutine begin(p, search, force, lift, z)
+   pure subroutine begin(p, q, force, lift, x)
       type(contact_problem_t), intent(in) :: p
-      type(interior_search_t), intent(in) :: search
+      type(coulomb_problem_t), intent(in) :: q
       real(wp), intent(in) :: force(:, :)
       real(wp), intent(in) :: lift  !! By how much at the least, over the size of a force
-      type(iterate_t), intent(out) :: z
-      real(wp) :: flow, least, opening(3, size(p%joint)), typical, unit
-      integer :: i, k
+      type(coulomb_iterate_t), intent(out) :: x
+      real(wp) :: flow, least, opening(3, size(p%joint)), typical
+      integer :: i, k, n_normal
 
-      z%force = force
-      z%motion = move_blocks(p, force)
-      z%slack = distances(p, force)
-      opening = merge(openings(p, z%force, z%motion), 0.0_wp, search%given)
+      x%force = force
+      x%motion = move_blocks(p, force)
+      x%slack = distances(q, force)
+      opening = openings(p, x%force, x%motion)/q%unit
+      where (.not. q%soft < absent) opening = 0.0_wp
       ! size of a force, and the part of it by which forces are wrong
-      associate (normal => search%given(1:2, :))
-         typical = max(tiny(1.0_wp)/epsilon(1.0_wp), sum(max(z%slack(1:2, :), &
-            & -opening(1:2, :)/search%unit(1:2, :)), normal .and. search%bounded(1:2, :)) &
-            & /real(max(1, count(normal)), wp))
-         least = sum(abs(min(z%slack(1:2, :), opening(1:2, :)/search%unit(1:2, :))), &
-            & normal .and. search%bounded(1:2, :))/real(max(1, count(normal)), wp)
-      end associate
+      n_normal = max(1, count(q%soft(1:2, :) < absent))
+      typical = max(tiny(1.0_wp)/epsilon(1.0_wp), sum(max(x%slack(1:2, :), -opening(1:2, :)), &
+         & q%bounded(1:2, :))/real(n_normal, wp))
+      least = sum(abs(min(x%slack(1:2, :), opening(1:2, :))), q%bounded(1:2, :)) &
+         & /real(n_normal, wp)
       least = max(lift*typical, min(highest*typical, 10.0_wp*least))
-      allocate (z%flow(4, size(p%joint)), source=0.0_wp)
+      allocate (x%flow(4, size(p%joint)), source=0.0_wp)
       do i = 1, size(p%joint)
          do k = 1, 4
-            if (.not. search%bounded(k, i)) cycle
-            unit = search%unit(min(k, 3), i)
-            flow = merge(opening(min(k, 3), i), -opening(3, i), k < 4)/unit
-            if (k < 3) z%slack(k, i) = max(z%slack(k, i), -flow)
-            z%slack(k, i) = max(z%slack(k, i), least**2/max(flow, least))
-            z%flow(k, i) = unit*max(flow, least**2/max(z%slack(k, i), least))
+            if (.not. q%bounded(k, i)) cycle
+            flow = merge(opening(min(k, 3), i), -opening(3, i), k < 4)
+            if (k < 3) x%slack(k, i) = max(x%slack(k, i), -flow)
+            x%slack(k, i) = max(x%slack(k, i), least**2/max(flow, least))
+            x%flow(k, i) = q%unit(min(k, 3), i)*max(flow, least**2/max(x%slack(k, i), least))
          end do
       end do
-      where (.not. search%bounded) z%slack = 1.0_wp
+      where (.not. q%bounded) x%slack = 1.0_wp
    end subroutine begin
 
-   !> Distances of forces from their bounds
-   pure function distances(p, force) result(slack)
-      type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: force(:, :)
-      real(wp) :: slack(4, size(p%joint))  !! The distances: (4, n_joint) [N/m]
-
-      slack(:2, :) = force(:2, :) + p%springs%shift(:2, :)
-      associate (cone => p%springs%cone)
-         slack(4, :) = cone%limit + cone%friction*(slack(1, :) + slack(2, :))
-      end associate
-      slack(3, :) = slack(4, :) + force(3, :)
-      slack(4, :) = slack(4, :) - force(3, :)
-   end function distances
-
-   !> What an iterate lacks
-   pure subroutine see_lack(p, z, search, left)
-      type(contact_problem_t), intent(in) :: p
-      type(iterate_t), intent(in) :: z
-      type(interior_search_t), intent(inout) :: search
-      real(wp), intent(out) :: left  !! The most of it, and of products, as an opening [m]
-      real(wp) :: mean
-      integer :: b, i
-
-      search%balance = p%load
-      call add_forces(p%springs, z%force, search%balance)
-      do b = 1, size(p%equation)
-         search%balance(:, b) = search%balance(:, b) - matmul(p%base(:, :, b), z%motion(:, b))
-      end do
-      search%opening = -openings(p, z%force, z%motion) - search%soft*(z%force - search%before)
-      do i = 1, size(p%joint)
-         associate (opening => search%opening(:, i), flow => z%flow(:, i))
-            opening(1:2) = opening(1:2) + flow(1:2)
-            opening(3) = opening(3) + flow(3) - flow(4)
-            if (search%convex) opening(1:2) = opening(1:2) - search%offset(i) &
-               & + p%springs%cone(i)%friction*(flow(3) + flow(4))
-         end associate
-      end do
-      where (.not. search%given) search%opening = 0.0_wp
-      search%distance = merge(distances(p, z%force) - z%slack, 0.0_wp, search%bounded)
-      left = maxval(abs(search%opening))
-      do i = 1, size(p%joint)
-         mean = maxval(min(z%slack(:, i)*search%unit([1, 2, 3, 3], i), z%flow(:, i)), &
-            & search%bounded(:, i))
-         left = max(left, mean)
-      end do
-   end subroutine see_lack
-
-   !> One step: a predictor, and a corrector towards equal products
-   pure subroutine improve(p, search, z, gone)
-      type(contact_problem_t), intent(in) :: p
-      type(interior_search_t), intent(inout) :: search
-      type(iterate_t), intent(inout) :: z
-      real(wp), intent(out) :: gone  !! How much of the step was gone
-      type(iterate_t) :: step
-      real(wp) :: aim, mean
-      integer :: k
-
-      gone = 0.0_wp
-      call set_yielding_springs(p, z, search)
-      call factor_springs(p, search%springs)
-      if (.not. search%springs%factor%usable) return
-      step = z
-      search%product = -z%slack*z%flow
-      call find_step(p, z, search, step)
-      gone = longest(search, z, step, 1.0_wp)
-      mean = mean_product(search, z%slack, z%flow)
-      aim = mean*min(1.0_wp, mean_product(search, z%slack + gone*step%slack, &
-         & z%flow + gone*step%flow)/max(mean, tiny(mean)))**3
-      search%product = search%product - gone*step%slack*step%flow
-      do k = 1, 4
-         search%product(k, :) = search%product(k, :) + aim*search%unit(min(k, 3), :)
-      end do
-      call find_step(p, z, search, step)
-      gone = longest(search, z, step, share)
-      z%motion = z%motion + gone*step%motion
-      z%force = z%force + gone*step%force
-      z%slack = z%slack + gone*step%slack
-      z%flow = z%flow + gone*step%flow
-   end subroutine improve
-
-   !> The step that brings what is left to nothing
-   pure subroutine find_step(p, z, search, step)
-      type(contact_problem_t), intent(in) :: p
-      type(iterate_t), intent(in) :: z
-      type(interior_search_t), intent(in) :: search
-      type(iterate_t), intent(inout) :: step
-      real(wp) :: given(3, size(p%joint)), moved(3, size(p%joint)), source(4, size(p%joint))
+   !> The largest residual and product of distance and flow, as an opening
+   pure real(wp) function most_of(q, x, lack)
+      type(coulomb_problem_t), intent(in) :: q
+      type(coulomb_iterate_t), intent(in) :: x
+      type(coulomb_lack_t), intent(in) :: lack
       integer :: i
 
-      do i = 1, size(p%joint)
-         source(:, i) = merge((search%product(:, i) - z%flow(:, i)*search%distance(:, i)) &
-            & /z%slack(:, i), 0.0_wp, search%bounded(:, i))
-         given(:, i) = force_of_flows(p, z, search, i, source(:, i))
-         step%force(:, i) = given(:, i) &
-            & + matmul(search%springs%stiff(:, :, i), search%opening(:, i))
+      most_of = maxval(abs(lack%opening))
+      do i = 1, size(q%friction)
+         most_of = max(most_of, maxval(min(x%slack(:, i)*q%unit([1, 2, 3, 3], i), x%flow(:, i)), &
+            & q%bounded(:, i)))
       end do
-      call respond(p, search%springs, search%balance, step%force, step%motion, moved)
-      do i = 1, size(p%joint)
-         associate (open => search%opening(:, i) - moved(:, i))
-            step%force(:, i) = given(:, i) + matmul(search%springs%stiff(:, :, i), open)
-            call set_joint_step(p, z, search, i, source(:, i), open, step)
-         end associate
-         step%slack(:, i) = step%slack(:, i) + search%distance(:, i)
-      end do
-   end subroutine find_step
-
-   !> Mean of distance times flow, over what the blocks give: in squares of a force
-   pure real(wp) function mean_product(search, slack, flow)
-      type(interior_search_t), intent(in) :: search
-      real(wp), intent(in) :: slack(:, :)  !! Distances: (4, n_joint) [N/m]
-      real(wp), intent(in) :: flow(:, :)   !! Flows: (4, n_joint) [m]
-
-      mean_product = (sum(slack(:3, :)*flow(:3, :)/search%unit, search%bounded(:3, :)) &
-         & + sum(slack(4, :)*flow(4, :)/search%unit(3, :), search%bounded(4, :))) &
-         & /real(max(1, count(search%bounded)), wp)
-   end function mean_product
-
-   !> The longest step, 1 at most, that keeps a share of every distance and flow
-   pure real(wp) function longest(search, z, step, way)
-      type(interior_search_t), intent(in) :: search
-      type(iterate_t), intent(in) :: z, step
-      real(wp), intent(in) :: way  !! How much of the way to the first zero is gone
-      integer :: i, k
-
-      longest = 1.0_wp
-      do i = 1, size(z%slack, 2)
-         do k = 1, 4
-            if (.not. search%bounded(k, i)) cycle
-            if (step%slack(k, i)*longest < -way*z%slack(k, i)) &
-               & longest = -way*z%slack(k, i)/step%slack(k, i)
-            if (step%flow(k, i)*longest < -way*z%flow(k, i)) &
-               & longest = -way*z%flow(k, i)/step%flow(k, i)
-         end do
-      end do
-   end function longest
+   end function most_of
 
 end module dda_contact_interior

@@ -1,19 +1,20 @@
 !> The contact problem of one group of moving blocks
 !>
-!>    A d = load + R f,   u = gap + R' d + C (f - f0),   n = f + tension
+!>    A d = load + R f,   u = gap + R' d + C f,   n = f + tension
 !>
 !>    n1, n2 >= 0, u1, u2 >= 0, n1 u1 = n2 u2 = 0,   |T| <= limit + friction (n1 + n2), T against u3
 !>
-!> A is block diagonal: without forces blocks know nothing of one another. d is a motion, or speeds
+!> A is block diagonal: forces alone couple the blocks. d is a motion, or speeds
 !> times the length of the step. C is the compliance of bars, and 0 of contacts.
 !>
 !> Equation (M5) of docs/method.md
 module dda_contact_problem
-   use dda_contact_types, only : joint_springs_t, unbounded
-   use dda_friction_cone, only : cone_kind, cone_t, shear_bound
+   use dda_contact_types, only : joint_springs_t
+   use dda_coulomb_interior, only : coulomb_problem_t
+   use dda_friction_cone, only : cone_t, shear_bound
+   use dda_joint_matrix, only : add_row_forces, row_openings
    use dda_kinds, only : wp
    use dda_small_systems, only : cholesky, solved
-   use dda_spring_products, only : add_forces, relative_displacement
    use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
@@ -21,28 +22,20 @@ module dda_contact_problem
    public :: contact_problem_t, pose_contacts, openings, move_blocks, residual_of, residual_t
    public :: admissible, speed_of
 
-   !> Joints and blocks of a group
-   type :: contact_problem_t
+   !> Joints and blocks of a group; the blocks are numbered as they come here
+   type, extends(coulomb_problem_t) :: contact_problem_t
       !> Numbers of the joints: (n_joint)
       integer, allocatable :: joint(:)
       !> Equations of the blocks: (n_block)
       integer, allocatable :: equation(:)
-      !> Rows and bounds; the blocks are numbered as they come here, 0 for what cannot move
-      type(joint_springs_t) :: springs
-      !> Matrix of each block, and its Cholesky factor: (n_dof, n_dof, n_block)
-      real(wp), allocatable :: base(:, :, :), lower(:, :, :)
-      !> Loads: (n_dof, n_block) [N/m]
-      real(wp), allocatable :: load(:, :)
+      !> Bounds of the joint forces: (n_joint)
+      type(cone_t), allocatable :: cone(:)
+      !> Cholesky factor of the matrix of each block: (n_dof, n_dof, n_block)
+      real(wp), allocatable :: lower(:, :, :)
       !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
       real(wp), allocatable :: answer(:, :, :, :)
       !> Openings and slip by a unit of each of the joint's own forces: (3, 3, n_joint) [m/(N/m)]
       real(wp), allocatable :: give(:, :, :)
-      !> Gaps before the motion: (3, n_joint) [m]
-      real(wp), allocatable :: gap(:, :)
-      !> How much openings and slip follow their forces: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: soft(:, :)
-      !> Forces that they follow none of: (3, n_joint) [N/m]
-      real(wp), allocatable :: rest(:, :)
       !> Gap that rounding can make: it asks for no force, which could grow without end [m]
       real(wp) :: noise = 0.0_wp
    end type contact_problem_t
@@ -75,13 +68,15 @@ contains
       ! strain that follows its load has no part in impulses
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       allocate (p%joint, source=joint)
-      allocate (p%springs%equation(2, size(joint)))
+      allocate (p%block(2, size(joint)))
       call number_blocks(springs, size(equations%load, 2), p)
       p%base = equations%base(:n_dof, :n_dof, p%equation)
       p%load = equations%load(:n_dof, p%equation)
-      p%springs%row = springs%row(:n_dof, :, :, joint)
-      p%springs%shift = springs%shift(:, joint)
-      p%springs%cone = springs%cone(joint)
+      p%row = springs%row(:n_dof, :, :, joint)
+      p%shift = springs%shift(:, joint)
+      p%cone = springs%cone(joint)
+      p%friction = p%cone%friction
+      p%limit = p%cone%limit
       p%noise = min(0.25_wp, state%fineness)*equations%gap_noise
       if (state%rates) p%noise = of_speeds*p%noise
       allocate (p%gap(3, size(joint)))
@@ -89,11 +84,12 @@ contains
          p%gap(:, i) = (state%force(:, joint(i)) - state%trial(:, joint(i))) &
             & /springs%stiffness(joint(i))
       end do
-      allocate (p%soft, p%rest, mold=p%gap)
+      allocate (p%soft, mold=p%gap)
       p%soft = 0.0_wp
-      p%rest = 0.0_wp
-      if (allocated(springs%soft)) p%soft = springs%soft(:, joint)
-      if (allocated(springs%rest)) p%rest = springs%rest(:, joint)
+      if (allocated(springs%soft)) then
+         p%soft = springs%soft(:, joint)
+         p%gap = p%gap - p%soft*springs%rest(:, joint)
+      end if
       call see_answers(p)
    end subroutine pose_contacts
 
@@ -114,7 +110,7 @@ contains
                   number(global) = e
                   equation(e) = global
                end if
-               p%springs%equation(side, i) = number(global)
+               p%block(side, i) = number(global)
             end associate
          end do
       end do
@@ -136,7 +132,7 @@ contains
             inverse(:, k, b) = solved(p%lower(:, :, b), unit)
          end do
       end do
-      allocate (p%answer, mold=p%springs%row)
+      allocate (p%answer, mold=p%row)
       allocate (p%give(3, 3, size(p%joint)))
       do i = 1, size(p%joint)
          associate (give => p%give(:, :, i))
@@ -145,10 +141,10 @@ contains
                give(k, k) = p%soft(k, i)
             end do
             do side = 1, 2
-               b = p%springs%equation(side, i)
+               b = p%block(side, i)
                if (b == 0) p%answer(:, :, side, i) = 0.0_wp
                if (b == 0) cycle
-               call add_answer(size(unit), inverse(:, :, b), p%springs%row(:, :, side, i), &
+               call add_answer(size(unit), inverse(:, :, b), p%row(:, :, side, i), &
                   & p%answer(:, :, side, i), give)
             end do
          end associate
@@ -180,22 +176,24 @@ contains
    !> Openings and slips by forces and the motion that they make
    pure function openings(p, force, motion)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: force(:, :)     !! Forces of the joints: (3, n_joint) [N/m]
-      real(wp), intent(in) :: motion(:, :)    !! Motion of the blocks: (n_dof, n_block) [m]
+      real(wp), intent(in) :: force(:, :)  !! Forces of the joints: (3, n_joint) [N/m]
+      !> Motion of the blocks: (n_dof, n_block) [m]
+      real(wp), intent(in), contiguous :: motion(:, :)
       real(wp) :: openings(3, size(p%joint))  !! The openings: (3, n_joint) [m]
 
-      openings = relative_displacement(p%springs, motion) + p%gap + p%soft*(force - p%rest)
+      call row_openings(size(motion, 1), size(p%joint), p%block, p%row, motion, openings)
+      openings = openings + p%gap + p%soft*force
    end function openings
 
    !> Motion of the blocks by forces
    pure function move_blocks(p, force) result(motion)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in), contiguous :: force(:, :)       !! The forces: (3, n_joint) [N/m]
       real(wp) :: motion(size(p%load, 1), size(p%load, 2))  !! The motion: (n_dof, n_block) [m]
       integer :: b
 
       motion = p%load
-      call add_forces(p%springs, force, motion)
+      call add_row_forces(size(motion, 1), size(p%joint), p%block, p%row, force, motion)
       do b = 1, size(motion, 2)
          motion(:, b) = solved(p%lower(:, :, b), motion(:, b))
       end do
@@ -212,14 +210,14 @@ contains
 
       opening = openings(p, force, motion)
       do i = 1, size(p%joint)
-         normal = force(:, i) + p%springs%shift(:, i)
+         normal = force(:, i) + p%shift(:, i)
          change = 0.0_wp
          do k = 1, 2
             if (p%give(k, k, i) > 0.0_wp) change(k) = max(0.0_wp, abs(min(opening(k, i), &
                & p%give(k, k, i)*normal(k))) - p%noise)
          end do
          if (p%give(3, 3, i) > 0.0_wp) then
-            bound = shear_bound(p%springs%cone(i), normal)
+            bound = shear_bound(p%cone(i), normal)
             associate (pushed => force(3, i) - opening(3, i)/p%give(3, 3, i))
                change(3) = p%give(3, 3, i)*abs(force(3, i) - max(-bound, min(bound, pushed)))
             end associate
@@ -243,12 +241,12 @@ contains
       integer :: i, k
 
       do i = 1, size(p%joint)
-         associate (f => within(:, i), shift => p%springs%shift(:, i))
+         associate (f => within(:, i), shift => p%shift(:, i))
             f = force(:, i)
             do k = 1, 2
                f(k) = merge(max(-shift(k), f(k)), 0.0_wp, p%give(k, k, i) > 0.0_wp)
             end do
-            bound = shear_bound(p%springs%cone(i), f + shift)
+            bound = shear_bound(p%cone(i), f + shift)
             f(3) = merge(max(-bound, min(bound, f(3))), 0.0_wp, p%give(3, 3, i) > 0.0_wp)
          end associate
       end do

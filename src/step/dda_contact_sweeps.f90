@@ -151,14 +151,14 @@ contains
       integer :: a, b
       logical :: solved
 
-      a = p%springs%equation(1, i)
-      b = p%springs%equation(2, i)
-      opening = p%gap(:, i) + p%soft(:, i)*(force - p%rest(:, i))
-      call see(n_dof, p%springs%row(:, :, 1, i), motion(:, a), opening)
-      call see(n_dof, p%springs%row(:, :, 2, i), motion(:, b), opening)
+      a = p%block(1, i)
+      b = p%block(2, i)
+      opening = p%gap(:, i) + p%soft(:, i)*force
+      call see(n_dof, p%row(:, :, 1, i), motion(:, a), opening)
+      call see(n_dof, p%row(:, :, 2, i), motion(:, b), opening)
       before = force
       opening(1:2) = sign(max(0.0_wp, abs(opening(1:2)) - p%noise), opening(1:2))
-      associate (cone => p%springs%cone(i), shift => p%springs%shift(:, i), give => p%give(:, :, i))
+      associate (cone => p%cone(i), shift => p%shift(:, i), give => p%give(:, :, i))
          if (.not. any(abs(force + shift) > 0.0_wp) .and. all(opening(1:2) >= 0.0_wp) &
             & .and. .not. cone%limit > 0.0_wp) return
          solved = .false.
@@ -190,9 +190,9 @@ contains
          if (.not. p%give(k, k, i) > 0.0_wp) cycle
          wanted = force(k) - gap(k)/p%give(k, k, i)
          if (k < 3) then
-            wanted = max(-p%springs%shift(k, i), wanted)
+            wanted = max(-p%shift(k, i), wanted)
          else
-            bound = shear_bound(p%springs%cone(i), force + p%springs%shift(:, i))
+            bound = shear_bound(p%cone(i), force + p%shift(:, i))
             wanted = max(-bound, min(bound, wanted))
          end if
          gap = gap + (wanted - force(k))*p%give(:, k, i)

@@ -2,6 +2,7 @@
 module dda_spring_products
    use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
+   use dda_joint_matrix, only : add_row_forces, row_openings
    use dda_kinds, only : wp
    implicit none
    private
@@ -45,7 +46,7 @@ contains
       type(joint_face_t), intent(in) :: face
       real(wp), intent(in) :: trial(3)       !! Its trial force before the motion: (3) [N/m]
       integer, intent(in) :: j
-      real(wp), intent(inout) :: load(:, :)  !! Receives the load: (n_dof, n_equation)
+      real(wp), intent(inout), contiguous :: load(:, :)  !! Receives the load: (n_dof, n_equation)
       real(wp) :: tangent(3, 3), constant(3)
 
       constant = trial
@@ -53,65 +54,28 @@ contains
          call apply_face(cone, face, tangent, constant)
          constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
       end if
-      call add_force(springs, constant, j, load)
+      call add_row_forces(size(load, 1), 1, springs%equation(:, j:j), springs%row(:, :, :, j:j), &
+         & constant, load)
    end subroutine add_load
 
    !> Let forces of all joints act on the blocks: add R f
    pure subroutine add_forces(springs, force, load)
       type(joint_springs_t), intent(in) :: springs
-      real(wp), intent(in) :: force(:, :)    !! The forces: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: load(:, :)
-      integer :: j
+      real(wp), intent(in), contiguous :: force(:, :)    !! The forces: (3, n_joint) [N/m]
+      real(wp), intent(inout), contiguous :: load(:, :)
 
-      do j = 1, size(force, 2)
-         call add_force(springs, force(:, j), j, load)
-      end do
+      call add_row_forces(size(load, 1), size(force, 2), springs%equation, springs%row, force, &
+         & load)
    end subroutine add_forces
-
-   !> Let the force of one joint act on its blocks
-   pure subroutine add_force(springs, force, j, load)
-      type(joint_springs_t), intent(in) :: springs
-      real(wp), intent(in) :: force(3)       !! The force: (3) [N/m]
-      integer, intent(in) :: j
-      real(wp), intent(inout) :: load(:, :)
-      integer :: c, e, side
-
-      if (.not. any(abs(force) > 0.0_wp)) return
-      do side = 1, 2
-         e = springs%equation(side, j)
-         if (e == 0) cycle
-         ! blocks have 3 or 6 unknowns: three at a time, so that the compiler knows the length
-         do c = 1, size(load, 1), 3
-            load(c:c + 2, e) = load(c:c + 2, e) + springs%row(c:c + 2, 1, side, j)*force(1) &
-               & + springs%row(c:c + 2, 2, side, j)*force(2) &
-               & + springs%row(c:c + 2, 3, side, j)*force(3)
-         end do
-      end do
-   end subroutine add_force
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)
       type(joint_springs_t), intent(in) :: springs
-      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      real(wp), intent(in), contiguous :: motion(:, :)  !! The motion: (n_dof, n_equation)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
       real(wp) :: increment(3, size(springs%equation, 2))
-      real(wp) :: seen(3)
-      integer :: c, e, j, k, side
 
-      do j = 1, size(springs%equation, 2)
-         seen = 0.0_wp
-         do side = 1, 2
-            e = springs%equation(side, j)
-            if (e == 0) cycle
-            do c = 1, size(motion, 1), 3
-               do k = 1, 3
-                  seen(k) = seen(k) + springs%row(c, k, side, j)*motion(c, e) &
-                     & + springs%row(c + 1, k, side, j)*motion(c + 1, e) &
-                     & + springs%row(c + 2, k, side, j)*motion(c + 2, e)
-               end do
-            end do
-         end do
-         increment(:, j) = seen
-      end do
+      call row_openings(size(motion, 1), size(increment, 2), springs%equation, springs%row, &
+         & motion, increment)
    end function relative_displacement
 end module dda_spring_products
