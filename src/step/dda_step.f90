@@ -92,13 +92,10 @@ contains
       do attempt = 0, max_retries
          if (is_too_short(run)) exit
          if (run%step%renews) call place_contacts(run)
-         outcome = step_outcome_t(accepted=run%step%is_solved)
-         if (.not. outcome%accepted) then
-            call assemble_step(run)
-            outcome%accepted = .true.
-            if (in_time(run)) outcome = foresee_event(run)
-            if (outcome%accepted) call solve_contacts(run)
-         end if
+         call assemble_step(run)
+         outcome = step_outcome_t(accepted=.true.)
+         if (in_time(run)) outcome = foresee_event(run)
+         if (outcome%accepted) call solve_contacts(run)
          if (outcome%accepted) outcome = check_motion(run)
          if (outcome%accepted .and. in_time(run)) then
             call solve_impacts(run)

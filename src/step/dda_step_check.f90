@@ -54,7 +54,6 @@ contains
          run%march%dt = outcome%dt
          step%was_cut = step%was_cut .or. outcome%was_cut
          step%renews = outcome%beyond_margin .or. outcome%wrong_axes
-         step%is_solved = step%renews .and. in_time(run)
          if (outcome%beyond_margin) &
             & call widen_margins(run%system, step%state%motion, run%march%reach)
          if (.not. step%renews) step%overshoot = outcome%overshoot

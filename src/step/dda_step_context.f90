@@ -96,8 +96,6 @@ module dda_step_context
       logical :: renews = .false.
       !> The contacts at the end of the step before, where a search must not go by an earlier one
       type(contacts_t), allocatable :: kept
-      !> Whether the last try was solved with the joints that a search for another one finds
-      logical :: is_solved = .false.
       !> How often the separating axes were chosen by the motion of a try
       integer :: choices = 0
       logical :: accepted = .false.  !! Whether the step counts

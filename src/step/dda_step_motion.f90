@@ -3,8 +3,7 @@ module dda_step_motion
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
-   use dda_contact_types, only : same_joint
-   use dda_contacts, only : contacts_t, follow_contacts
+   use dda_contacts, only : follow_contacts
    use dda_inertia_springs, only : stiffen_contacts
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -43,7 +42,6 @@ contains
       associate (step => run%step)
          step%was_cut = .false.
          step%choices = 0
-         step%is_solved = .false.
          step%ends_at_event = .false.
          step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current
@@ -65,26 +63,15 @@ contains
    pure subroutine place_contacts(run)
       type(run_t), intent(inout) :: run
       integer, allocatable :: before(:, :)
-      type(contacts_t) :: solved
 
       associate (system => run%system, settings => run%settings)
          if (run%contacts%searched) then
-            solved = run%contacts
             allocate (before, source=run%contacts%springs%equation)
             if (run%contacts%remember) run%contacts = run%step%kept
             if (.not. allocated(run%march%reach)) &
                & run%march%reach = first_reach(system, settings, run%march)
             call renew_contacts(system, run%step%travel, run%march%reach, settings%penalty_ratio, &
                & settings%n_dof, run%contacts)
-            if (run%step%is_solved) &
-               & run%step%is_solved = size(run%contacts%joint) == size(solved%joint)
-            if (run%step%is_solved) &
-               & run%step%is_solved = all(same_joint(run%contacts%joint, solved%joint))
-            if (run%step%is_solved) then
-               solved%search = run%contacts%search
-               run%contacts = solved
-               return
-            end if
             call renew_springs(before, run%contacts%springs, run%equations)
          else
             call follow_contacts(system, settings%penalty_ratio, settings%n_dof, run%contacts)
