@@ -16,17 +16,16 @@ contains
       more = n + size(bars%trial)
       call append_springs(contacts, more, springs)
       state = step
-      deallocate (state%force, state%trial, state%face)
-      allocate (state%force(3, more), state%trial(3, more), source=0.0_wp)
+      deallocate (state%force, state%gap, state%face)
+      allocate (state%force(3, more), state%gap(3, more), source=0.0_wp)
       allocate (state%face(more))
       state%force(:, :n) = step%force
-      state%trial(:, :n) = step%trial
+      state%gap(:, :n) = step%gap
       do i = 1, size(bars%trial)
          call make_joint(bars, i, n + i, springs, load)
          state%force(:, n + i) = max(-springs%shift(:, n + i), springs%rest(:, n + i))
          state%force(3, n + i) = max(-springs%cone(n + i)%limit, &
             & min(springs%cone(n + i)%limit, springs%rest(3, n + i)))
-         state%trial(:, n + i) = state%force(:, n + i)
       end do
    end procedure append_bars
 
@@ -41,12 +40,11 @@ contains
       allocate (springs%equation(2, more), source=0)
       allocate (springs%row(size(contacts%row, 1), 3, 2, more), source=0.0_wp)
       allocate (springs%shift(3, more), springs%soft(3, more), springs%rest(3, more), source=0.0_wp)
-      allocate (springs%stiffness(more), source=1.0_wp)
+      allocate (springs%stiffness(more), source=0.0_wp)
       allocate (springs%cone(more))
       springs%equation(:, :n) = contacts%equation
       springs%row(:, :, :, :n) = contacts%row
       springs%shift(:, :n) = contacts%shift
-      springs%stiffness(:n) = contacts%stiffness
       springs%cone(:n) = contacts%cone
    end subroutine append_springs
 
@@ -98,7 +96,6 @@ contains
       n = size(step%face)
       step%motion = state%motion
       step%increment = state%increment(:, :n)
-      step%trial = state%trial(:, :n)
       step%force = state%force(:, :n)
       step%face = state%face(:n)
       step%passes = state%passes

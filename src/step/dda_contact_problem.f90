@@ -57,12 +57,11 @@ contains
    !> The problem of some joints
    pure subroutine pose_contacts(equations, springs, state, joint, p)
       type(equations_t), intent(in) :: equations
-      !> Springs of all joints; their stiffness only measures gaps here
-      type(joint_springs_t), intent(in) :: springs
+      type(joint_springs_t), intent(in) :: springs  !! Rows and bounds of all joints
       type(step_state_t), intent(in) :: state
       integer, intent(in) :: joint(:)  !! Numbers of the joints: (n)
       type(contact_problem_t), intent(out) :: p
-      integer :: i, n_dof
+      integer :: n_dof
 
       n_dof = size(springs%row, 1)
       ! strain that follows its load has no part in impulses
@@ -79,11 +78,7 @@ contains
       p%limit = p%cone%limit
       p%noise = min(0.25_wp, state%fineness)*equations%gap_noise
       if (state%rates) p%noise = of_speeds*p%noise
-      allocate (p%gap(3, size(joint)))
-      do i = 1, size(joint)
-         p%gap(:, i) = (state%force(:, joint(i)) - state%trial(:, joint(i))) &
-            & /springs%stiffness(joint(i))
-      end do
+      p%gap = state%gap(:, joint)
       allocate (p%soft, mold=p%gap)
       p%soft = 0.0_wp
       if (allocated(springs%soft)) then

@@ -51,13 +51,12 @@ contains
    !> Contact forces and motion of one step
    pure subroutine settle_contacts(equations, springs, state)
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints; their stiffness only measures gaps here
-      type(joint_springs_t), intent(in) :: springs
-      !> Forces and trial forces to begin with in; motion, forces and faces out
+      type(joint_springs_t), intent(in) :: springs  !! Rows and bounds of the joints
+      !> Gaps, and forces to begin with in; motion, forces and faces out
       type(step_state_t), intent(inout) :: state
       type(contact_problem_t) :: p
       integer, allocatable :: joint(:)
-      integer :: begun, e, first(size(springs%stiffness) + 1), g, i, most, n, passes
+      integer :: begun, e, first(size(springs%stiffness) + 1), g, most, n, passes
       type(residual_t) :: residual
       real(wp), allocatable :: force(:, :)
       logical :: acts(size(springs%stiffness))
@@ -84,9 +83,6 @@ contains
          state%motion(:size(p%load, 1), p%equation) = move_blocks(p, force)
          if (residual%opening > state%residual) state%worst = p%joint(residual%joint)
          state%residual = max(residual%opening, state%residual)
-         do i = 1, size(p%joint)
-            state%trial(:, p%joint(i)) = force(:, i) - springs%stiffness(p%joint(i))*p%gap(:, i)
-         end do
       end do
       state%face = face_of(springs%cone, state%force, springs%shift)
       state%passes = begun + most + 1

@@ -80,10 +80,10 @@ contains
       end associate
    end subroutine see_curves
 
-   !> Rows half way of a motion, and trial forces to begin with; what strain lets them lack of the
-   !> gaps at the end are curves
+   !> Rows half way of a motion, and gaps to begin with; what strain lets them lack of the gaps at
+   !> the end are curves
    pure subroutine take_turned_rows(run, motion)
-      !> The run, with joints and gaps after the motion; curves and trial forces are set
+      !> The run, with joints and gaps after the motion; curves and gaps of the step are set
       type(run_t), intent(inout) :: run
       real(wp), intent(in) :: motion(:, :)
       type(joint_place_t) :: place(size(run%contacts%place))
@@ -109,8 +109,7 @@ contains
                step%curve(:, j) = 0.0_wp
                step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
             end associate
-            step%state%trial(:, j) = step%state%force(:, j) - springs%stiffness(j) &
-               & *([gap(1:2, j), 0.0_wp] + step%curve(:, j))
+            step%state%gap(:, j) = [gap(1:2, j), 0.0_wp] + step%curve(:, j)
          end do
       end associate
    end subroutine take_turned_rows

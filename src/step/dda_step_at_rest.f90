@@ -3,7 +3,6 @@ submodule (dda_step) dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_update, only : displace_blocks
-   use dda_inertia_springs, only : stiffen_contacts
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : add_forces
    use dda_step_context, only : run_state_t
@@ -144,7 +143,6 @@ contains
             & *run%equations%gap_noise/(balanced*run%march%free_acceleration)))
          do i = 1, most_solutions
             where (abs(contacts%force(1:2, :)) > 0.0_wp) contacts%gap(1:2, :) = 0.0_wp
-            call stiffen_contacts(run)
             call begin_step(run)
             call assemble_blocks(run%system, run%settings, step%dt, run%equations, run%march%time)
             call settle_joints(run%settings, run%equations, contacts%springs, step%state)

@@ -4,7 +4,6 @@ module dda_step_motion
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : follow_contacts
-   use dda_inertia_springs, only : stiffen_contacts
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : relative_displacement
@@ -85,7 +84,6 @@ contains
       type(run_t), intent(inout) :: run
 
       run%step%dt = run%march%dt
-      if (in_time(run)) call stiffen_contacts(run)
       call begin_step(run)
       run%step%state%fall = run%step%dt*run%march%free_acceleration*run%march%longest
       call assemble_blocks(run%system, run%settings, run%step%dt, run%equations, &
@@ -118,6 +116,9 @@ contains
          state%motion = 0.0_wp
          state%increment = run%contacts%increment
          state%force = run%contacts%force
+         ! slip brings in no work in a dynamic run
+         state%gap = run%contacts%gap
+         state%gap(3, :) = 0.0_wp
          state%trial = run%contacts%trial
          state%face = run%contacts%face
          state%cone = run%contacts%springs%cone

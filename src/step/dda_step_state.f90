@@ -19,7 +19,9 @@ module dda_step_state
       real(wp), allocatable :: motion(:, :)
       !> Opening at the two contacts and slip of each joint: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
-      !> Trial forces where the motion begins: (3, n_joint) [N/m]
+      !> Gaps without motion, and slips to begin with, in a dynamic run: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> Trial forces where the motion begins, in a static run: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
       !> Admissible forces, those of the step before to begin with: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)

@@ -20,7 +20,6 @@ module dda_velocity
    use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
       & parting_acceleration
    use dda_fixed_points, only : add_fixed_springs, turn_fixed_row
-   use dda_inertia_springs, only : inertia_stiffness
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
@@ -325,14 +324,12 @@ contains
       state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%step%longest)
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
-         springs%stiffness(j) = inertia_stiffness(run%system, run%contacts%joint(j)%block, &
-            & run%step%dt)
          call keep_closed(impact%closed(:, j), j, springs, state)
          part = [restitution*impact%part(:, j), 0.0_wp]
          ! strain pushes no contacts apart that bore nothing before the step
          bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp
          where ([bears, any(bears)]) part = part - impact%strain_opening(:, j)
-         state%trial(:, j) = state%trial(:, j) + springs%stiffness(j)*run%step%dt*part
+         state%gap(:, j) = -run%step%dt*part
       end do
    end subroutine begin_rates
 
@@ -347,19 +344,16 @@ contains
       type(step_state_t), intent(inout) :: state
       integer :: k
 
-      state%trial(:, j) = state%force(:, j)
       do k = 1, 2
          state%face(j)%open(k) = .not. closed(k)
          if (closed(k)) cycle
          springs%row(:, k, :, j) = 0.0_wp
          springs%shift(k, j) = 0.0_wp
          state%force(k, j) = 0.0_wp
-         state%trial(k, j) = -1.0_wp
       end do
       if (.not. any(closed)) then
          springs%row(:, 3, :, j) = 0.0_wp
          state%force(3, j) = 0.0_wp
-         state%trial(3, j) = 0.0_wp
       end if
    end subroutine keep_closed
 
