@@ -6,6 +6,7 @@ submodule (dda_step) dda_step_check
    use dda_contacts, only : contacts_t
    use dda_impact, only : check_impact
    use dda_parting_line, only : block_gap
+   use dda_step_context, only : may_shorten
    use dda_step_interval, only : check_length
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
    implicit none
@@ -14,8 +15,6 @@ submodule (dda_step) dda_step_check
    real(wp), parameter :: no_matter = 1.0e-6_wp
    !> Maximum number of selections of separating axes per step
    integer, parameter :: max_choices = 2
-   !> Shortest reduced step over the longest one
-   real(wp), parameter :: shortest = 1.0e-3_wp
    !> Permitted penetration over the size of the smaller block
    real(wp), parameter :: deep = 2.0e-4_wp
 
@@ -92,8 +91,7 @@ contains
          outcome%dt = step%dt
          outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
          outcome%accepted = .not. outcome%wrong_axes
-         if (outcome%accepted .and. entered .and. step%dt > shortest*run%march%longest) &
-            & outcome = half_step(run)
+         if (outcome%accepted .and. entered .and. may_shorten(run)) outcome = half_step(run)
       end associate
    end procedure check_axes
 
@@ -107,8 +105,7 @@ contains
       logical :: breaks
 
       outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
-      if (all(run%contacts%search%outline%convex) &
-         & .or. run%step%dt <= shortest*run%march%longest) return
+      if (all(run%contacts%search%outline%convex) .or. .not. may_shorten(run)) return
       after = run%system
       found = run%contacts
       call update_contacts(run%step, run%settings, found, breaks)

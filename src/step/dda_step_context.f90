@@ -11,7 +11,7 @@ module dda_step_context
    private
 
    public :: energy_t, march_t, contact_note_t, run_state_t, run_t, step_context_t, step_outcome_t
-   public :: in_time, most_spare_cuts, near_gap
+   public :: in_time, may_shorten, most_spare_cuts, near_gap
 
    !> Maximum number of spare cuts; each step adds one, each cut costs three
    integer, parameter :: most_spare_cuts = 1000
@@ -61,7 +61,6 @@ module dda_step_context
    !> One step
    type :: step_context_t
       real(wp) :: dt = 0.0_wp       !! Length of the step [s]
-      real(wp) :: longest = 0.0_wp  !! Length of a step that nothing shortens [s]
       type(step_state_t) :: state   !! Motion of the blocks and states of the joints
       !> Gaps at its end beyond those that the rows tell, where blocks move in time:
       !> (3, n_joint) [m]
@@ -233,6 +232,8 @@ module dda_step_context
 
    !> Gap of a closed contact over the size of the smaller block
    real(wp), parameter :: near = 1.0e-8_wp
+   !> Shortest step over the longest one that is reduced for residual forces or penetration
+   real(wp), parameter :: shortest = 1.0e-3_wp
 
 contains
 
@@ -242,6 +243,13 @@ contains
 
       in_time = run%settings%dynamic .and. run%settings%current
    end function in_time
+
+   !> True if a step is long enough to be reduced for residual forces or penetration
+   pure logical function may_shorten(run)
+      type(run_t), intent(in) :: run
+
+      may_shorten = run%step%dt > shortest*run%march%longest
+   end function may_shorten
 
    !> Gap below which two blocks count as touching
    pure real(wp) function near_gap(system, pair)

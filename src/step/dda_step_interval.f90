@@ -12,7 +12,7 @@ module dda_step_interval
    use dda_load_clock, only : has_path, new_load_clock
    use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, run_t, step_context_t, step_outcome_t
+   use dda_step_context, only : march_t, may_shorten, run_t, step_context_t, step_outcome_t
    use dda_step_state, only : equations_t
    implicit none
    private
@@ -36,8 +36,6 @@ module dda_step_interval
    real(wp), parameter :: cut = 0.3_wp
    !> Penetration by residual forces over the size of the smallest block
    real(wp), parameter :: deepest = 1.0e-4_wp
-   !> Shortest step reduced for residual forces over the longest one
-   real(wp), parameter :: shortest = 1.0e-3_wp
    !> Motion over the permitted one above which a step is rejected
    real(wp), parameter :: too_far = 2.0_wp
    !> The same on a loading path
@@ -268,7 +266,7 @@ contains
       type(run_t), intent(in) :: run
 
       enters = run%step%state%residual > deepest*sqrt(minval(run%system%area, &
-         & mask=run%system%equation > 0)) .and. run%step%dt > shortest*run%march%longest
+         & mask=run%system%equation > 0)) .and. may_shorten(run)
    end function enters
 
    !> Most that a step may move where blocks move

@@ -44,7 +44,6 @@ contains
          step%ends_at_event = .false.
          step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current
-         step%longest = run%march%longest
          step%slowest_impact = 2.0_wp*run%march%free_acceleration*run%march%longest
          step%travel = 0.0_wp*run%system%vertex
          if (.not. run%settings%current) return

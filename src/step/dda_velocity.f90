@@ -23,7 +23,7 @@ module dda_velocity
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
-   use dda_step_context, only : run_t
+   use dda_step_context, only : may_shorten, run_t
    use dda_step_state, only : step_state_t
    implicit none
    private
@@ -38,8 +38,6 @@ module dda_velocity
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
    !> Round-off of energy over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
-   !> Shortest step reduced for residual forces over the longest one
-   real(wp), parameter :: shortest = 1.0e-3_wp
    !> Energy gain of contacts over that of motion, strain, fall and loads
    real(wp), parameter :: max_energy_gain = 1.0e-6_wp
 
@@ -92,7 +90,7 @@ contains
          if (.not. step%has_velocity) return
          ! points that are led bring in energy of their own, and what contacts leave ends no run
          if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
-            & .or. step%dt <= shortest*step%longest .or. &
+            & .or. .not. may_shorten(run) .or. &
             & kinetic_energy(equations, step%velocity) <= allowed + allowed_gain(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
@@ -197,7 +195,7 @@ contains
          call place_joint(run%step%after%moved, joint(j), place(j), gap)
       end do
       call place_rows(run%system, run%step%after%motion, joint, place, impact%springs%row)
-      impact%follows = strain_follows(run%system, run%step%longest)
+      impact%follows = strain_follows(run%system, run%march%longest)
       impact%strain_opening = strain_opening(run, impact%follows, impact%springs)
       do j = 1, size(joint)
          do side = 1, 2
@@ -321,7 +319,7 @@ contains
       state = run%step%state
       state%rates = .true.
       ! speeds are found to the same digits in short steps
-      state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%step%longest)
+      state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%march%longest)
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
          call keep_closed(impact%closed(:, j), j, springs, state)
