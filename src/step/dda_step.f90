@@ -71,8 +71,6 @@ module dda_step
    real(wp), parameter :: rough = 1.0e-4_wp
    !> Smallest reported reduction of restitution
    real(wp), parameter :: small_reduction = 1.0e-3_wp
-   !> Shortest step in time, below which stiffness overflows [s]
-   real(wp), parameter :: shortest_step = 1.0e-40_wp
 
 contains
 
@@ -118,11 +116,12 @@ contains
       end if
    end subroutine advance
 
-   !> Whether a step in time is too short for its stiffness, or for time to go on
+   !> True if a dynamic step is shorter than rounding of the time
    pure logical function is_too_short(run)
       type(run_t), intent(in) :: run
 
-      is_too_short = in_time(run) .and. run%march%dt < max(shortest_step, spacing(run%march%time))
+      is_too_short = in_time(run) &
+         & .and. run%march%dt < spacing(max(run%march%time, run%march%longest))
    end function is_too_short
 
    !> End a run in time whose steps no longer lead on: a prescribed displacement against friction

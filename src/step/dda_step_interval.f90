@@ -298,7 +298,7 @@ contains
             if (step%farthest > 0.0_wp) &
                & factor = min(growth, 0.8_wp*sqrt(longest_motion(march)/step%farthest))
             if (allocated(march%last_motion)) &
-               & factor = merge(0.1_wp, min(factor, calm_growth), rattles(march, step))
+               & factor = merge(1.0_wp/growth, min(factor, calm_growth), rattles(march, step))
             march%last_motion = step%state%motion
          end if
          march%dt = min(march%longest, factor*march%dt)

@@ -115,10 +115,10 @@ contains
          state%motion = 0.0_wp
          state%increment = run%contacts%increment
          state%force = run%contacts%force
+         state%trial = run%contacts%trial
          ! slip brings in no work in a dynamic run
          state%gap = run%contacts%gap
          state%gap(3, :) = 0.0_wp
-         state%trial = run%contacts%trial
          state%face = run%contacts%face
          state%cone = run%contacts%springs%cone
          state%unsettled_work = 0.0_wp
