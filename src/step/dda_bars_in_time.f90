@@ -2,14 +2,28 @@
 !>
 !> The mean force of an elastic bar over a step is A0 + share*k*e. Bounded above and below it is
 !> like a shear force that has no friction, else like a normal force.
-submodule (dda_multipliers) dda_bars_in_time
-   use dda_contact_types, only : unbounded
+module dda_bars_in_time
+   use dda_bar_springs, only : bar_springs_t
+   use dda_contact_types, only : joint_springs_t, unbounded
+   use dda_kinds, only : wp
+   use dda_step_state, only : step_state_t
    implicit none
+   private
+
+   public :: append_bars, drop_bars
 
 contains
 
    !> The joints of a step and behind them its bars
-   module procedure append_bars
+   pure subroutine append_bars(bars, contacts, step, springs, state, load)
+      type(bar_springs_t), intent(in) :: bars
+      type(joint_springs_t), intent(in) :: contacts
+      type(step_state_t), intent(in) :: step
+      !> Springs of joints and bars
+      type(joint_springs_t), intent(out) :: springs
+      type(step_state_t), intent(out) :: state
+      !> Receives what the bars carry in the middle of their bounds: (n_dof, n_equation) [N/m]
+      real(wp), intent(inout) :: load(:, :)
       integer :: i, n, more
 
       n = size(contacts%stiffness)
@@ -27,7 +41,7 @@ contains
          state%force(3, n + i) = max(-springs%cone(n + i)%limit, &
             & min(springs%cone(n + i)%limit, springs%rest(3, n + i)))
       end do
-   end procedure append_bars
+   end subroutine append_bars
 
    !> The springs of the joints of a step and behind them some of nothing
    pure subroutine append_springs(contacts, more, springs)
@@ -90,7 +104,9 @@ contains
    end subroutine make_joint
 
    !> Give the joints of a step back what was found beside its bars
-   module procedure drop_bars
+   pure subroutine drop_bars(state, step)
+      type(step_state_t), intent(in) :: state
+      type(step_state_t), intent(inout) :: step
       integer :: n
 
       n = size(step%face)
@@ -102,6 +118,6 @@ contains
       step%settled = state%settled
       step%residual = state%residual
       step%worst = state%worst
-   end procedure drop_bars
+   end subroutine drop_bars
 
-end submodule dda_bars_in_time
+end module dda_bars_in_time

@@ -4,11 +4,18 @@
 !> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
 !> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
 !> Tarnow 1992, ZAMP 43, 757-792).
-submodule (dda_step_motion) dda_curved_motion
+module dda_curved_motion
+   use dda_block_inertia, only : packed_velocity
    use dda_block_update, only : displace_blocks
    use dda_contact_types, only : joint_place_t, place_joint, place_rows
+   use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
+   use dda_spring_products, only : relative_displacement
+   use dda_step_context, only : run_t
    implicit none
+   private
+
+   public :: follow_curves, foresee_curves
 
    !> Maximum number of corrections
    integer, parameter :: max_passes = 8
@@ -18,7 +25,8 @@ submodule (dda_step_motion) dda_curved_motion
 contains
 
    !> Begin with the rows of blocks that go on as they are
-   module procedure foresee_curves
+   pure subroutine foresee_curves(run)
+      type(run_t), intent(inout) :: run
       real(wp), dimension(size(run%step%state%motion, 1), size(run%step%state%motion, 2)) :: motion
       real(wp) :: error
 
@@ -27,11 +35,12 @@ contains
       run%step%state%increment = 0.0_wp
       call see_curves(run, motion, error)
       call take_turned_rows(run, motion)
-   end procedure foresee_curves
+   end subroutine foresee_curves
 
    !> Settle the contacts again with rows of the motion that was found, until closed contacts have
-   !> no gap at the end of the step
-   module procedure follow_curves
+   !> no gap at the end of the step; blocks and joints there are set
+   pure subroutine follow_curves(run)
+      type(run_t), intent(inout) :: run
       real(wp) :: size_of, error
       integer :: pass
 
@@ -47,7 +56,7 @@ contains
                & run%contacts%springs, state)
          end do
       end associate
-   end procedure follow_curves
+   end subroutine follow_curves
 
    !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
    pure subroutine see_curves(run, motion, error)
@@ -134,4 +143,4 @@ contains
       if (abs(turn) > 1.0e-3_wp) turn_ratio = 2.0_wp*tan(turn/2.0_wp)/turn
    end function turn_ratio
 
-end submodule dda_curved_motion
+end module dda_curved_motion

@@ -8,7 +8,9 @@ module dda_forward
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
    use dda_outline, only : outline_of
+   use dda_path_run, only : follow_clock
    use dda_reactions, only : keep_reactions
+   use dda_run_end, only : conclude, start_run
    use dda_settings, only : settings_t, verdict
    use dda_step, only : advance
    use dda_step_context, only : march_t, run_t
@@ -19,39 +21,6 @@ module dda_forward
    private
 
    public :: run_to_verdict
-
-   interface
-
-      !> Equations, scales and first step of a run, which begins or goes on from another
-      pure module subroutine start_run(run, error, onward)
-         !> Settings, blocks and contacts in; faces to begin with are set
-         type(run_t), intent(inout) :: run
-         !> Allocated if the system cannot be solved
-         type(error_t), allocatable, intent(out) :: error
-         !> The march of the run that this one goes on from; without steps only its held points
-         !> bear forces
-         type(march_t), intent(in), optional :: onward
-      end subroutine start_run
-
-      !> What the end of a run says
-      pure module subroutine conclude(run, error, outcome)
-         type(run_t), intent(in) :: run
-         type(error_t), allocatable, intent(in) :: error
-         !> How it ended; receives what the march counts, the verdict, and why it is undecided
-         type(outcome_t), intent(inout) :: outcome
-      end subroutine conclude
-
-      !> Let the clock of a static run go on where the blocks are at rest before the end of its
-      !> path, and back where they do not come to rest, or leap
-      pure module subroutine follow_clock(run, answer, error, album)
-         type(run_t), intent(inout) :: run
-         !> One of verdict; becomes undecided where the run goes on
-         integer, intent(inout) :: answer
-         type(error_t), allocatable, intent(inout) :: error
-         type(album_t), intent(inout), optional :: album  !! Pictures of the run
-      end subroutine follow_clock
-
-   end interface
 
 contains
 

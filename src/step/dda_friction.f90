@@ -1,11 +1,25 @@
 !> Coulomb friction without dilatancy: shear bounds from converged normal forces
 !>
 !> Equation (M4) of docs/method.md
-submodule (dda_multipliers) dda_friction
+module dda_friction
+   use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : cone_kind, cone_t
+   use dda_kinds, only : wp
+   use dda_open_close, only : iterate_open_close
    use dda_small_systems, only : least_squares
-   use dda_step_state, only : force_noise
+   use dda_step_state, only : equations_t, force_noise, step_state_t
    implicit none
+   private
+
+   public :: iterate_friction
+
+   !> Last points of a fixed-point iteration
+   type :: anderson_t
+      integer :: kept = 0                   !! Number of stored points
+      real(wp), allocatable :: point(:, :)  !! The points, the newest last: (n, kept or more)
+      !> Changes of each of them by the iteration: (n, kept or more)
+      real(wp), allocatable :: change(:, :)
+   end type anderson_t
 
    !> Maximum number of corrections per step
    integer, parameter :: max_corrections = 200
@@ -18,8 +32,20 @@ submodule (dda_multipliers) dda_friction
 
 contains
 
-   !> Find the motion and the states of one step under Coulomb friction
-   module procedure iterate_friction
+   !> Find the motion and the states of one step under Coulomb friction. In a dynamic run the bounds
+   !> begin with the normal forces of the last step, and faces as they were: small changes cost
+   !> little, and joints that slid go on sliding. Else, and where that does not settle, no joint may
+   !> slide at first
+   pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
+      !> Blocks assembled; matrix and factor are made again
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      !> Most changes of faces before Newton's method is used
+      integer, intent(in) :: max_changes
+      !> True if the step goes on from the forces of the last one
+      logical, intent(in) :: goes_on
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
       type(step_state_t) :: begun
       real(wp) :: bound(size(springs%stiffness)), tolerance
 
@@ -41,7 +67,7 @@ contains
       if (all(abs(state%force(3, :)) <= bound + tolerance &
          & .or. springs%cone%kind == cone_kind%no_slip)) return
       call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
-   end procedure iterate_friction
+   end subroutine iterate_friction
 
    !> Bound all shear forces by friction times the normal forces of the pass before, until these no
    !> longer change. Where blocks fall so far that rounding hides smaller changes, the bounds that
@@ -59,6 +85,7 @@ contains
       integer :: correction, stale
       logical :: resolved
 
+      allocate (known%point(size(bound), memory + 1), known%change(size(bound), memory + 1))
       state%cone = cone_t()
       state%cone%kind = springs%cone%kind
       stale = 0
@@ -84,12 +111,15 @@ contains
       state%settled = .false.
    end subroutine follow_bounds
 
-   !> Anderson's acceleration of a fixed-point iteration
-   module procedure accelerate
+   !> Anderson's acceleration of a fixed-point iteration: the mixture of the stored points whose
+   !> mixed change is least, moved by that change
+   pure subroutine accelerate(known, point, change, next)
+      type(anderson_t), intent(inout) :: known
+      real(wp), intent(in) :: point(:)   !! The last point: (n)
+      real(wp), intent(in) :: change(:)  !! Its change by the iteration: (n)
+      real(wp), intent(out) :: next(:)   !! The point to try next: (n)
       integer :: k
 
-      if (.not. allocated(known%point)) allocate (known%point(size(point), memory + 1), &
-         & known%change(size(point), memory + 1))
       if (known%kept == memory + 1) then
          known%point(:, :memory) = known%point(:, 2:)
          known%change(:, :memory) = known%change(:, 2:)
@@ -105,11 +135,16 @@ contains
          & turns => spread(change, 2, k - 1) - known%change(:, :k - 1))
          next = next - matmul(steps + turns, least_squares(turns, change, negligible))
       end associate
-   end procedure accelerate
+   end subroutine accelerate
 
-   !> Largest shear forces that the joints carry with the normal forces that they have
-   module procedure coulomb_bound
+   !> Largest shear forces that the joints carry with the normal forces that they have; 0 where they
+   !> cannot slide
+   pure function coulomb_bound(springs, state) result(bound)
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(in) :: state
+      real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
+
       bound = springs%cone%limit + springs%cone%friction &
          & *sum(state%force(1:2, :) + springs%shift(1:2, :), dim=1)
-   end procedure coulomb_bound
-end submodule dda_friction
+   end function coulomb_bound
+end module dda_friction

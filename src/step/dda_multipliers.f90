@@ -3,10 +3,12 @@
 !> In time contact forces that obey Coulomb's law as it is are found group by group
 !> (`dda_contact_solver`), and around them the forces of held points and bars.
 module dda_multipliers
-   use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_bar_springs, only : add_bars, couple_bars, judge_bars
+   use dda_bars_in_time, only : append_bars, drop_bars
    use dda_contact_solver, only : settle_contacts
    use dda_contact_types, only : joint_springs_t
    use dda_fixed_points, only : correct_fixed_forces
+   use dda_friction, only : iterate_friction
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_settings, only : flow_rule, settings_t
@@ -14,70 +16,7 @@ module dda_multipliers
    implicit none
    private
 
-   public :: iterate_friction, settle_in_time, settle_joints
-
-   !> What is known of a fixed-point iteration
-   type :: anderson_t
-      integer :: kept = 0                   !! Number of remembered points
-      real(wp), allocatable :: point(:, :)  !! The points, the newest last: (n, kept or more)
-      !> How the iteration would change each of them: (n, kept or more)
-      real(wp), allocatable :: change(:, :)
-   end type anderson_t
-
-   interface
-
-      !> Find the motion and the states of one step under Coulomb friction. In time the bounds begin
-      !> with the normal forces of the step before, and faces as they were: what changes little
-      !> costs little, and what slid goes on sliding. Else, and where that does not settle, no joint
-      !> may slide at first
-      pure module subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
-         !> Blocks assembled; matrix and factor are made anew
-         type(equations_t), intent(inout) :: equations
-         type(joint_springs_t), intent(in) :: springs
-         !> Most changes of faces before Newton's method takes over
-         integer, intent(in) :: max_changes
-         !> Whether the step goes on from the forces of the one before
-         logical, intent(in) :: goes_on
-         !> Faces to begin with in, motion and joints out
-         type(step_state_t), intent(inout) :: state
-      end subroutine iterate_friction
-
-      !> Anderson's acceleration of a fixed-point iteration: the mixture of the remembered points
-      !> whose mixed change is least, moved by that change
-      pure module subroutine accelerate(known, point, change, next)
-         type(anderson_t), intent(inout) :: known
-         real(wp), intent(in) :: point(:)   !! The last point: (n)
-         real(wp), intent(in) :: change(:)  !! How the iteration would change it: (n)
-         real(wp), intent(out) :: next(:)   !! The point to try next: (n)
-      end subroutine accelerate
-
-      !> Largest shear forces that the joints carry with the normal forces that they have; 0 where
-      !> they cannot slide
-      pure module function coulomb_bound(springs, state) result(bound)
-         type(joint_springs_t), intent(in) :: springs
-         type(step_state_t), intent(in) :: state
-         real(wp) :: bound(size(springs%stiffness))  !! The bounds: (n_joint) [N/m]
-      end function coulomb_bound
-
-      !> The joints of a step and behind them its bars
-      pure module subroutine append_bars(bars, contacts, step, springs, state, load)
-         type(bar_springs_t), intent(in) :: bars
-         type(joint_springs_t), intent(in) :: contacts
-         type(step_state_t), intent(in) :: step
-         !> Springs of joints and bars
-         type(joint_springs_t), intent(out) :: springs
-         type(step_state_t), intent(out) :: state
-         !> Receives what the bars carry in the middle of their bounds: (n_dof, n_equation) [N/m]
-         real(wp), intent(inout) :: load(:, :)
-      end subroutine append_bars
-
-      !> Give the joints of a step back what was found beside its bars
-      pure module subroutine drop_bars(state, step)
-         type(step_state_t), intent(in) :: state
-         type(step_state_t), intent(inout) :: step
-      end subroutine drop_bars
-
-   end interface
+   public :: settle_in_time, settle_joints
 
    !> Maximum number of multiplier iterations
    integer, parameter :: max_passes = 100

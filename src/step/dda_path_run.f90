@@ -1,10 +1,18 @@
 !> Static run along its time histories, from rest to rest
-submodule (dda_forward) dda_path_run
+module dda_path_run
    use dda_assembly, only : renew_springs
    use dda_boundary, only : led_displacement
+   use dda_error, only : error_t
+   use dda_frames, only : album_t
+   use dda_kinds, only : wp
    use dda_load_clock, only : goes_on_at, has_path, set_back, set_forward
+   use dda_settings, only : settings_t, verdict
+   use dda_step_context, only : march_t, run_t
    use dda_step_interval, only : longest_motion
    implicit none
+   private
+
+   public :: follow_clock
 
    !> Free fall per step over prescribed displacements
    real(wp), parameter :: led_fall = 1.0e4_wp
@@ -17,7 +25,12 @@ contains
 
    !> Let the clock of a static run go on where the blocks are at rest before the end of its path,
    !> and back where they do not come to rest, or leap
-   module procedure follow_clock
+   pure subroutine follow_clock(run, answer, error, album)
+      type(run_t), intent(inout) :: run
+      !> One of verdict; becomes undecided where the run goes on
+      integer, intent(inout) :: answer
+      type(error_t), allocatable, intent(inout) :: error
+      type(album_t), intent(inout), optional :: album  !! Pictures of the run
       logical :: falls, has_leapt, returned
 
       if (.not. has_path(run%march%clock)) return
@@ -42,7 +55,7 @@ contains
       if (.not. goes_on_at(run%march%clock)) return
       answer = verdict%undecided
       call leave_rest(run, album)
-   end procedure follow_clock
+   end subroutine follow_clock
 
    !> Whether the blocks have moved in a stride by more than the stride before lets expect
    pure logical function leaps(run)
@@ -153,4 +166,4 @@ contains
       march%dt = min(march%longest, march%dt)
    end subroutine set_interval
 
-end submodule dda_path_run
+end module dda_path_run

@@ -1,20 +1,34 @@
 !> Start and end of a run, and its outcome
-submodule (dda_forward) dda_run_end
+module dda_run_end
    use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned
    use dda_contacts, only : raise_springs
    use dda_energy, only : audit_step
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : in_time
+   use dda_settings, only : verdict
+   use dda_step_context, only : in_time, march_t, run_t
    use dda_step_interval, only : first_interval, measure_scales
    use dda_step_motion, only : begin_step
-   use dda_verdict, only : still_moves_away
+   use dda_verdict, only : outcome_t, still_moves_away
    implicit none
+   private
+
+   public :: conclude, start_run
 
 contains
 
    !> Equations, scales and first step of a run, which begins or goes on from another
-   module procedure start_run
+   pure subroutine start_run(run, error, onward)
+      !> Settings, blocks and contacts in; faces to begin with are set
+      type(run_t), intent(inout) :: run
+      !> Allocated if the system cannot be solved
+      type(error_t), allocatable, intent(out) :: error
+      !> The march of the run that this one goes on from; without steps only its restrained points
+      !> bear forces
+      type(march_t), intent(in), optional :: onward
+
       call raise_springs(run%settings, run%system, run%contacts)
       call new_equations(run%system, run%contacts%springs, run%settings, run%equations)
       allocate (run%neighbours(2, size(run%contacts%joint)))
@@ -30,7 +44,7 @@ contains
       else if (run%settings%current .and. run%contacts%springs%give) then
          run%march%drowned = is_drowned(run%system, run%contacts, run%equations)
       end if
-   end procedure start_run
+   end subroutine start_run
 
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
    !> held otherwise than before begin without force. Scales are those of the run as it is now.
@@ -51,7 +65,12 @@ contains
    end subroutine go_on
 
    !> What the end of a run says
-   module procedure conclude
+   pure subroutine conclude(run, error, outcome)
+      type(run_t), intent(in) :: run
+      type(error_t), allocatable, intent(in) :: error
+      !> End of the run; receives counts, the verdict, and the reason if it is undecided
+      type(outcome_t), intent(inout) :: outcome
+
       associate (march => run%march)
          outcome%rest_tolerance = run%settings%rest_tolerance
          if (march%free_acceleration > 0.0_wp) then
@@ -83,7 +102,7 @@ contains
       else if (outcome%verdict == verdict%undecided) then
          outcome%reason = "step limit reached; neither equilibrium nor collapse established"
       end if
-   end procedure conclude
+   end subroutine conclude
 
    !> What the end of a dynamic run says
    pure subroutine conclude_in_time(run, outcome)
@@ -102,4 +121,4 @@ contains
       end if
    end subroutine conclude_in_time
 
-end submodule dda_run_end
+end module dda_run_end

@@ -9,6 +9,8 @@ module dda_step
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
    use dda_step_context, only : in_time, most_spare_cuts, contact_note_t, run_t, step_outcome_t
+   use dda_step_at_rest, only : rest
+   use dda_step_check, only : check_motion, check_speeds, retry
    use dda_step_interval, only : largest_motion
    use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
    use dda_step_reach, only : next_reach
@@ -17,43 +19,7 @@ module dda_step
    implicit none
    private
 
-   public :: advance, check_axes, retry
-
-   interface
-
-      !> A step of blocks that stand still, or are found to: nothing moves in it
-      pure module subroutine rest(run, still)
-         type(run_t), intent(inout) :: run
-         logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
-      end subroutine rest
-
-      !> Check the motion of a try: settled, short enough, within its margins, without an impact
-      !> inside, by the right axes. What the first check says that it does not pass
-      pure type(step_outcome_t) module function check_motion(run) result(outcome)
-         type(run_t), intent(in) :: run
-      end function check_motion
-
-      !> Check the velocities of a try: settled, and no corner inside a neighbour
-      pure type(step_outcome_t) module function check_speeds(run) result(outcome)
-         type(run_t), intent(in) :: run
-      end function check_speeds
-
-      !> Change for the next try what the checks ask for: its length, margins, axes
-      pure module subroutine retry(run, outcome)
-         type(run_t), intent(inout) :: run
-         type(step_outcome_t), intent(in) :: outcome
-      end subroutine retry
-
-      !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
-      !> would go in by depends on the way that both take. A line that has held off a block which
-      !> turns out to be apart was the wrong one, and so was one that has let it in: they are chosen
-      !> anew by the motion; if blocks still enter one another the step is cut, and if some are
-      !> still held off in thin air, they are
-      pure type(step_outcome_t) module function check_axes(run) result(outcome)
-         type(run_t), intent(in) :: run
-      end function check_axes
-
-   end interface
+   public :: advance
 
    !> Maximum number of reductions of a step
    integer, parameter :: max_retries = 40

@@ -1,13 +1,20 @@
 !> Steps of blocks that come to rest or stay at rest
-submodule (dda_step) dda_step_at_rest
+module dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
-   use dda_block_update, only : displace_blocks
+   use dda_block_update, only : carry_over, displace_blocks
+   use dda_energy, only : audit_step
+   use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : add_forces
-   use dda_step_context, only : run_state_t
-   use dda_step_motion, only : begin_step
+   use dda_step_context, only : in_time, run_state_t, run_t
+   use dda_step_motion, only : assemble_step, begin_step, place_contacts, predict_step, &
+      & solve_contacts
+   use dda_velocity, only : solve_impacts
    implicit none
+   private
+
+   public :: rest
 
    !> Steps before the first and between later tests of rest
    integer, parameter :: first_try = 16, every_try = 128
@@ -28,7 +35,10 @@ submodule (dda_step) dda_step_at_rest
 contains
 
    !> A step of blocks that stand still, or are found to: nothing moves in it
-   module procedure rest
+   pure subroutine rest(run, still)
+      type(run_t), intent(inout) :: run
+      logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
+
       still = .false.
       if (.not. in_time(run)) return
       call stands_still(run, still)
@@ -62,7 +72,7 @@ contains
       run%march%time = run%march%time + run%step%dt
       run%march%energy%residual = 0.0_wp
       call audit_step(run)
-   end procedure rest
+   end subroutine rest
 
    !> Bring blocks to rest whose speeds may be what contact forces leave: finer forces take all
    !> speed in few steps, but not of what slides without resistance, and then balance the loads.
@@ -205,4 +215,4 @@ contains
       end associate
       still = .true.
    end subroutine stands_still
-end submodule dda_step_at_rest
+end module dda_step_at_rest

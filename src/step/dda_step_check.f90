@@ -1,15 +1,19 @@
 !> Acceptance of a step, and changes for its repetition
-submodule (dda_step) dda_step_check
+module dda_step_check
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : contacts_t
    use dda_impact, only : check_impact
+   use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
-   use dda_step_context, only : may_shorten
+   use dda_step_context, only : in_time, may_shorten, run_t, step_outcome_t
    use dda_step_interval, only : check_length
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
    implicit none
+   private
+
+   public :: check_axes, check_motion, check_speeds, retry
 
    !> Negligible gap or depth over the size of the smaller block
    real(wp), parameter :: no_matter = 1.0e-6_wp
@@ -20,8 +24,10 @@ submodule (dda_step) dda_step_check
 
 contains
 
-   !> Check the motion of a try
-   module procedure check_motion
+   !> Check the motion of a try: settled, short enough, within its margins, without an impact
+   !> inside, by the right axes. The outcome is that of the first check that fails
+   pure type(step_outcome_t) function check_motion(run) result(outcome)
+      type(run_t), intent(in) :: run
       logical :: searched
 
       searched = run%contacts%searched .and. run%settings%current
@@ -30,14 +36,16 @@ contains
       if (.not. in_time(run)) return
       if (outcome%accepted) outcome = check_impact(run)
       if (outcome%accepted .and. searched) outcome = check_axes(run)
-   end procedure check_motion
+   end function check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
-   module procedure check_speeds
+   pure type(step_outcome_t) function check_speeds(run) result(outcome)
+      type(run_t), intent(in) :: run
+
       outcome = step_outcome_t(accepted=run%step%has_velocity, dt=run%step%dt)
       if (.not. outcome%accepted) outcome = half_step(run)
       if (outcome%accepted .and. run%contacts%searched) outcome = check_penetration(run)
-   end procedure check_speeds
+   end function check_speeds
 
    !> Try half the step
    pure type(step_outcome_t) function half_step(run)
@@ -47,7 +55,10 @@ contains
    end function half_step
 
    !> Change for the next try what the checks ask for: its length, margins, axes
-   module procedure retry
+   pure subroutine retry(run, outcome)
+      type(run_t), intent(inout) :: run
+      type(step_outcome_t), intent(in) :: outcome
+
       associate (step => run%step)
          if (outcome%dt < step%dt) step%choices = 0
          run%march%dt = outcome%dt
@@ -61,10 +72,15 @@ contains
          step%choices = step%choices + 1
          step%travel = travel_by(run%system, step%state%motion)
       end associate
-   end procedure retry
+   end subroutine retry
 
-   !> Check the separating axes of a settled step
-   module procedure check_axes
+   !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
+   !> would go in by depends on the way that both take. A line that has held off a block which
+   !> turns out to be apart was the wrong one, and so was one that has let it in: they are chosen
+   !> again by the motion; if blocks still enter one another the step is cut, and if some are
+   !> still held off in thin air, they are
+   pure type(step_outcome_t) function check_axes(run) result(outcome)
+      type(run_t), intent(in) :: run
       real(wp) :: before, gap, level, matters, told
       logical :: entered, held_off
       integer :: j
@@ -93,7 +109,7 @@ contains
          outcome%accepted = .not. outcome%wrong_axes
          if (outcome%accepted .and. entered .and. may_shorten(run)) outcome = half_step(run)
       end associate
-   end procedure check_axes
+   end function check_axes
 
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, by another edge than that of their contact, where a block with a notch is one of
@@ -131,4 +147,4 @@ contains
       end do
    end function depth
 
-end submodule dda_step_check
+end module dda_step_check

@@ -4,6 +4,7 @@ module dda_step_motion
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : follow_contacts
+   use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : relative_displacement
@@ -14,21 +15,6 @@ module dda_step_motion
    private
 
    public :: assemble_step, begin_step, place_contacts, predict_step, solve_contacts
-
-   interface
-
-      !> Begin with the rows of blocks that go on as they are
-      pure module subroutine foresee_curves(run)
-         type(run_t), intent(inout) :: run
-      end subroutine foresee_curves
-
-      !> Settle the contacts again with rows of the motion that was found, until closed contacts
-      !> have no gap at the end of the step; blocks and joints there are set
-      pure module subroutine follow_curves(run)
-         type(run_t), intent(inout) :: run
-      end subroutine follow_curves
-
-   end interface
 
 contains
 
