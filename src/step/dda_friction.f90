@@ -69,46 +69,46 @@ contains
       call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
    end subroutine iterate_friction
 
-   !> Bound all shear forces by friction times the normal forces of the pass before, until these no
-   !> longer change. Where blocks fall so far that rounding hides smaller changes, the bounds that
-   !> changed least are taken
+   !> Bound all shear forces by friction times the normal forces of the previous pass, until these no
+   !> longer change. Where blocks fall so far that smaller changes are rounding, the pass with the
+   !> least change is the result
    pure subroutine follow_bounds(equations, springs, max_changes, tolerance, bound, state)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: max_changes
-      real(wp), intent(in) :: tolerance    !! Change of a bound that counts as none [N/m]
+      real(wp), intent(in) :: tolerance    !! Tolerance of a bound [N/m]
       real(wp), intent(inout) :: bound(:)  !! Bounds: (n_joint) [N/m]
       type(step_state_t), intent(inout) :: state
-      real(wp), dimension(size(bound)) :: best, change, next
+      real(wp), dimension(size(bound)) :: change, next
       real(wp) :: largest, least
+      type(step_state_t) :: best
       type(anderson_t) :: known
       integer :: correction, stale
-      logical :: resolved
 
       allocate (known%point(size(bound), memory + 1), known%change(size(bound), memory + 1))
       state%cone = cone_t()
       state%cone%kind = springs%cone%kind
       stale = 0
       least = huge(least)
-      resolved = .false.
       do correction = 1, max_corrections
          state%cone%limit = bound
          call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
-         if (.not. state%settled) return
+         if (.not. state%settled) exit
          change = coulomb_bound(springs, state) - bound
          largest = maxval(abs(change))
          state%unsettled_work = sum(abs(change*state%increment(3, :)))
-         if (largest <= tolerance .or. resolved) return
+         if (largest <= tolerance) return
          stale = merge(0, stale + 1, largest < least)
-         if (stale == 0) best = bound
+         if (stale == 0) best = state
          least = min(least, largest)
-         if (stale > max_stale) exit
+         if (stale > merge(memory, max_stale, least <= force_noise(equations, springs, state))) exit
          call accelerate(known, bound, change, next)
          bound = max(0.0_wp, next)
-         resolved = stale >= memory .and. least <= force_noise(equations, springs, state)
-         if (resolved) bound = best
       end do
       state%settled = .false.
+      if (least > force_noise(equations, springs, state)) return
+      best%passes = state%passes
+      state = best
    end subroutine follow_bounds
 
    !> Anderson's acceleration of a fixed-point iteration: the mixture of the stored points whose
