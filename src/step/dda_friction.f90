@@ -69,9 +69,9 @@ contains
       call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
    end subroutine iterate_friction
 
-   !> Bound all shear forces by friction times the normal forces of the previous pass, until these no
-   !> longer change. Where blocks fall so far that smaller changes are rounding, the pass with the
-   !> least change is the result
+   !> Bound all shear forces by friction times the normal forces of the previous pass, until
+   !> these no longer change. Where blocks fall so far that smaller changes are rounding, the pass
+   !> with the least change is the result
    pure subroutine follow_bounds(equations, springs, max_changes, tolerance, bound, state)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
