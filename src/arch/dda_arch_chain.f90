@@ -13,7 +13,7 @@ module dda_arch_chain
    implicit none
    private
 
-   public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain, join_voussoirs
+   public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain
 
    !> Shape, material and joints of an arch
    type :: arch_numbers_t
@@ -154,41 +154,6 @@ contains
       rays%centre(:, :, b) = first/area
       rays%gyration(:, b) = polar/area
    end subroutine find_moments
-
-   !> Join the voussoirs between some joints, as in a mechanism that no other joint takes part in.
-   !> Their moments of inertia are left out
-   pure subroutine join_voussoirs(radius, rays, joint, joined)
-      real(wp), intent(in) :: radius
-      type(arch_rays_t), intent(in) :: rays
-      integer, intent(in) :: joint(:)  !! Numbers of the joints, rising, first and last of all: (m)
-      type(arch_rays_t), intent(out) :: joined
-      real(wp) :: area, first(2, 2), from(2)
-      integer :: b, i, k, m
-
-      m = size(joint)
-      joined%keystone = rays%keystone
-      allocate (joined%direction(2, m), joined%point(2, m), joined%joint(m), joined%stiffness(m))
-      allocate (joined%area(m - 1), joined%centre(2, 2, m - 1))
-      allocate (joined%gyration(2, m - 1), source=0.0_wp)
-      do i = 1, m
-         k = rays%joint(joint(i))
-         joined%direction(:, i) = rays%direction(:, k)
-         joined%point(:, i) = rays%point(:, k)
-         joined%joint(i) = i
-         joined%stiffness(i) = rays%stiffness(joint(i))
-         if (i == m) exit
-         area = 0.0_wp
-         first = 0.0_wp
-         do b = joint(i), joint(i + 1) - 1
-            from = radius*(rays%point(:, rays%joint(b)) - rays%point(:, k)) + rays%centre(:, 1, b)
-            area = area + rays%area(b)
-            first(:, 1) = first(:, 1) + rays%area(b)*from
-            first(:, 2) = first(:, 2) + rays%area(b)*rays%centre(:, 2, b)
-         end do
-         joined%area(i) = area
-         joined%centre(:, :, i) = first/area
-      end do
-   end subroutine join_voussoirs
 
    !> The arch of one thickness ratio
    pure subroutine arch_chain(numbers, rays, thickness_ratio, chain)

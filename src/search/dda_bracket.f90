@@ -1,10 +1,10 @@
 !> Critical value of a parameter: a bracket of a collapsed and a stable decision
 !>
-!> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
-!> prove it. Where the joints tell nothing, the bracket is halved.
+!> The margin of a collapse has its zero where it would stop. Two decisions close around that value
+!> prove it. Where no zero is found, the bracket is halved.
 module dda_bracket
    use dda_chain_decision, only : decide_chain
-   use dda_collapse_trace, only : proposal_t, trace, trace_chain
+   use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -40,8 +40,7 @@ contains
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      if (family%decides_chains) call trace_chain(family, search, search%start, search%high, &
-         & .false., critical, proposal)
+      if (family%decides_chains) call trace(family, search, search%high, critical, proposal)
       start = search%start
       if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
       call find_collapse(family, search, start, limit, critical)

@@ -1,8 +1,9 @@
 !> Where a collapse stops: the value from which on the loads can be carried
 !>
 !> The margin of limit analysis is negative where a structure falls, and a concave function of its
-!> loads. The secant method finds where it is zero.
+!> loads. The secant method finds where it is zero. A chain has its deficit for it.
 module dda_collapse_trace
+   use dda_chain_programme, only : deficit_t, find_deficit
    use dda_error, only : error_t
    use dda_joint_graph, only : breaks, crushes, joint_graph_t
    use dda_kinds, only : wp
@@ -15,7 +16,7 @@ module dda_collapse_trace
    implicit none
    private
 
-   public :: proposal_t, least_half, margin_at, trace, trace_chain
+   public :: proposal_t, margin_at, trace
 
    !> Where a collapse stops
    type :: proposal_t
@@ -41,31 +42,28 @@ module dda_collapse_trace
    real(wp), parameter :: sharpness = 1.0e-3_wp
    !> Least and largest first step of the secant method over the value
    real(wp), parameter :: first_step(2) = [1.0e-3_wp, 0.3_wp]
+   !> Longest of its further steps over the value or the last step
+   real(wp), parameter :: longest_step = 2.0_wp
+   !> Margin of a chain that is known, over its rounding error
+   real(wp), parameter :: noise_of_chain = 3.0_wp
    !> Most values of the secant method
    integer, parameter :: max_values = 30
 
-   interface
-
-      !> Trace a chain to where it ceases to collapse, by the secant method on the deficit of chains
-      !> in which only some of its joints part
-      pure module subroutine trace_chain(family, search, from, limit, frozen, critical, proposal)
-         class(family_t), intent(in) :: family
-         type(search_t), intent(in) :: search
-         real(wp), intent(in) :: from     !! Where to begin
-         real(wp), intent(in) :: limit    !! The end of the range on the side that stands
-         !> True if the mechanism at the beginning is kept: all values before the one proposed then
-         !> collapse
-         logical, intent(in) :: frozen
-         type(critical_t), intent(inout) :: critical
-         type(proposal_t), intent(out) :: proposal
-      end subroutine trace_chain
-
-   end interface
+   !> Margin of one value
+   type :: margin_t
+      real(wp) :: value = 0.0_wp  !! The margin [N/m]
+      real(wp) :: unit = 1.0_wp   !! Forces that it is small beside [N/m]
+      real(wp) :: error = 0.0_wp  !! How far it may be off [N/m]
+      real(wp) :: noise = 0.0_wp  !! Margin that a decision cannot tell from zero [N/m]
+      !> True if a chain stands, in another mechanism than before: it may do so at its limit through
+      !> a range of values
+      logical :: is_beyond = .false.
+   end type margin_t
 
 contains
 
-   !> Trace the last collapse to where it stops, by the secant method on the margin between it and
-   !> the limit. A chain is traced by its deficit
+   !> Trace the last collapse, or before any decision the start of the search, to where it stops: by
+   !> the secant method on the margin between it and the limit
    pure subroutine trace(family, search, limit, critical, proposal, by_tangent)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
@@ -75,56 +73,121 @@ contains
       !> True to end with the first secant, to exclude values: the secant method does not converge
       !> where a margin has no zero
       logical, intent(in), optional :: by_tangent
-      real(wp) :: x(2), margin(2), least, near, next, noise, slope, step, tolerance, unit
-      integer :: i
-      logical :: enough, found
+      real(wp) :: from, least, noise, value
+      integer :: n
+      logical :: enough
 
       enough = .false.
       if (present(by_tangent)) enough = by_tangent
-      least = least_half(search, critical%falls, size(critical%fallen%contacts%face))
-      proposal%half = least*max(abs(critical%falls), tiny(1.0_wp))
-      if (critical%fallen%flow /= flow_rule%associated) return
-      if (takes_power(critical%fallen)) return
-      call link_once(family, critical%falls, critical%link)
-      if (critical%link%known) then
-         call trace_chain(family, search, critical%falls, limit, .true., critical, proposal)
-         return
+      from = search%start
+      n = 0
+      if (allocated(family%rays%joint)) n = size(family%rays%joint)
+      if (allocated(critical%fallen)) then
+         from = critical%falls
+         n = size(critical%fallen%contacts%face)
       end if
-      x(1) = critical%falls
-      call margin_at(family, x(1), sharpness, critical, margin(1), unit, found)
-      if (.not. found) return
-      step = min(first_step(2), max(first_step(1), abs(margin(1)/unit)))
-      step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
-      x(2) = x(1) + sign(step, limit - x(1))
-      do i = 1, max_values
-         tolerance = max(resolution, sharpness*abs(margin(1)/unit))
-         call margin_at(family, x(2), tolerance, critical, margin(2), unit, found)
-         if (.not. found .or. .not. abs(margin(2) - margin(1)) > 0.0_wp) return
-         slope = (margin(2) - margin(1))/(x(2) - x(1))
-         noise = least_margin*unit/abs(slope)
-         next = x(2) - margin(2)/slope
-         if (next < search%low .or. next > search%high) return
-         if (enough) exit
-         near = max(0.02_wp*least*abs(next), noise)
-         if (abs(next - x(2)) <= near .and. 0.5_wp*tolerance*unit/abs(slope) <= near) exit
-         x = [x(2), next]
-         margin(1) = margin(2)
-      end do
-      if (i > max_values) return
-      proposal%usable = .true.
-      proposal%value = next
-      proposal%half = least*abs(next)
+      least = least_half(search, from, n)
+      proposal%half = least*max(abs(from), tiny(1.0_wp))
+      if (allocated(critical%fallen)) then
+         if (critical%fallen%flow /= flow_rule%associated .or. takes_power(critical%fallen)) return
+      end if
+      call find_zero(family, search, from, limit, least, enough, critical, value, noise, &
+         & proposal%usable)
+      if (.not. proposal%usable) return
+      proposal%value = value
+      proposal%half = least*abs(value)
       proposal%reach = proposal%half
-      if (critical%current) proposal%reach = first_reach*abs(next)
+      if (critical%current) proposal%reach = first_reach*abs(value)
       if (critical%current) return
       proposal%half = max(proposal%half, noise)
       ! beside its stop a mechanism becomes too slow for a decision to tell it from rest
-      associate (outcome => critical%fallen%outcome)
-         if (outcome%acceleration_ratio > 0.0_wp) proposal%half = max(proposal%half, noise &
-            & + 1.1_wp*abs(next - critical%falls)*outcome%rest_tolerance/outcome%acceleration_ratio)
-      end associate
+      if (allocated(critical%fallen)) then
+         associate (outcome => critical%fallen%outcome)
+            if (outcome%acceleration_ratio > 0.0_wp) proposal%half = max(proposal%half, noise &
+               & + 1.1_wp*abs(value - from)*outcome%rest_tolerance/outcome%acceleration_ratio)
+         end associate
+      end if
       proposal%reach = proposal%half
    end subroutine trace
+
+   !> Zero of the margin by the secant method
+   pure subroutine find_zero(family, search, from, limit, least, enough, critical, value, noise, &
+      & found)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: from, limit  !! Where to begin, and whereto
+      real(wp), intent(in) :: least        !! Half the width of the bracket over the value
+      logical, intent(in) :: enough        !! True if the first secant is
+      type(critical_t), intent(inout) :: critical
+      real(wp), intent(out) :: value  !! The zero
+      real(wp), intent(out) :: noise  !! How far rounding may move it
+      logical, intent(out) :: found   !! True if there is one
+      type(deficit_t) :: fallen
+      type(margin_t) :: margin(2)
+      real(wp) :: near, slope, step, x(2)
+      integer :: i
+
+      x(1) = from
+      value = from
+      noise = 0.0_wp
+      call see_margin(family, x(1), sharpness, critical, margin(1), found)
+      if (.not. found) return
+      step = min(first_step(2), max(first_step(1), abs(margin(1)%value/margin(1)%unit)))
+      step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
+      x(2) = x(1) + sign(step, limit - x(1))
+      fallen = critical%deficit
+      do i = 1, max_values
+         call see_margin(family, x(2), max(resolution, sharpness &
+            & *abs(margin(1)%value/margin(1)%unit)), critical, margin(2), found)
+         if (found .and. margin(2)%is_beyond .and. margin(1)%value < -margin(1)%error) then
+            critical%deficit = fallen
+            x(2) = 0.5_wp*(x(1) + x(2))
+            cycle
+         end if
+         found = found .and. abs(margin(2)%value - margin(1)%value) > 0.0_wp
+         if (.not. found) return
+         slope = (margin(2)%value - margin(1)%value)/(x(2) - x(1))
+         noise = margin(2)%noise/abs(slope)
+         value = x(2) - margin(2)%value/slope
+         found = value >= search%low .and. value <= search%high
+         if (enough) return
+         near = max(0.02_wp*least*abs(value), noise)
+         if (found .and. abs(value - x(2)) <= near .and. margin(2)%error/abs(slope) <= near) return
+         step = longest_step*max(abs(x(2)), abs(x(2) - x(1)))
+         value = min(max(value, search%low, x(2) - step), search%high, x(2) + step)
+         found = abs(value - x(2)) > 0.0_wp
+         if (.not. found) return
+         x = [x(2), value]
+         margin(1) = margin(2)
+         fallen = critical%deficit
+      end do
+      found = .false.
+   end subroutine find_zero
+
+   !> Margin of one value: of the chain where there is one, else of the joint graph
+   pure subroutine see_margin(family, value, tolerance, critical, margin, found)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      real(wp), intent(in) :: tolerance  !! How far that of a graph may be off over its unit
+      type(critical_t), intent(inout) :: critical
+      type(margin_t), intent(out) :: margin
+      logical, intent(out) :: found
+
+      call link_once(family, value, critical%link)
+      if (critical%link%known) then
+         associate (chain => critical%link%chain, deficit => critical%deficit)
+            call find_deficit(chain, deficit)
+            found = deficit%known
+            margin = margin_t(-deficit%least, chain%whole_load, deficit%noise, &
+               & noise_of_chain*deficit%noise, deficit%exchanges > 0 &
+               & .and. deficit%least <= deficit%noise)
+         end associate
+      else
+         call margin_at(family, value, tolerance, critical, margin%value, margin%unit, found)
+         margin%error = 0.5_wp*tolerance*margin%unit
+         margin%noise = least_margin*margin%unit
+      end if
+   end subroutine see_margin
 
    !> Margin of one value
    pure subroutine margin_at(family, value, tolerance, critical, margin, unit, found)
