@@ -24,7 +24,7 @@ module dda_contact_solver
    implicit none
    private
 
-   public :: group_joints, settle_contacts
+   public :: group_joints, max_energy_gain, settle_contacts
 
    !> Gap tolerance over the free fall of the longest step
    real(wp), parameter :: gap_tolerance = 1.0e-7_wp
@@ -170,19 +170,6 @@ contains
       !> The joints, group by group, rising in each: (n_joint)
       integer, allocatable, intent(out) :: joint(:)
       integer :: group(size(springs%equation, 2))
-
-      call number_groups(springs, acts, n_equation, n, group)
-      first = size(group) + 1
-      call list_by_owner(group, first(:n + 1), joint)
-   end subroutine group_joints
-
-   !> Which group each joint is of
-   pure subroutine number_groups(springs, acts, n_equation, n, group)
-      type(joint_springs_t), intent(in) :: springs
-      logical, intent(in) :: acts(:)
-      integer, intent(in) :: n_equation
-      integer, intent(out) :: n
-      integer, intent(out) :: group(:)  !! Number of each joint's group: (n_joint)
       integer :: root(n_equation), number(n_equation), pair(2), i, j
 
       root = [(i, i=1, n_equation)]
@@ -203,6 +190,8 @@ contains
          end if
          group(j) = number(i)
       end do
+      first = size(group) + 1
+      call list_by_owner(group, first(:n + 1), joint)
 
    contains
 
@@ -215,6 +204,6 @@ contains
             root_of = root(root_of)
          end do
       end function root_of
-   end subroutine number_groups
+   end subroutine group_joints
 
 end module dda_contact_solver
