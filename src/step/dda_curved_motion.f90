@@ -11,7 +11,7 @@ module dda_curved_motion
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : run_t
+   use dda_step_context, only : near, run_t
    implicit none
    private
 
@@ -19,9 +19,7 @@ module dda_curved_motion
 
    !> Maximum number of corrections
    integer, parameter :: max_passes = 8
-   !> Gap at a closed contact, or depth at an open one, that is left, over the size of the smallest
-   !> block
-   real(wp), parameter :: left_over = 1.0e-8_wp
+
 contains
 
    !> Begin with the rows of blocks that go on as they are
@@ -48,7 +46,7 @@ contains
       associate (state => run%step%state)
          do pass = 0, max_passes
             call see_curves(run, state%motion, error)
-            if (error <= max(left_over*size_of, 2.0_wp*state%residual) &
+            if (error <= max(near*size_of, 2.0_wp*state%residual) &
                & .or. pass == max_passes) return
             call take_turned_rows(run, (state%motion))
             run%equations%new_numbers = .true.

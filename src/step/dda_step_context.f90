@@ -11,7 +11,7 @@ module dda_step_context
    private
 
    public :: energy_t, march_t, contact_note_t, run_state_t, run_t, step_context_t, step_outcome_t
-   public :: in_time, may_shorten, most_spare_cuts, near_gap
+   public :: in_time, may_shorten, most_spare_cuts, near, near_gap
 
    !> Maximum number of spare cuts; each step adds one, each cut costs three
    integer, parameter :: most_spare_cuts = 1000
@@ -230,7 +230,7 @@ module dda_step_context
       real(wp), allocatable :: onset_motion(:, :)  !! Motion of that step: (n_dof, n_equation)
    end type run_t
 
-   !> Gap of a closed contact over the size of the smaller block
+   !> Gap of a closed contact, or depth of an open one, over the size of the smaller block
    real(wp), parameter :: near = 1.0e-8_wp
    !> Shortest step over the longest one that is reduced for residual forces or penetration
    real(wp), parameter :: shortest = 1.0e-3_wp
