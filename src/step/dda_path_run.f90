@@ -8,7 +8,7 @@ module dda_path_run
    use dda_load_clock, only : goes_on_at, has_path, set_back, set_forward
    use dda_settings, only : settings_t, verdict
    use dda_step_context, only : march_t, run_t
-   use dda_step_interval, only : longest_motion
+   use dda_step_interval, only : aim, longest_motion
    implicit none
    private
 
@@ -87,7 +87,7 @@ contains
          end if
          growth = 2.0_wp
          if (run%settings%current .and. march%first_motion > 0.0_wp) growth = min(growth, &
-            & 0.8_wp*longest_motion(march)/march%first_motion)
+            & aim*longest_motion(march)/march%first_motion)
          call set_forward(growth, march%clock)
       end associate
       call begin_stride(run)

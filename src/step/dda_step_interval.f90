@@ -18,7 +18,7 @@ module dda_step_interval
    private
 
    public :: check_length, first_interval, next_interval, largest_motion, measure_scales
-   public :: longest_motion
+   public :: aim, cut, longest_motion
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
@@ -32,6 +32,8 @@ module dda_step_interval
    real(wp), parameter :: calm_growth = 3.0_wp
    !> Oscillation that is ignored, over the displacement
    real(wp), parameter :: rattle_share = 1.0e-4_wp
+   !> Motion of a fitted step over the permitted one
+   real(wp), parameter :: aim = 0.8_wp
    !> Factor of a step without convergence
    real(wp), parameter :: cut = 0.3_wp
    !> Penetration by residual forces over the size of the smallest block
@@ -255,7 +257,7 @@ contains
       limit = longest_motion(run%march)
       outcome%accepted = .not. run%settings%current .or. run%step%farthest <= limit
       if (outcome%accepted) return
-      factor = 0.8_wp*sqrt(limit/run%step%farthest)
+      factor = aim*sqrt(limit/run%step%farthest)
       ! what strain alone holds goes as far in a step a little shorter
       if (run%step%last_farthest > limit) factor = min(cut, factor)
       outcome%dt = factor*run%step%dt
@@ -296,7 +298,7 @@ contains
          if (step%was_cut) factor = min(factor, calm_growth)
          if (settings%current) then
             if (step%farthest > 0.0_wp) &
-               & factor = min(growth, 0.8_wp*sqrt(longest_motion(march)/step%farthest))
+               & factor = min(growth, aim*sqrt(longest_motion(march)/step%farthest))
             if (allocated(march%last_motion)) &
                & factor = merge(1.0_wp/growth, min(factor, calm_growth), rattles(march, step))
             march%last_motion = step%state%motion

@@ -7,6 +7,7 @@ module dda_step_reach
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
    use dda_step_context, only : march_t, run_t, step_context_t, step_outcome_t
+   use dda_step_interval, only : aim, cut, longest_motion
    implicit none
    private
 
@@ -17,8 +18,6 @@ module dda_step_reach
    real(wp), parameter :: least_reach = 1.0e-3_wp
    !> Reach over the expected motion
    real(wp), parameter :: margin = 1.5_wp
-   !> Motion over the expected one that the search covers
-   real(wp), parameter :: too_far = 2.0_wp
 
 contains
 
@@ -87,10 +86,10 @@ contains
          may_meet(run%contacts%joint(j)%block) = .true.
       end do
       farthest = maxval(way, mask=may_meet .and. run%system%equation > 0)
-      associate (far => too_far*run%march%allowed_motion)
+      associate (far => longest_motion(run%march))
          outcome%accepted = .not. farthest > 2.0_wp*far
          if (.not. outcome%accepted) then
-            outcome%dt = run%step%dt*max(0.1_wp, 0.8_wp*far/farthest)
+            outcome%dt = run%step%dt*max(cut, aim*far/farthest)
             return
          end if
       end associate
