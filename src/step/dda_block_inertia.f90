@@ -45,7 +45,7 @@ contains
       call outer_loads(system, settings, start, dt, equations%weight, equations%outer, &
          & equations%felt)
       equations%force_scale = sum(equations%felt(1:2, :))
-      equations%gap_noise = 16.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
+      equations%gap_noise = 4.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
       call load_blocks(system, settings, dt, equations)
       finish = start
       if (settings%dynamic) finish = start + dt

@@ -76,7 +76,7 @@ contains
       p%cone = springs%cone(joint)
       p%friction = p%cone%friction
       p%limit = p%cone%limit
-      p%noise = min(0.25_wp, state%fineness)*equations%gap_noise
+      p%noise = state%fineness*equations%gap_noise
       if (state%rates) p%noise = of_speeds*p%noise
       p%gap = state%gap(:, joint)
       allocate (p%soft, mold=p%gap)

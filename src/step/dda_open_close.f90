@@ -138,7 +138,7 @@ contains
             high = factor
             slope_high = slope
          end if
-         if (high - low <= 1.0e-14_wp*high .or. abs(slope) <= 1.0e-15_wp*abs(line%slope)) exit
+         if (high - low <= spacing(high) .or. abs(slope) <= epsilon(slope)*abs(line%slope)) exit
       end do
    end function lowest_point
 
@@ -153,7 +153,7 @@ contains
       slope_low = slope_at(springs, state, line, low)
       high = 1.0_wp
       slope_high = slope_at(springs, state, line, high)
-      do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
+      do while (slope_high < 0.0_wp)
          low = high
          slope_low = slope_high
          high = 2.0_wp*high
