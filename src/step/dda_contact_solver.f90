@@ -40,7 +40,7 @@ module dda_contact_solver
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
    !> Relative distance from its bound at which a shear force counts as sliding
    real(wp), parameter :: bound_tolerance = 1.0e-9_wp
-   !> Work that contact forces may add, over the energy of the motion without them
+   !> Energy that contact forces may add, over that of motion and loads
    real(wp), parameter :: max_energy_gain = 1.0e-6_wp
    !> Residual at which faces may start, and tolerance of the convex problem, over the fastest
    !> motion of the group

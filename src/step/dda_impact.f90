@@ -16,8 +16,8 @@ module dda_impact
    implicit none
    private
 
-   public :: check_impact, closed_contacts, foresee_event, masked_force, meeting_contacts
-   public :: meets_at_end, parting_acceleration
+   public :: check_impact, closed_contacts, fall_energy, foresee_event, masked_force
+   public :: meeting_contacts, meets_at_end, parting_acceleration
 
    !> Least and largest energy of an impact that ends a step, over that of motion and of a fall of
    !> the longest step, per squared number of blocks
@@ -256,8 +256,15 @@ contains
          & min_event_energy*real(size(run%equations%mass, 3), wp)**2) &
          & *(kinetic_energy(run%equations, packed_velocity(run%system, &
          & size(run%step%state%motion, 1))) &
-         & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp)
+         & + fall_energy(run))
    end function event_energy
+
+   !> Energy of all blocks after a fall of the longest step [J/m]
+   pure real(wp) function fall_energy(run)
+      type(run_t), intent(in) :: run
+
+      fall_energy = sum(run%equations%mass(1, 1, :))*(run%step%slowest_impact/2.0_wp)**2/2.0_wp
+   end function fall_energy
 
    !> How easily an impact at a contact moves its two blocks; shear does not turn blocks that lie on
    !> one another

@@ -16,9 +16,10 @@ module dda_velocity
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, drop_strain_rates, hold_energy, kinetic_energy, &
       & packed_velocity, strain_follows
+   use dda_contact_solver, only : max_energy_gain
    use dda_contact_types, only : joint_place_t, joint_springs_t, joint_t, place_joint, place_rows
-   use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
-      & parting_acceleration
+   use dda_impact, only : closed_contacts, fall_energy, masked_force, meeting_contacts, &
+      & meets_at_end, parting_acceleration
    use dda_fixed_points, only : add_fixed_springs, turn_fixed_row
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
@@ -38,8 +39,6 @@ module dda_velocity
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
    !> Round-off of energy over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
-   !> Energy gain of contacts over that of motion, strain, fall and loads
-   real(wp), parameter :: max_energy_gain = 1.0e-6_wp
 
    !> What the end of a step asks of velocities
    type :: impact_t
@@ -167,8 +166,7 @@ contains
       real(wp), intent(in) :: kinetic  !! Energy of motion [J/m]
 
       allowed_gain = max_energy_gain*(kinetic + run%march%energy%elastic &
-         & + sum(run%equations%mass(1, 1, :))*run%step%slowest_impact**2/8.0_wp &
-         & + sum(abs(run%equations%outer*run%step%state%motion)))
+         & + fall_energy(run) + sum(abs(run%equations%outer*run%step%state%motion)))
    end function allowed_gain
 
    !> Which contacts are closed at the end of a step, and which of them have met in it, faster than
