@@ -33,9 +33,8 @@ contains
       integer, intent(inout) :: passes        !! Factorisations so far
       type(joint_matrix_t) :: springs
       type(joint_face_t) :: face(size(p%joint))
-      real(wp), dimension(3, size(p%joint)) :: centre, now, trial
+      real(wp), dimension(3, size(p%joint)) :: centre, now
       real(wp) :: stiff(3, 3, size(p%joint))
-      type(residual_t) :: left
       real(wp) :: motion(size(p%load, 1), size(p%load, 2))
       integer :: changes, last, pass, turn
       logical :: stale
@@ -66,19 +65,32 @@ contains
             last = changes
             cycle
          end if
-         trial = now
-         call take_faces(p, face, trial)
-         trial = admissible(p, trial)
-         left = residual_of(p, trial, move_blocks(p, trial))
-         stale = left%opening > residual%opening/2.0_wp
-         if (left%energy < residual%energy) then
-            force = trial
-            residual = left
-         end if
+         call keep_better(p, face, now, force, residual, stale)
          if (residual%opening <= tolerance .or. stale) return
          centre = now
       end do
    end subroutine settle_faces
+
+   !> Keep forces on their faces if they have the smaller residual
+   pure subroutine keep_better(p, face, now, force, residual, stale)
+      type(contact_problem_t), intent(in) :: p
+      type(joint_face_t), intent(in) :: face(:)    !! Faces: (n_joint)
+      real(wp), intent(in) :: now(:, :)            !! Other forces: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)       !! The best so far: (3, n_joint) [N/m]
+      type(residual_t), intent(inout) :: residual  !! Residual of these
+      logical, intent(out) :: stale                !! True if less than half of it has gone
+      type(residual_t) :: left
+      real(wp) :: trial(3, size(face))
+
+      trial = now
+      call take_faces(p, face, trial)
+      trial = admissible(p, trial)
+      left = residual_of(p, trial, move_blocks(p, trial))
+      stale = left%opening > residual%opening/2.0_wp
+      if (.not. left%energy < residual%energy) return
+      force = trial
+      residual = left
+   end subroutine keep_better
 
    !> The faces that forces and openings speak for
    pure subroutine read_faces(p, force, motion, face)
