@@ -59,7 +59,7 @@ contains
       end if
    end subroutine new_equations
 
-   !> Take in new joints: lists, pattern, plan of the factor, springs
+   !> Add new joints: lists, pattern, plan of the factor, springs
    pure subroutine new_springs(springs, n_dof, n_equation, equations)
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: n_dof       !! Unknowns of one block
@@ -74,7 +74,7 @@ contains
       call add_stuck_springs(springs, equations)
    end subroutine new_springs
 
-   !> Joints that may be others are to be taken over; the pattern is made anew only where other
+   !> Note that joints may have changed; the pattern is made again only where other
    !> blocks meet
    pure subroutine renew_springs(before, springs, equations)
       !> Equations of the blocks of each joint so far: (2, n_joint)
@@ -103,7 +103,7 @@ contains
       equations%new_numbers = .false.
    end subroutine refresh
 
-   !> Which joints couple which blocks, and the joints of each block
+   !> Lists of the joints that couple blocks, and of the joints of each block
    pure subroutine list_joints(springs, n_dof, n_equation, equations)
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: n_dof, n_equation
@@ -160,7 +160,7 @@ contains
 
    !> Motion of all blocks if every joint keeps to its face
    pure subroutine solve_faces(equations, springs, cone, face, trial, motion)
-      !> Blocks assembled; matrix and factor are made anew if they are not those of these faces
+      !> Blocks assembled; matrix and factor are made again if they are not those of these faces
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint forces: (n_joint)
@@ -183,7 +183,7 @@ contains
       call substitute(equations%factor, motion)
    end subroutine solve_faces
 
-   !> Matrix and factor of these faces: what has changed is made anew
+   !> Matrix and factor of these faces: changed parts are made again
    pure subroutine hold_faces(equations, springs, cone, face)
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
@@ -210,7 +210,7 @@ contains
       equations%changed = .not. equations%factor%usable
    end subroutine hold_faces
 
-   !> Whether the matrix is that of a joint's face
+   !> True if the matrix is that of a joint's face
    pure logical function holds(equations, cone, face, j)
       type(equations_t), intent(in) :: equations
       type(cone_t), intent(in) :: cone  !! Bounds of the joint's force

@@ -47,8 +47,8 @@ contains
       end do
    end function own_load
 
-   !> Whether rounded coordinates press a block with far more than its load: its contacts then tell
-   !> nothing of it
+   !> True if rounded coordinates press a block with far more than its load: its contacts then have
+   !> no meaning
    pure logical function is_drowned(system, contacts, equations)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts  !! The joints, placed, and their springs
@@ -121,7 +121,7 @@ contains
    !> these vanish if they went on to change with the motion as in this step
    pure subroutine measure_way_to_rest(equations, step)
       type(equations_t), intent(in) :: equations
-      type(step_context_t), intent(inout) :: step  !! The step; those of the step before in
+      type(step_context_t), intent(inout) :: step  !! The step; those of the last step in
       real(wp) :: unbalanced(size(equations%felt, 1), size(equations%felt, 2)), finish, start
       integer :: e
 
@@ -152,7 +152,7 @@ contains
       if (whole > part*tiny(part)) share_of = part/whole
    end function share_of
 
-   !> How far the strains are from balance: the largest share that their inertia has of all that
+   !> Imbalance of strain: the largest share that the inertia of strains has of all that
    !> strains a block
    pure subroutine measure_strain(system, equations, around, step)
       type(block_system_t), intent(in) :: system
@@ -175,8 +175,8 @@ contains
       end do
    end subroutine measure_strain
 
-   !> Sizes of all forces around the blocks, as their unknowns feel them: loads from outside, forces
-   !> of joints and of held points
+   !> Sizes of all forces around the blocks by their unknowns: loads from outside, forces
+   !> of joints and of restrained points
    pure function forces_around(springs, equations, step) result(around)
       type(joint_springs_t), intent(in) :: springs
       type(equations_t), intent(in) :: equations
@@ -234,7 +234,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: j              !! Number of the joint
       real(wp), intent(in) :: force(3)      !! Its forces: (3) [N/m]
-      real(wp), intent(in) :: motion(:, :)  !! How the blocks have moved: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (6, n_block)
       real(wp) :: turn(3)
       integer :: b, side
 

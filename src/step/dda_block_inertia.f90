@@ -93,7 +93,7 @@ contains
       if (settings%dynamic) damping_rate = min(settings%damping, 2.0_wp/dt)
    end function damping_rate
 
-   !> Masses of blocks that have turned; only strain rates feel it
+   !> Masses of blocks that have turned; it acts on strain rates alone
    pure subroutine turn_masses(system, equations)
       type(block_system_t), intent(in) :: system
       type(equations_t), intent(inout) :: equations

@@ -29,7 +29,7 @@ contains
 
    !> Add the motion of a step; stress follows the strain, velocity the constant acceleration or the
    !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are
-   !> built anew from it
+   !> built again from it
    pure subroutine update_blocks(step, settings, system)
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
@@ -100,13 +100,13 @@ contains
    end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
-   !> springs start anew from the shear force that they could carry. Springs that give keep as much
-   !> of it as carries that force. Where blocks move in time no slip is kept
+   !> springs start again from the shear force that they could carry. Springs that give keep as much
+   !> of it as carries that force. In a dynamic run no slip is kept
    pure subroutine update_contacts(step, settings, contacts, breaks)
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
       type(contacts_t), intent(inout) :: contacts
-      logical, intent(out) :: breaks  !! Whether a contact lost strength in this step
+      logical, intent(out) :: breaks  !! True if a contact lost strength in this step
       real(wp) :: left(2)
       integer :: j
 

@@ -205,7 +205,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance, force(:, :), motion(:, :)
       type(joint_face_t), intent(inout) :: face(:)
-      integer, intent(out) :: changes  !! How many forces disagree
+      integer, intent(out) :: changes  !! Number of forces that disagree
       real(wp) :: excess, normal(3), opening(3, size(p%joint))
       logical :: sticks
       integer :: i, k

@@ -8,7 +8,7 @@
 !> nearer are the forces to Coulomb's law; at any offset they add no energy.
 !>
 !> Each force has a compliance far below that of the blocks, about the force before: of all forces
-!> that stop the blocks those nearest to it count, so that shear is remembered.
+!> that stop the blocks those nearest to it count, so that shear is kept.
 module dda_contact_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & residual_of, residual_t
@@ -167,7 +167,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       type(coulomb_problem_t), intent(in) :: q
       real(wp), intent(in) :: force(:, :)
-      real(wp), intent(in) :: lift  !! By how much at the least, over the size of a force
+      real(wp), intent(in) :: lift  !! Least lift over the size of a force
       type(coulomb_iterate_t), intent(out) :: x
       real(wp) :: flow, least, opening(3, size(p%joint)), typical
       integer :: i, k, n_normal

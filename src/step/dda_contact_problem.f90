@@ -40,12 +40,12 @@ module dda_contact_problem
       real(wp) :: noise = 0.0_wp
    end type contact_problem_t
 
-   !> What forces leave against the law of contact
+   !> Residual of forces against the law of contact
    type :: residual_t
       real(wp) :: opening = 0.0_wp  !! The largest opening, or slip, that is against it [m]
       integer :: joint = 0          !! Its joint, as numbered in the group; 0 if there is none
-      !> Energy of all, as springs as soft as the blocks: where many hand on a little, it tells
-      !> nearer forces from farther ones [J/m]
+      !> Energy of all, as springs as soft as the blocks: where many residuals are small, it
+      !> separates nearer forces from farther ones [J/m]
       real(wp) :: energy = 0.0_wp
    end type residual_t
 
@@ -112,7 +112,7 @@ contains
       p%equation = equation(:e)
    end subroutine number_blocks
 
-   !> How the blocks answer the forces of the joints
+   !> Compliance of the blocks at the joints
    pure subroutine see_answers(p)
       type(contact_problem_t), intent(inout) :: p
       real(wp) :: unit(size(p%base, 1)), inverse(size(unit), size(unit), size(p%equation))
@@ -146,13 +146,13 @@ contains
       end do
    end subroutine see_answers
 
-   !> How one block answers the forces of a joint
+   !> Compliance of one block at a joint
    pure subroutine add_answer(n_dof, inverse, row, answer, give)
       integer, intent(in) :: n_dof                   !! Unknowns of a block
       real(wp), intent(in) :: inverse(n_dof, n_dof)  !! Inverse of its matrix
-      real(wp), intent(in) :: row(n_dof, 3)          !! What the joint sees of its unknowns
+      real(wp), intent(in) :: row(n_dof, 3)          !! Rows of the joint for its unknowns
       real(wp), intent(out) :: answer(n_dof, 3)      !! Its motion by a unit of each force
-      real(wp), intent(inout) :: give(3, 3)          !! Receives what the joint sees of that
+      real(wp), intent(inout) :: give(3, 3)          !! Receives openings and slip by that motion
       integer :: c, i, k
 
       do k = 1, 3
@@ -194,7 +194,7 @@ contains
       end do
    end function move_blocks
 
-   !> By how much openings are against the law of contact: each force, pushed by its opening over
+   !> Openings against the law of contact: each force, pushed by its opening over
    !> what the blocks give to it and taken back into its bounds, would stay the same
    pure type(residual_t) function residual_of(p, force, motion) result(residual)
       type(contact_problem_t), intent(in) :: p

@@ -1,7 +1,7 @@
 !> Contact forces of moving blocks within their bounds, and their residual
 !>
-!> Blocks that no contact joins know nothing of one another: each group is a problem of its own. The
-!> forces of the step before are looked at; sweeps, faces, and an interior point whose offset moves
+!> Blocks that no contact joins are independent: each group is a problem of its own. The
+!> forces of the last step are checked; sweeps, faces, and an interior point whose offset moves
 !> along follow, each from the best forces so far, until openings are against the law by no more
 !> than the tolerance. Where none comes so far, the best forces count; where these bring in energy,
 !> those of the convex problem, which exist always. Whatever counts lies within its bounds, and
@@ -77,7 +77,7 @@ contains
          force = admissible(p, state%force(:, p%joint))
          passes = 0
          call settle_group(p, state%fineness, state%fall, force, residual, passes)
-         ! groups know nothing of one another: their passes go on side by side
+         ! groups are independent: their passes are side by side
          most = max(most, passes)
          state%force(:, p%joint) = force
          state%motion(:size(p%load, 1), p%equation) = move_blocks(p, force)
@@ -94,7 +94,7 @@ contains
    pure subroutine settle_group(p, fineness, fall, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
-      real(wp), intent(in) :: fall            !! What free fall brings in a step [m]
+      real(wp), intent(in) :: fall            !! Free fall in a step [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(out) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations
@@ -127,7 +127,7 @@ contains
       work_of = sum(force*openings(p, force, move_blocks(p, force)))
    end function work_of
 
-   !> Which joints see anything of their blocks: in the search for velocities open ones do not
+   !> Joints that have rows: in the search for velocities open ones have none
    pure function has_rows(springs) result(acts)
       type(joint_springs_t), intent(in) :: springs
       logical :: acts(size(springs%stiffness))  !! The answers: (n_joint)

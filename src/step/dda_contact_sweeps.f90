@@ -1,8 +1,8 @@
 !> Contact forces joint by joint (Gauss-Seidel), accelerated by conjugate gradients (Silcowitz,
 !> Niebe, Erleben 2010)
 !>
-!> That ends at the forces of Coulomb's law without a factorisation: soon where the forces of the
-!> step before are a good beginning or blocks are few, slowly in tall stacks.
+!> They converge to the forces of Coulomb's law without a factorisation: fast where the forces of
+!> the last step are near or blocks are few, slowly in tall stacks.
 module dda_contact_sweeps
    use dda_contact_problem, only : contact_problem_t, move_blocks, residual_of, residual_t
    use dda_friction_cone, only : cone_kind, shear_bound
@@ -16,7 +16,7 @@ module dda_contact_sweeps
    !> Sweeps between two residuals
    integer, parameter :: round = 8
 
-   !> What sweeps work on
+   !> Variables of sweeps
    type :: sweeps_t
       !> Forces: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
@@ -111,10 +111,10 @@ contains
 
    !> Follow one direction
    pure subroutine follow(ratio, change, way, at)
-      real(wp), intent(in) :: ratio   !! How far of the direction so far
+      real(wp), intent(in) :: ratio   !! Part of the direction so far
       real(wp), intent(in) :: change  !! The last change
       real(wp), intent(inout) :: way  !! The direction
-      real(wp), intent(inout) :: at   !! What goes on along it
+      real(wp), intent(inout) :: at   !! Value that moves along it
 
       way = ratio*way
       at = at + way
@@ -126,7 +126,7 @@ contains
    !> One sweep over the joints, forwards or backwards
    pure subroutine sweep(p, forwards, sweeps)
       type(contact_problem_t), intent(in) :: p
-      logical, intent(in) :: forwards  !! Whether forwards
+      logical, intent(in) :: forwards  !! True if forwards
       type(sweeps_t), intent(inout) :: sweeps
       integer :: i, k, n
 
@@ -203,12 +203,12 @@ contains
    !> Add to openings and slip what one block brings
    pure subroutine see(n_dof, row, motion, opening)
       integer, intent(in) :: n_dof
-      real(wp), intent(in) :: row(n_dof, 3)     !! What the joint sees of its unknowns
+      real(wp), intent(in) :: row(n_dof, 3)     !! Rows of the joint for its unknowns
       real(wp), intent(in) :: motion(n_dof)     !! Its motion [m]
       real(wp), intent(inout) :: opening(3)     !! Openings and slip: (3) [m]
       integer :: i, k
 
-      ! three unknowns at a time, so that the compiler knows the length
+      ! three unknowns at a time, so that the length is constant
       do i = 1, n_dof, 3
          do k = 1, 3
             opening(k) = opening(k) + row(i, k)*motion(i) + row(i + 1, k)*motion(i + 1) &

@@ -1,7 +1,7 @@
 !> Contact rows of a step with rotation
 !>
 !> With normals, corners and centres half way between the beginning and the end of a step, and
-!> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
+!> 2 tan(t/2) for a turn t, a row gives the gap of rigid blocks at the end to rounding. Forces
 !> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
 !> Tarnow 1992, ZAMP 43, 757-792).
 module dda_curved_motion
@@ -56,13 +56,13 @@ contains
       end associate
    end subroutine follow_curves
 
-   !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
+   !> Blocks and joints after a motion, and the error of the gaps that its rows give there
    pure subroutine see_curves(run, motion, error)
       !> The run; gaps, blocks and joints at the end of its step are set
       type(run_t), intent(inout) :: run
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> The largest at closed contacts, and depth that open ones do not tell [m]
+      !> The largest at closed contacts, and depth that rows of open ones do not give [m]
       real(wp), intent(out) :: error
       real(wp) :: told
       integer :: j, k

@@ -11,7 +11,7 @@ module dda_energy
 
    !> Energies after each step
    type :: audit_t
-      logical :: wanted = .false.               !! Whether they are wanted
+      logical :: wanted = .false.               !! True if they are kept
       integer :: n = 0                          !! Steps kept
       type(energy_t), allocatable :: energy(:)  !! The energies, the first n of them
    end type audit_t
@@ -21,7 +21,7 @@ contains
    !> Energies after a step, and what it took and brought added to what the steps before did; what
    !> is left unexplained is numerical dissipation. A step of no length begins the audit
    pure subroutine audit_step(run)
-      type(run_t), intent(inout) :: run  !! The run after the step, but for its energies
+      type(run_t), intent(inout) :: run  !! The run after the step, except for its energies
       real(wp) :: before
 
       before = total(run%march%energy)
@@ -87,7 +87,7 @@ contains
       end associate
    end subroutine spend_energy
 
-   !> What would stay the same without numerical dissipation
+   !> Sum that numerical dissipation alone changes
    pure real(wp) function total(energy)
       type(energy_t), intent(in) :: energy
 
@@ -98,7 +98,7 @@ contains
    !> Keep the energies after a step
    pure subroutine keep_energy(energy, audit)
       type(energy_t), intent(in) :: energy
-      type(audit_t), intent(inout) :: audit  !! Receives them if they are wanted
+      type(audit_t), intent(inout) :: audit  !! Receives them if they are kept
 
       if (.not. audit%wanted) return
       if (.not. allocated(audit%energy)) allocate (audit%energy(64))

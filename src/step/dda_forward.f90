@@ -75,7 +75,7 @@ contains
       call move_contacts(run%contacts, contacts)
    end subroutine run_to_verdict
 
-   !> Whether all steps are spent, or all the time of a dynamic run
+   !> True if no steps remain, or no time of a dynamic run
    pure logical function is_over(run)
       type(run_t), intent(in) :: run
 
@@ -85,7 +85,7 @@ contains
       end associate
    end function is_over
 
-   !> One step and what it says of the blocks
+   !> One step and its verdict
    pure subroutine take_step(run, answer, error, album)
       type(run_t), intent(inout) :: run
       integer, intent(out) :: answer  !! One of verdict; undecided where the run goes on
@@ -109,7 +109,7 @@ contains
       if (answer == verdict%undecided) call next_interval(run)
    end subroutine take_step
 
-   !> How far the blocks have gone, since the beginning and since the last rest, and whether one has
+   !> Displacement of the blocks since the beginning and since the last rest, and whether one has
    !> fallen
    pure subroutine measure_way(run)
       type(run_t), intent(inout) :: run
@@ -133,11 +133,11 @@ contains
       end associate
    end subroutine measure_way
 
-   !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a picture
-   !> of the end
+   !> Follow a collapse beyond its verdict up to a given displacement, and keep a picture of
+   !> the end
    pure subroutine end_pictures(run, outcome, album)
       type(run_t), intent(inout) :: run
-      !> How the run ended; receives the contacts of a collapse that is followed
+      !> Outcome of the run; receives the contacts of a collapse that is followed
       type(outcome_t), intent(inout) :: outcome
       type(album_t), intent(inout) :: album
       type(error_t), allocatable :: error

@@ -59,9 +59,9 @@ module dda_frames
       !> Step and time of each, the first n_track of them: (2, :) [-, s]
       real(wp), allocatable :: when(:, :)
       real(wp), allocatable :: track(:, :, :)  !! Where the points are: (2, n_point, :) [m]
-      real(wp), allocatable :: speed(:, :, :)  !! How fast they are, in time: (2, n_point, :) [m/s]
-      !> Supports whose reactions are kept in every step, as block and held point; unallocated where
-      !> none are: (2, n)
+      real(wp), allocatable :: speed(:, :, :)  !! Velocities in a dynamic run: (2, n_point, :) [m/s]
+      !> Supports whose reactions are kept in every step, as block and restrained point; unallocated
+      !> where none are: (2, n)
       integer, allocatable :: support(:, :)
       !> Reactions of the last step: (3, n) [N/m, N/m, N]
       real(wp), allocatable :: reaction_now(:, :)
@@ -73,7 +73,7 @@ module dda_frames
 
 contains
 
-   !> An album of the same kind without pictures, for another run
+   !> The same settings without frames, for another run
    pure type(album_t) function blank_album(album) result(blank)
       type(album_t), intent(in) :: album
 
@@ -87,10 +87,10 @@ contains
       if (allocated(album%support)) blank%support = album%support
    end function blank_album
 
-   !> Keep a picture if one is due, and where the measured points are
+   !> Keep a picture if one is due, and the places of the monitoring points
    pure subroutine keep_pictures(run, last, album)
       type(run_t), intent(in) :: run
-      !> Whether the run has ended here, with a step that has been offered
+      !> True if the run has ended here, with a step that has been offered
       logical, intent(in) :: last
       type(album_t), intent(inout) :: album
 
@@ -101,13 +101,13 @@ contains
       if (.not. last) call keep_track(run, album)
    end subroutine keep_pictures
 
-   !> Whether a picture is due
+   !> True if a picture is due
    pure logical function frame_is_due(step, time, displacement, last, album) result(is_due)
       integer, intent(in) :: step   !! Accepted steps so far
       real(wp), intent(in) :: time  !! Sum of their lengths [s]
       !> Farthest that a corner has moved [m]
       real(wp), intent(in) :: displacement
-      logical, intent(in) :: last  !! Whether the run ends here, so that a picture is due anyway
+      logical, intent(in) :: last  !! True if the run ends here, so that a picture is due anyway
       type(album_t), intent(in) :: album
 
       is_due = .false.
@@ -121,7 +121,8 @@ contains
       is_due = is_due .or. last .and. album%n == 0
    end function frame_is_due
 
-   !> What pictures are counted by: time where they have an interval, else displacement [s or m]
+   !> Measure by which pictures are counted: time where they have an interval, else displacement [s
+   !> or m]
    pure real(wp) function progress(time, displacement, album)
       real(wp), intent(in) :: time  !! Sum of the lengths of the steps [s]
       real(wp), intent(in) :: displacement
@@ -171,7 +172,7 @@ contains
       end associate
    end subroutine keep_frame
 
-   !> Keep where the measured points are
+   !> Keep the places of the monitoring points
    pure subroutine keep_track(run, album)
       type(run_t), intent(in) :: run
       type(album_t), intent(inout) :: album

@@ -34,7 +34,7 @@ contains
 
    !> Find the motion and the states of one step under Coulomb friction. In a dynamic run the bounds
    !> begin with the normal forces of the last step, and faces as they were: small changes cost
-   !> little, and joints that slid go on sliding. Else, and where that does not settle, no joint may
+   !> little, and joints that slid go on sliding. Else, and where that fails, no joint may
    !> slide at first
    pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
       !> Blocks assembled; matrix and factor are made again

@@ -127,8 +127,8 @@ contains
       parting = relative_displacement(springs, free)
    end function parting_acceleration
 
-   !> Whether a step ends before an impact, and before slip turns, if forces stay as they were in
-   !> the step before; if not, when that is
+   !> True if a step ends before an impact, and before slip turns, if forces stay unchanged from
+   !> the last step; if not, the time of that
    pure type(step_outcome_t) function foresee_event(run) result(outcome)
       type(run_t), intent(in) :: run
       real(wp) :: acceleration(3, size(run%contacts%joint)), turn
@@ -148,8 +148,8 @@ contains
       outcome%dt = turn
    end function foresee_event
 
-   !> Whether a solved step ends at an impact, or has none; if not, when that is. A step that comes
-   !> no nearer to an impact, as where strain closes a gap at once, has it somewhere
+   !> True if a solved step ends at an impact, or has none; if not, the time of that. A step that
+   !> comes no nearer to an impact, as where strain closes a gap at once, has it somewhere
    pure type(step_outcome_t) function check_impact(run) result(outcome)
       type(run_t), intent(in) :: run
       logical :: meets(2, size(run%contacts%joint))
@@ -172,7 +172,7 @@ contains
          & run%contacts%springs, 0.0_wp*run%equations%outer, masked_force(run, meets))
    end function free_gaps
 
-   !> Whether contacts that meet in a solved step do so at its end, so that all others have borne
+   !> True if contacts that meet in a solved step do so at its end, so that all others have borne
    !> their forces up to then
    pure logical function meets_at_end(run, meets)
       type(run_t), intent(in) :: run
@@ -188,9 +188,9 @@ contains
       end do
    end function meets_at_end
 
-   !> When the first joint that slides begins to slide back, for friction turns with it: its slip
-   !> comes to rest under the forces of the step before, and the load on it then exceeds friction
-   !> the other way
+   !> Time at which the first joint that slides begins to slide back, for friction turns with it:
+   !> its slip comes to rest under the forces of the last step, and the load on it then exceeds
+   !> friction the other way
    pure real(wp) function earliest_reversal(run, acceleration) result(earliest)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: acceleration(:, :)  !! Of gaps and slips: (3, n_joint) [m/s2]
@@ -266,11 +266,11 @@ contains
       fall_energy = sum(run%equations%mass(1, 1, :))*(run%step%slowest_impact/2.0_wp)**2/2.0_wp
    end function fall_energy
 
-   !> How easily an impact at a contact moves its two blocks; shear does not turn blocks that lie on
+   !> Mobility of two blocks at a contact that is hit; shear does not turn blocks that lie on
    !> one another
    pure real(wp) function ease_of(run, k, j) result(ease)
       type(run_t), intent(in) :: run
-      integer, intent(in) :: k  !! Which contact of the joint, or 3 for shear
+      integer, intent(in) :: k  !! Number of the contact in the joint, or 3 for shear
       integer, intent(in) :: j  !! Number of the joint
       integer :: e, i, side
 

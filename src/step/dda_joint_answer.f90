@@ -13,7 +13,7 @@ module dda_joint_answer
 
    public :: answer_joint, joint_view_t
 
-   !> What a joint sees while all others stay
+   !> Data of a joint while all others stay
    type :: joint_view_t
       !> Openings and slip by a unit of each of its forces; nothing for forces that it has not:
       !> (3, 3) [m/(N/m)]
@@ -21,7 +21,7 @@ module dda_joint_answer
       real(wp) :: rest(3) = 0.0_wp   !! Openings and slip without its forces: (3) [m]
       real(wp) :: limit = 0.0_wp     !! Shear force that is borne without normal force [N/m]
       real(wp) :: friction = 0.0_wp  !! Coefficient of friction
-      !> Whether nothing bounds the shear force while it is closed
+      !> True if nothing bounds the shear force while it is closed
       logical :: sticks = .false.
    end type joint_view_t
 
@@ -35,7 +35,7 @@ contains
       type(joint_view_t), intent(in) :: joint
       integer, intent(inout) :: slip     !! Direction of the shear force that slides, or 0
       real(wp), intent(out) :: force(3)  !! Normal forces and shear force: (3) [N/m]
-      logical, intent(out) :: solved     !! Whether forces were found
+      logical, intent(out) :: solved     !! True if forces were found
 
       if (slip /= 0 .and. .not. joint%sticks) then
          call slide(joint, slip, force, solved)
@@ -68,7 +68,7 @@ contains
       if (.not. solved) slip = 0
    end subroutine answer_joint
 
-   !> Which normal forces a joint has
+   !> Normal forces that a joint has
    pure function has_normal(joint) result(has)
       type(joint_view_t), intent(in) :: joint
       logical :: has(2)  !! The answers
@@ -120,9 +120,9 @@ contains
    pure subroutine press(m, rest, has, force, solved)
       real(wp), intent(in) :: m(2, 2)    !! Openings by the forces
       real(wp), intent(in) :: rest(2)    !! Openings without forces [m]
-      logical, intent(in) :: has(2)      !! Which of the two there are
+      logical, intent(in) :: has(2)      !! True for each force that exists
       real(wp), intent(out) :: force(3)  !! The forces and a zero [N/m]
-      logical, intent(out) :: solved     !! Whether there are such forces
+      logical, intent(out) :: solved     !! True if there are such forces
       real(wp) :: determinant
       integer :: k
 

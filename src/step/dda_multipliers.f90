@@ -1,7 +1,7 @@
 !> Joint forces as multipliers (augmented Lagrangian), without penalty error
 !>
 !> In time contact forces that obey Coulomb's law as it is are found group by group
-!> (`dda_contact_solver`), and around them the forces of held points and bars.
+!> (`dda_contact_solver`), and around them the forces of restrained points and bars.
 module dda_multipliers
    use dda_bar_springs, only : add_bars, couple_bars, judge_bars
    use dda_bars_in_time, only : append_bars, drop_bars
@@ -37,7 +37,7 @@ contains
    !> blocks move
    pure subroutine settle_joints(settings, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> Blocks assembled; matrix and factor are made anew
+      !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       !> Faces to begin with in, motion and joints out
@@ -65,10 +65,10 @@ contains
       state%settled = .false.
    end subroutine settle_joints
 
-   !> Settle the joints until neither their forces nor those at the held points change
+   !> Settle the joints until neither their forces nor those at the restrained points change
    pure subroutine settle_exactly(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> How far the held points must go: (n_fixed) [m]
+      !> Displacements of the restrained points: (n_fixed) [m]
       real(wp), intent(in) :: target(:)
       !> Trial forces at the beginning without the forces themselves: (3, n_joint) [N/m]
       real(wp), intent(in) :: opening(:, :)
@@ -88,14 +88,14 @@ contains
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
          if (has_multipliers) change = max(change, &
             & maxval(abs(state%force - force)))
-         ! without loads the forces of held points alone bear on the blocks
+         ! without loads the forces of restrained points alone bear on the blocks
          scale = equations%force_scale + sum(abs(equations%fixed%force))
          if (change <= fine*scale) return
       end do
       state%settled = .false.
    end subroutine settle_exactly
 
-   !> Whether the forces of the joints are multipliers; otherwise their springs are real
+   !> True if the forces of the joints are multipliers; otherwise their springs are real
    pure logical function multiplies(settings, springs)
       type(settings_t), intent(in) :: settings
       type(joint_springs_t), intent(in) :: springs
@@ -117,8 +117,8 @@ contains
       end if
    end subroutine settle_once
 
-   !> Sweep until held points are where they must be: their springs, stiff beside inertia, are parts
-   !> of the blocks' equations, and what these lack becomes their force
+   !> Sweep until restrained points are where they must be: their springs, stiff beside inertia, are
+   !> parts of the blocks' equations, and what these lack becomes their force
    pure subroutine settle_in_time(target, equations, springs, state)
       real(wp), intent(in) :: target(:)
       type(equations_t), intent(inout) :: equations
@@ -139,7 +139,7 @@ contains
          if (change <= fine*scale) return
          ! what sweeps leave is no more to be corrected
          if (change <= coarse*scale .and. change > last/2.0_wp) return
-         ! contacts may not let a point go where it is led
+         ! contacts may block a prescribed displacement
          stale = merge(0, stale + 1, change < falling*least)
          if (stale == patience) exit
          least = min(least, change)

@@ -49,7 +49,7 @@ contains
    !> That corrects what the blocks lack in balance, so that its rounding is small; a motion in
    !> balance is the answer even where rounding lets no face agree
    pure subroutine iterate_newton(equations, springs, start, state)
-      !> Blocks assembled; matrix and factor are made anew
+      !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
       real(wp), intent(in) :: start(:, :)  !! The motion: (n_dof, n_equation)
@@ -75,14 +75,14 @@ contains
       end do
    end subroutine iterate_newton
 
-   !> What the admissible forces of a motion leave of the loads, and whether that is rounding: then
-   !> no other motion has noticeably less energy
+   !> Loads that the admissible forces of a motion do not balance, and whether that is rounding:
+   !> then no other motion has noticeably less energy
    pure subroutine find_unbalance(equations, springs, state, rest, balanced)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
       real(wp), intent(out) :: rest(:, :)  !! Loads that nothing balances: (n_dof, n_equation)
-      logical, intent(out) :: balanced     !! Whether rounding can make as much
+      logical, intent(out) :: balanced     !! True if rounding can make as much
       real(wp) :: rounding(size(rest, 1), size(rest, 2)), noise
       real(wp) :: coupled(size(rest, 1), size(rest, 2))
       integer :: e, j, side
@@ -106,7 +106,7 @@ contains
       balanced = all(abs(rest) <= rounding)
    end subroutine find_unbalance
 
-   !> How far to go from one motion towards another for the least energy. The slope of the energy
+   !> Step from one motion towards another with the least energy. The slope of the energy
    !> rises piecewise linearly, so its zero is found by bracketing and false position
    pure function lowest_point(equations, springs, state, from, direction) result(factor)
       type(equations_t), intent(in) :: equations
@@ -166,7 +166,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(in) :: state
       type(line_t), intent(in) :: line
-      real(wp), intent(in) :: way  !! How far along it
+      real(wp), intent(in) :: way  !! Distance along it
       real(wp) :: slope, force(3), shift(3)
       type(joint_face_t) :: face
       integer :: j
@@ -200,14 +200,14 @@ contains
 
    !> Find the motion and the faces of one step
    pure subroutine iterate_open_close(equations, springs, max_changes, state, one_by_one)
-      !> Blocks assembled; matrix and factor are made anew
+      !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces of a chain before Newton's method takes over
+      !> Most changes of faces of a chain before Newton's method is used
       integer, intent(in) :: max_changes
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      !> Whether only the joint that disagrees most changes its face, as it does after a repetition
+      !> True if only the joint that disagrees most changes its face, as it does after a repetition
       logical, intent(in), optional :: one_by_one
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face)), best(size(state%motion, 1), size(state%motion, 2)), least
@@ -275,7 +275,7 @@ contains
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       real(wp), intent(in) :: gap(:)
-      logical, intent(in) :: of_blocks  !! Whether other joints of its two blocks alone count
+      logical, intent(in) :: of_blocks  !! True if other joints of its two blocks alone count
       logical :: is_peak(size(gap))     !! The joints: (n_joint)
       real(wp) :: highest, threshold
       integer :: e, j, k, side
@@ -298,7 +298,7 @@ contains
       end do
    end function is_peak
 
-   !> A number that tells sets of faces apart: the rest of their digits by a large prime
+   !> Number that identifies a set of faces: the rest of their digits by a large prime
    pure integer(int64) function hash(face)
       type(joint_face_t), intent(in) :: face(:)  !! Faces: (n_joint)
       integer(int64), parameter :: prime = 2_int64**47 - 115_int64

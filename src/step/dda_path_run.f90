@@ -57,7 +57,7 @@ contains
       call leave_rest(run, album)
    end subroutine follow_clock
 
-   !> Whether the blocks have moved in a stride by more than the stride before lets expect
+   !> True if the blocks have moved in a stride by more than the stride before lets expect
    pure logical function leaps(run)
       type(run_t), intent(in) :: run
 
@@ -97,8 +97,8 @@ contains
    !> for a shorter stride of the clock
    pure subroutine return_to_rest(run, falls, returned, album)
       type(run_t), intent(inout) :: run  !! The run; its counts are kept
-      logical, intent(in) :: falls       !! Whether they do not come to rest
-      !> Whether there is a shorter stride; otherwise nothing is changed
+      logical, intent(in) :: falls       !! True if they do not come to rest
+      !> True if there is a shorter stride; otherwise nothing is changed
       logical, intent(out) :: returned
       type(album_t), intent(inout), optional :: album
       type(march_t) :: march
@@ -143,7 +143,7 @@ contains
    end subroutine begin_stride
 
    !> Length of the first static step with the loads of another time: that of the last step at rest,
-   !> or longer where points are led
+   !> or longer where displacements are prescribed
    pure subroutine set_interval(settings, march)
       type(settings_t), intent(in) :: settings
       !> The march, its clock gone on; the length of the next step is set

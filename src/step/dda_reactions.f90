@@ -20,7 +20,7 @@ contains
    pure function supports_of(system, boundary) result(support)
       type(block_system_t), intent(in) :: system
       type(boundary_t), intent(in) :: boundary
-      integer, allocatable :: support(:, :)  !! Block, and number of the held point or 0: (2, n)
+      integer, allocatable :: support(:, :)  !! Block, and restrained point or 0: (2, n)
       logical :: stands(size(system%equation))
       integer, allocatable :: fixed(:), held(:)
       integer :: i
@@ -41,7 +41,7 @@ contains
    pure function force_on(place, force, side) result(wrench)
       type(joint_place_t), intent(in) :: place
       real(wp), intent(in) :: force(3)  !! Its force N1, N2, T: (3) [N/m]
-      integer, intent(in) :: side       !! Which of its blocks, 1 or 2
+      integer, intent(in) :: side       !! Side of the joint, 1 or 2
       real(wp) :: wrench(3)             !! Components along x and y, and moment: (3) [N/m, N/m, N]
       integer :: k
 
@@ -54,7 +54,7 @@ contains
       if (side == 1) wrench = -wrench
    end function force_on
 
-   !> What fixed blocks put on those that move
+   !> Forces of fixed blocks on those that move
    pure function forces_of_blocks(system, contacts, force, support) result(reaction)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts

@@ -46,8 +46,8 @@ contains
       end if
    end subroutine start_run
 
-   !> Take over the march of a run that goes on, and the forces at its held points; points that are
-   !> held otherwise than before begin without force. Scales are those of the run as it is now.
+   !> Continue the march of a run that goes on, and the forces at its restrained points; points that
+   !> are held otherwise than before begin without force. Scales are those of the run as it is now.
    !> Time has passed even where no block could move
    pure subroutine go_on(onward, run)
       type(march_t), intent(in) :: onward
@@ -64,7 +64,7 @@ contains
          & run%equations%fixed%force = onward%held_force
    end subroutine go_on
 
-   !> What the end of a run says
+   !> Outcome at the end of a run
    pure subroutine conclude(run, error, outcome)
       type(run_t), intent(in) :: run
       type(error_t), allocatable, intent(in) :: error
@@ -104,7 +104,7 @@ contains
       end if
    end subroutine conclude
 
-   !> What the end of a dynamic run says
+   !> Outcome at the end of a dynamic run
    pure subroutine conclude_in_time(run, outcome)
       type(run_t), intent(in) :: run
       type(outcome_t), intent(inout) :: outcome

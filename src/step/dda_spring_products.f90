@@ -31,7 +31,7 @@ contains
    pure subroutine add_product(a, b, c)
       real(wp), intent(in) :: a(:, :)     !! First factor: (n, 3)
       real(wp), intent(in) :: b(:, :)     !! Second factor: (n, 3)
-      real(wp), intent(inout) :: c(:, :)  !! What the product is added to: (n, n)
+      real(wp), intent(inout) :: c(:, :)  !! Matrix that receives the product: (n, n)
       integer :: k
 
       do k = 1, size(b, 1)

@@ -29,7 +29,7 @@ module dda_step
    real(wp), parameter :: led = 1.0e-3_wp
    integer, parameter :: most_stuck = 100
 
-   !> Why contacts find no forces where points are led
+   !> Reason why contacts find no forces where displacements are prescribed
    character(len=*), parameter :: jam = "contacts lock against a prescribed displacement"
 
    !> Residual over the fastest speed, or over the speed that loads add per step, above which it is
@@ -90,7 +90,7 @@ contains
          & .and. run%march%dt < spacing(max(run%march%time, run%march%longest))
    end function is_too_short
 
-   !> End a run in time whose steps no longer lead on: a prescribed displacement against friction
+   !> End a dynamic run whose steps make no progress: a prescribed displacement against friction
    !> finds no motion at any speed
    pure subroutine check_progress(run, error)
       type(run_t), intent(inout) :: run
@@ -114,7 +114,7 @@ contains
       end associate
    end subroutine check_progress
 
-   !> Whether points are led in time
+   !> True if displacements are prescribed in a dynamic run
    pure logical function leads(run)
       type(run_t), intent(in) :: run
 

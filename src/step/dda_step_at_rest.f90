@@ -37,7 +37,7 @@ contains
    !> A step of blocks that stand still, or are found to: nothing moves in it
    pure subroutine rest(run, still)
       type(run_t), intent(inout) :: run
-      logical, intent(out) :: still  !! Whether they stand still; otherwise nothing has changed
+      logical, intent(out) :: still  !! True if they stand still; otherwise nothing has changed
 
       still = .false.
       if (.not. in_time(run)) return
@@ -79,7 +79,7 @@ contains
    !> Where they do not, nothing changes but the passes that are counted
    pure subroutine come_to_rest(run, still)
       type(run_t), intent(inout) :: run
-      logical, intent(out) :: still  !! Whether they stand still
+      logical, intent(out) :: still  !! True if they stand still
       type(run_state_t) :: before
 
       run%march%held_force = run%equations%fixed%force
@@ -118,7 +118,7 @@ contains
    !> Take the speed that coarser contact forces have left
    pure subroutine take_speed(run, taken)
       type(run_t), intent(inout) :: run
-      logical, intent(out) :: taken  !! Whether none is left
+      logical, intent(out) :: taken  !! True if none is left
       integer :: i
 
       taken = .false.
@@ -139,10 +139,10 @@ contains
    end subroutine take_speed
 
    !> Let strain and contact forces of blocks without speed balance the loads, in steps so long that
-   !> inertia bears nothing. What bears a force touches: no gap that rounding has left asks for more
+   !> inertia bears nothing. Contacts with a force are closed, whatever gap rounding has left
    pure subroutine balance_forces(run, still)
       type(run_t), intent(inout) :: run
-      logical, intent(out) :: still  !! Whether they do
+      logical, intent(out) :: still  !! True if they do
       integer :: i
 
       call place_contacts(run)
@@ -170,12 +170,12 @@ contains
       end associate
    end subroutine balance_forces
 
-   !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
+   !> True if all blocks move so slowly that this may be what contact forces leave, or with finer
    !> forces that it was
    pure logical function is_slow(run, velocity, finer)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: velocity(:, :)  !! Velocities: (n_dof, n_equation)
-      logical, intent(in) :: finer            !! Whether forces were finer
+      logical, intent(in) :: finer            !! True if forces were finer
       real(wp) :: least
       integer :: e
 
@@ -190,7 +190,7 @@ contains
       is_slow = .true.
    end function is_slow
 
-   !> Whether no block moves and the contact forces at hand balance the loads of the coming step,
+   !> True if no block moves and the contact forces at hand balance the loads of the coming step,
    !> which are assembled
    pure subroutine stands_still(run, still)
       type(run_t), intent(inout) :: run

@@ -74,11 +74,11 @@ contains
       end associate
    end subroutine retry
 
-   !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
-   !> would go in by depends on the way that both take. A line that has held off a block which
-   !> turns out to be apart was the wrong one, and so was one that has let it in: they are chosen
-   !> again by the motion; if blocks still enter one another the step is cut, and if some are
-   !> still held off in thin air, they are
+   !> Check the separating axes of a settled step. Where corners pass corners, the edge that one
+   !> enters by depends on the motion of both. An axis is wrong if it has held off a block that is
+   !> separate, or has let one enter. Axes are then chosen again by the motion. If blocks still
+   !> enter one another, the step is cut; if some are still held off without contact, that is
+   !> accepted
    pure type(step_outcome_t) function check_axes(run) result(outcome)
       type(run_t), intent(in) :: run
       real(wp) :: before, gap, level, matters, told
@@ -132,7 +132,7 @@ contains
          & outcome = half_step(run)
    end function check_penetration
 
-   !> How deep the deepest corner is, over the size of the smaller block
+   !> Depth of the deepest corner over the size of the smaller block
    pure real(wp) function depth(system, contacts)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts

@@ -23,7 +23,7 @@ module dda_step_context
       real(wp) :: elastic = 0.0_wp  !! Of strained blocks
       real(wp) :: contact = 0.0_wp  !! Of the joints' springs, where blocks do not move
       real(wp) :: gravity = 0.0_wp  !! Of height, zero at the beginning
-      !> Brought in by forces on points, led points and the shaking ground
+      !> Brought in by forces on points, prescribed points and the shaking ground
       real(wp) :: work = 0.0_wp
       real(wp) :: friction = 0.0_wp   !! Gone by sliding
       real(wp) :: damping = 0.0_wp    !! Gone by damping
@@ -35,26 +35,26 @@ module dda_step_context
 
    !> A value to report of one contact, with its time
    type :: contact_note_t
-      real(wp) :: value = 0.0_wp  !! How much
+      real(wp) :: value = 0.0_wp  !! Value
       real(wp) :: time = 0.0_wp   !! When [s]
       integer :: block(2) = 0     !! Where: the two blocks, or none at a bar
    end type contact_note_t
 
-   !> What the checks of a try say: whether the step counts, and if not what the next try changes
+   !> Outcome of the checks of a try: acceptance, or changes of the next try
    type :: step_outcome_t
-      !> Whether the step counts
+      !> True if the step counts
       logical :: accepted = .false.
       !> Length of the next try [s]
       real(wp) :: dt = 0.0_wp
-      !> Whether the step after goes on carefully, because a longer one did not settle
+      !> True if the step after goes on carefully, because a longer one did not settle
       logical :: was_cut = .false.
-      !> Whether the next try ends at an impact, or where slip turns
+      !> True if the next try ends at an impact, or where slip turns
       logical :: ends_at_event = .false.
-      !> Whether a corner moves beyond the margin of its block: margins must be wider
+      !> True if a corner moves beyond the margin of its block: margins must be wider
       logical :: beyond_margin = .false.
-      !> Whether the separating axes must be chosen by the motion of this try
+      !> True if the separating axes must be chosen by the motion of this try
       logical :: wrong_axes = .false.
-      !> How far contacts that meet in the step would have moved into one another at its end [m]
+      !> Depth of contacts that meet in the step at its end without their forces [m]
       real(wp) :: overshoot = huge(1.0_wp)
    end type step_outcome_t
 
@@ -62,23 +62,23 @@ module dda_step_context
    type :: step_context_t
       real(wp) :: dt = 0.0_wp       !! Length of the step [s]
       type(step_state_t) :: state   !! Motion of the blocks and states of the joints
-      !> Gaps at its end beyond those that the rows tell, where blocks move in time:
+      !> Gaps at its end beyond those of the rows, in a dynamic run:
       !> (3, n_joint) [m]
       real(wp), allocatable :: curve(:, :)
       real(wp), allocatable :: end_gap(:, :)  !! Gaps at its end: (3, n_joint) [m]
       !> Speeds at which the contacts part and slip at its beginning: (3, n_joint) [m/s]
       real(wp), allocatable :: speed(:, :)
-      !> How far the last try went beyond an impact [m]
+      !> Depth of the last try beyond an impact [m]
       real(wp) :: overshoot = huge(1.0_wp)
-      !> The blocks at its end, but for their velocities, likewise
+      !> The blocks at its end except for their velocities, likewise
       type(block_system_t) :: after
       type(joint_place_t), allocatable :: place(:)  !! Where the joints are there: (n_joint)
-      !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
+      !> Velocities at its end in a dynamic run: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
-      !> Mean forces of the joints, impacts among them, that change the velocities where blocks move
-      !> in time: (3, n_joint) [N/m]
+      !> Mean forces of the joints, impacts among them, that change the velocities in a dynamic
+      !> run: (3, n_joint) [N/m]
       real(wp), allocatable :: mean_force(:, :)
-      !> Likewise those of the springs at held points: (n_spring) [N/m]
+      !> Likewise those of the springs at restrained points: (n_spring) [N/m]
       real(wp), allocatable :: held_mean_force(:)
       !> Largest opening or slip against the law of contact that the velocities have [m/s], and its
       !> joint
@@ -88,19 +88,19 @@ module dda_step_context
       real(wp) :: restitution = 1.0_wp     !! Share of the restitution that its impacts have
       integer :: fastest_impact = 0        !! Joint of the fastest of them
       real(wp) :: slowest_impact = 0.0_wp  !! Contacts that meet more slowly do not rebound [m/s]
-      logical :: has_velocity = .false.    !! Whether there are velocities for its end
-      !> How the corners are about to move, where contacts are searched: (2, n_vertex) [m]
+      logical :: has_velocity = .false.    !! True if there are velocities for its end
+      !> Expected motion of the corners, where contacts are searched: (2, n_vertex) [m]
       real(wp), allocatable :: travel(:, :)
-      !> Whether the contacts must be placed, or searched, for the next try
+      !> True if the contacts must be placed, or searched, for the next try
       logical :: renews = .false.
-      !> The contacts at the end of the step before, where a search must not go by an earlier one
+      !> The contacts at the end of the last step, where a search must not go by an earlier one
       type(contacts_t), allocatable :: kept
-      !> How often the separating axes were chosen by the motion of a try
+      !> Number of times that the separating axes were chosen by the motion of a try
       integer :: choices = 0
-      logical :: accepted = .false.  !! Whether the step counts
-      logical :: was_cut = .false.   !! Whether a longer step did not settle
-      logical :: ends_at_event = .false.  !! Whether it has been cut to end at such an event
-      !> Whether no contact broke in it, so that its end is one of equilibrium
+      logical :: accepted = .false.  !! True if the step counts
+      logical :: was_cut = .false.   !! True if a longer step did not settle
+      logical :: ends_at_event = .false.  !! True if it has been cut to end at such an event
+      !> True if no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point, in it and in the try before: [m]
       real(wp) :: farthest = 0.0_wp, last_farthest = 0.0_wp
@@ -115,15 +115,15 @@ module dda_step_context
       !> Forces that nothing balances at its end, which its inertia bears: (n_dof, n_equation); not
       !> allocated before the first step of a run, or of a stride of its path
       real(wp), allocatable :: unbalanced(:, :)
-      real(wp) :: last_dt = 0.0_wp    !! Length of the step before [s]
-      !> Whether this one is shorter: stiff parts relax less in it, so their forces may grow
+      real(wp) :: last_dt = 0.0_wp    !! Length of the last step [s]
+      !> True if this one is shorter: stiff parts relax less in it, so their forces may grow
       logical :: is_shorter = .false.
       !> Farther motion, in the direction of this one, that would bring the blocks to rest; 0 where
       !> nothing drove them at its beginning, huge where nothing slows them [m]
       real(wp) :: way_to_rest = 0.0_wp
    end type step_context_t
 
-   !> What is carried from step to step beside blocks and contacts
+   !> Data that are carried from step to step beside blocks and contacts
    type :: march_t
       !> Steps accepted so far
       integer :: steps = 0
@@ -140,7 +140,7 @@ module dda_step_context
       real(wp) :: moved = 0.0_wp
       !> That motion over the time that the clock went on, at the last rest [m/s]
       real(wp) :: rate = 0.0_wp
-      !> How often the blocks have leapt to another rest
+      !> Number of jumps of the blocks to another rest
       integer :: jumps = 0
       !> The largest of these jumps [m]
       real(wp) :: largest_jump = 0.0_wp
@@ -149,7 +149,7 @@ module dda_step_context
       real(wp) :: first_motion = 0.0_wp
       !> Length of the next step [s]
       real(wp) :: dt = 0.0_wp
-      !> How many steps may yet be cut to end at an impact, or where slip turns
+      !> Number of steps that may still be cut to end at an impact, or where slip turns
       integer :: spare_cuts = most_spare_cuts
       !> Most that a corner may move in a step, where blocks move [m]
       real(wp) :: allowed_motion = 0.0_wp
@@ -158,36 +158,37 @@ module dda_step_context
       real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
-      !> How far the blocks have gone of what means collapse in a dynamic run
+      !> Displacement or rotation over that of collapse in a dynamic run
       real(wp) :: progress = 0.0_wp
       !> The most of it before the last part of the run
       real(wp) :: early_progress = 0.0_wp
-      !> Whether a block has turned over or left what carried it, where blocks move
+      !> True if a block has turned over or left what carried it, where blocks move
       logical :: has_fallen = .false.
-      !> Motions that the coordinates of corners cannot tell from none [m]
+      !> Motions that the coordinates of corners do not resolve [m]
       real(wp) :: resolution = 0.0_wp
-      !> Motion that the rounding of coordinates may feign, where blocks move [m]
+      !> Apparent motion by rounding of coordinates, where blocks move [m]
       real(wp) :: rounding = 0.0_wp
-      !> Whether that rounding presses a block with more than its load, where springs give
+      !> True if that rounding presses a block with more than its load, where springs give
       logical :: drowned = .false.
       !> Longest step: the one that was asked for in a dynamic run; in a static one that which
       !> leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
-      !> Largest motion if every joint were glued: the scale of elastic motion [m]
+      !> Largest motion if every joint were closed for good: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
       !> Size of all that can move: no elastic motion is as large [m]
       real(wp) :: extent = 0.0_wp
       !> Farthest rest that the forces of a step have pointed to since the clock went on, at least
       !> the motion of the first step, where blocks move: the elastic motion of blocks that walls
-      !> hold, which the glued ones hide [m]
+      !> hold, which the bonded ones hide [m]
       real(wp) :: expected_rest = 0.0_wp
       !> Acceleration that the loads would give to free blocks [m/s2]
       real(wp) :: free_acceleration = 0.0_wp
-      !> Acceleration in the step before [m/s2]
+      !> Acceleration in the last step [m/s2]
       real(wp) :: last_acceleration = 0.0_wp
-      !> Motion of the step before, where blocks move: (n_dof, n_equation)
+      !> Motion of the last step, where blocks move: (n_dof, n_equation)
       real(wp), allocatable :: last_motion(:, :)
-      !> Forces of the springs at held points, which the next step begins with: (n_spring) [N/m]
+      !> Forces of the springs at restrained points, which the next step begins with: (n_spring)
+      !> [N/m]
       real(wp), allocatable :: held_force(:)
       !> Passes of the open-close loop so far
       integer :: passes = 0
@@ -201,24 +202,24 @@ module dda_step_context
       type(contact_note_t) :: reduced
    end type march_t
 
-   !> What the next step of a run begins with
+   !> Data that the next step of a run begins with
    type :: run_state_t
       type(block_system_t) :: system  !! The blocks
       type(contacts_t) :: contacts    !! The contacts
-      type(march_t) :: march          !! What is carried on beside them
+      type(march_t) :: march          !! Data that are carried on beside them
    end type run_state_t
 
    !> A rest on the path of a static run, to return to
    type :: rest_t
       type(run_state_t) :: state  !! The run there
       integer :: n_frame = 0    !! Pictures kept so far
-      integer :: n_track = 0    !! Steps so far of which the measured points are kept
+      integer :: n_track = 0    !! Steps so far of which the monitoring points are kept
       real(wp) :: due = 0.0_wp  !! Displacement or time at which the next picture is due [m or s]
    end type rest_t
 
    !> All that a run holds
    type, extends(run_state_t) :: run_t
-      type(settings_t) :: settings       !! How it goes
+      type(settings_t) :: settings       !! Settings of the run
       type(equations_t) :: equations     !! The equations of a step
       type(step_context_t) :: step       !! The step
       type(rest_t), allocatable :: rest  !! The last rest on a path; not allocated before the first
@@ -237,7 +238,7 @@ module dda_step_context
 
 contains
 
-   !> Whether blocks move in time: forces are then multipliers, and impacts change velocities
+   !> True in a dynamic run with current geometry: forces are multipliers, impacts change velocities
    pure logical function in_time(run)
       type(run_t), intent(in) :: run
 

@@ -53,10 +53,10 @@ contains
 
    !> Scales of the problem and the length of the first step
    pure subroutine first_interval(run, error)
-      !> The run; its march begins, the motion of the step becomes that of the glued system, its
+      !> The run; its march begins, the motion of the step becomes that of the bonded system, its
       !> faces those to begin with
       type(run_t), intent(inout) :: run
-      !> Allocated if the system cannot be solved even with all joints glued
+      !> Allocated if the system cannot be solved even with all joints bonded
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. run%settings%dynamic) run%march%clock = new_load_clock(run%settings)
@@ -104,7 +104,7 @@ contains
       end associate
    end subroutine first_static_interval
 
-   !> The scale of elastic motion, once the glued system has moved. Where blocks fall even so, as
+   !> The scale of elastic motion, once the bonded system has moved. Where blocks fall even so, as
    !> one that stands on a corner does, most work of the loads is speed [m]
    pure real(wp) function elastic_motion(run)
       type(run_t), intent(in) :: run
@@ -125,7 +125,7 @@ contains
    end function elastic_motion
 
    !> The blocks with the loads that scales are measured by: those of the beginning, or the first
-   !> that come where there are none. Points that are led do not move
+   !> that come where there are none. Prescribed points do not move
    pure subroutine assemble_first_loads(run)
       type(run_t), intent(inout) :: run
       type(settings_t) :: unled
@@ -184,7 +184,7 @@ contains
       extent = norm2(high - low)
    end function extent_of_movable
 
-   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
+   !> Apparent motion by rounding of coordinates: a corner off by eps of the model's size tilts
    !> a block, and that moves its far end by the block's aspect ratio times as much; errors of many
    !> blocks add up by chance
    pure function feigned_motion(system) result(motion)
@@ -207,8 +207,8 @@ contains
    end function feigned_motion
 
    !> Length of a dynamic step: that in which free fall from rest goes as far as a step may, or the
-   !> one that was asked for, unless blocks would move in it by a good part of their size: what is
-   !> met in such a step depends on where it is looked for
+   !> length in the deck, unless blocks would move in it by a large part of their size: contacts
+   !> in such a step depend on the place of the search
    pure function dynamic_step(settings, march) result(dt)
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
@@ -263,7 +263,7 @@ contains
       outcome%dt = factor*run%step%dt
    end function check_length
 
-   !> Whether contact forces in time leave blocks inside one another; in the shortest steps they may
+   !> True if contact forces of a dynamic run leave blocks inside one another
    pure logical function enters(run)
       type(run_t), intent(in) :: run
 
@@ -279,7 +279,7 @@ contains
    end function longest_motion
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
-   !> a step may make, and shrinks where blocks rattle to and fro
+   !> a step may make, and shrinks where blocks oscillate
    pure subroutine next_interval(run)
       type(run_t), intent(inout) :: run
       real(wp) :: factor, speed
@@ -307,7 +307,7 @@ contains
       end associate
    end subroutine next_interval
 
-   !> Whether a step goes back on the one before
+   !> True if a step goes back on the one before
    pure logical function rattles(march, step)
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step

@@ -18,7 +18,7 @@ module dda_step_motion
 
 contains
 
-   !> What a step begins with: masses as the blocks have turned, whether contacts remember their
+   !> Begin a step: masses of turned blocks, whether contacts keep their
    !> slip, and how corners are about to move
    pure subroutine predict_step(run)
       type(run_t), intent(inout) :: run

@@ -46,7 +46,7 @@ contains
 
    !> Let blocks reach as far as those that may strike them
    pure subroutine reach_like_neighbours(joint, equation, reach)
-      type(joint_t), intent(in) :: joint(:)  !! The joints of the step before: (n_joint)
+      type(joint_t), intent(in) :: joint(:)  !! The joints of the last step: (n_joint)
       integer, intent(in) :: equation(:)     !! Equation of each block, 0 for a fixed one: (n_block)
       real(wp), intent(inout) :: reach(:)    !! The reach: (n_block) [m]
       real(wp) :: own(size(reach))
@@ -124,13 +124,13 @@ contains
       end do
    end function corner_motion
 
-   !> How the corners are about to move: as their speed and the loads have it, or as they did in the
-   !> step before. What lies on others does not fall
+   !> Expected motion of the corners: by their speed and the loads, or as in the
+   !> last step. A block that lies on others does not fall
    pure function travel_of(system, settings, march, contacts) result(travel)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
-      type(contacts_t), intent(in), optional :: contacts  !! The contacts of the step before
+      type(contacts_t), intent(in), optional :: contacts  !! The contacts of the last step
       real(wp) :: travel(2, size(system%vertex, 2))       !! The motion: (2, n_vertex) [m]
       real(wp) :: motion(6, maxval(system%equation))
       logical :: lies(size(system%area))
@@ -158,7 +158,7 @@ contains
    pure function in_touch(contacts, n_block) result(touch)
       type(contacts_t), intent(in) :: contacts
       integer, intent(in) :: n_block  !! Number of blocks
-      logical :: touch(n_block)       !! Whether each has one: (n_block)
+      logical :: touch(n_block)       !! True if each has one: (n_block)
       integer :: j
 
       touch = .false.
@@ -170,7 +170,7 @@ contains
       end do
    end function in_touch
 
-   !> How a motion of the blocks moves their corners
+   !> Motion of corners by that of the blocks
    pure function travel_by(system, motion) result(travel)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)

@@ -23,27 +23,27 @@ module dda_step_state
       real(wp), allocatable :: gap(:, :)
       !> Trial forces where the motion begins, in a static run: (3, n_joint) [N/m]
       real(wp), allocatable :: trial(:, :)
-      !> Admissible forces, those of the step before to begin with: (3, n_joint) [N/m]
+      !> Admissible forces, those of the last step to begin with: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
       !> Faces that they lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
       !> Bounds of the forces: (n_joint)
       type(cone_t), allocatable :: cone(:)
-      !> How much smaller than usual gaps must be that contact forces leave in time
+      !> Value smaller than usual gaps must be that contact forces leave in time
       real(wp) :: fineness = 1.0_wp
-      !> What free fall from rest brings in the step after the longest one: these gaps are measured
+      !> Free fall from rest in the step after the longest one: these gaps are measured
       !> by it [m]
       real(wp) :: fall = 0.0_wp
       !> The largest opening or slip against the law of contact that they leave [m], and its joint
       real(wp) :: residual = 0.0_wp
       integer :: worst = 0
-      !> Whether velocities are sought, which bars have no part in
+      !> True if velocities are sought, which bars have no part in
       logical :: rates = .false.
       !> Work of what the bounds of the shear forces would still change by [J/m]
       real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
       integer :: passes = 0
-      !> Whether every joint's force agrees with its face
+      !> True if every joint's force agrees with its face
       logical :: settled = .false.
    end type step_state_t
 
@@ -80,13 +80,13 @@ module dda_step_state
       real(wp), allocatable :: felt(:, :)
       !> Loads of this step without springs: (n_dof, n_equation)
       real(wp), allocatable :: load(:, :)
-      !> Springs of the held points
+      !> Springs of the restrained points
       type(fixed_points_t) :: fixed
       !> Springs of the bars
       type(bar_springs_t) :: bars
       !> Sum of the forces that bear on the blocks, which small forces are measured by [N/m]
       real(wp) :: force_scale = 0.0_wp
-      !> What rounding of the corners' coordinates makes of a gap [m]
+      !> Gap by rounding of the corners' coordinates [m]
       real(wp) :: gap_noise = 0.0_wp
       !> Faces that the couplings were made for: (n_joint)
       type(joint_face_t), allocatable :: held(:)
@@ -94,10 +94,10 @@ module dda_step_state
       real(wp), allocatable :: held_friction(:)
       !> Equations whose numbers have changed since the factor was made: (n_equation)
       logical, allocatable :: changed(:)
-      !> Whether joints and springs are others than those that pattern and numbers were made for: in
-      !> time few steps need them
+      !> True if joints and springs are others than those that pattern and numbers were made for: in
+      !> a dynamic run few steps need them
       logical :: new_pattern = .false.
-      !> Whether springs, or their rows, are others
+      !> True if springs, or their rows, are others
       logical :: new_numbers = .false.
       !> Factorisations so far, whole or in part
       integer :: factorisations = 0
@@ -116,7 +116,7 @@ contains
          & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
    end function force_noise
 
-   !> How far the force that each joint's face gives is from the admissible one, beyond rounding
+   !> Difference of the force on each joint's face from the admissible one, beyond rounding
    pure subroutine disagreement(springs, state, gap, wanted)
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state    !! The step; its increments are set

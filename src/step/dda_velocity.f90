@@ -1,8 +1,8 @@
 !> Velocities at the end of a dynamic step: the law of impact, equation (M5)
 !>
-!> The motion D of the step says which contacts are closed, and what v = 2 D/dt - v0 they would have
-!> by constant acceleration. Its forces f have acted half way; where the contacts are at the end,
-!> with their rows B1, the forces N that the law of impact asks for replace them, with the same
+!> The motion D of the step shows which contacts are closed, and what v = 2 D/dt - v0 they would
+!> have by constant acceleration. Its forces f have acted half way; where the contacts are at the
+!> end, with their rows B1, the forces N that the law of impact asks for replace them, with the same
 !> cones, in the metric of mass:
 !>
 !>    M (v1 - v) = dt B1' (N - f),   B1 v1 >= -e B1 v,   N in its cone,   N = 0 where it is more
@@ -40,7 +40,7 @@ module dda_velocity
    !> Round-off of energy over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
 
-   !> What the end of a step asks of velocities
+   !> Conditions on velocities at the end of a step
    type :: impact_t
       !> Springs of the joints where they are after the step
       type(joint_springs_t) :: springs
@@ -61,8 +61,8 @@ module dda_velocity
 
 contains
 
-   !> Velocities of the blocks at the end of a step, if they are found. What contacts have done to
-   !> the energy of the motion is no part of what is allowed; without contacts only held points
+   !> Velocities of the blocks at the end of a step, if they are found. The change of energy by
+   !> contacts is no part of the allowed one; without contacts only restrained points
    !> change it, which turn with their blocks
    pure subroutine solve_impacts(run)
       type(run_t), intent(inout) :: run
@@ -87,7 +87,7 @@ contains
             call add_impact(run, impact, allowed, share)
          end do
          if (.not. step%has_velocity) return
-         ! points that are led bring in energy of their own, and what contacts leave ends no run
+         ! prescribed points bring in energy of their own, and residuals of contacts end no run
          if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
             & .or. .not. may_shorten(run) .or. &
             & kinetic_energy(equations, step%velocity) <= allowed + allowed_gain(run, before)
@@ -142,11 +142,11 @@ contains
       run%step%held_mean_force = run%step%held_mean_force + held(2, :)
    end subroutine add_impact
 
-   !> See whether contacts that parted before an impact meet by it, which is the next impact
+   !> Find contacts that were separating before an impact and meet by it, which is the next impact
    pure subroutine see_next_impact(run, impact, meets)
       type(run_t), intent(in) :: run
       type(impact_t), intent(inout) :: impact  !! The impact before in, the next one out
-      logical, intent(out) :: meets            !! Whether there is one
+      logical, intent(out) :: meets            !! True if there is one
       real(wp) :: before(3, size(run%contacts%joint))
 
       meets = any(impact%part < 0.0_wp)
@@ -169,7 +169,7 @@ contains
          & + fall_energy(run) + sum(abs(run%equations%outer*run%step%state%motion)))
    end function allowed_gain
 
-   !> Which contacts are closed at the end of a step, and which of them have met in it, faster than
+   !> Find contacts that are closed at the end of a step, and those that have met in it, faster than
    !> weight makes resting contacts meet: they must part with restitution times that speed. If they
    !> have met at the end of the step, the forces of all others have acted up to then
    pure subroutine see_impacts(run, impact)

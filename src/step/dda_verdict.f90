@@ -1,9 +1,9 @@
 !> Verdict of a run: fallen blocks, collapse in time, termination criteria
 !>
-!> What comes to rest after that is another structure than the one in question. A block may go far
-!> and not have fallen: with others that settle under it, or with what is led.
+!> Blocks that rest after that are another structure than the one in question. A block may go far
+!> and not have fallen: with others that settle under it, or with prescribed points.
 !>
-!> Whether blocks have collapsed in a dynamic run: one has turned too far, or moved too far
+!> True if blocks have collapsed in a dynamic run: one has turned too far, or moved too far
 !>
 !> Termination criteria of a run: stable, collapsed, or not known yet
 module dda_verdict
@@ -51,7 +51,7 @@ module dda_verdict
    !> Last motion at rest where it is round-off
    real(wp), parameter :: barely = 1.0e-6_wp
 
-   !> How a run ended
+   !> Outcome of a run
    type :: outcome_t
       !> One of verdict
       integer :: verdict = 0
@@ -63,36 +63,36 @@ module dda_verdict
       real(wp) :: rest_tolerance = 0.0_wp
       !> Length of a step in which free fall is the elastic motion [s]
       real(wp) :: elastic_time = 0.0_wp
-      !> Estimated condition number of the last equations, if it was wanted
+      !> Estimated condition number of the last equations, if it was asked for
       real(wp) :: condition = 0.0_wp
       !> Motion of the step that gave the verdict: (n_dof, n_equation)
       real(wp), allocatable :: motion(:, :)
       !> Contacts after that step, if a collapse has been followed from there, for its pictures or
       !> beyond the step in which it began
       type(contacts_t), allocatable :: fallen
-      !> Whether histories were followed, or points led, in a static run
+      !> True if histories were followed, or points led, in a static run
       logical :: has_path = .false.
-      !> Time that they were followed to; from -1 to 0 what is led from the beginning comes [s]
+      !> Time that they were followed to; from -1 to 0 prescribed displacements begin [s]
       real(wp) :: path_time = 0.0_wp
-      !> How often blocks leapt on that path to another rest
+      !> Number of jumps on that path to another rest
       integer :: jumps = 0
       !> The largest of these jumps [m]
       real(wp) :: largest_jump = 0.0_wp
-      !> Joints that have slid in stages in which blocks were built or taken away
+      !> Joints that have slid in stages in which blocks were built or removed
       integer :: n_slid = 0
       !> Those of them that the last stage has, by their numbers there
       integer, allocatable :: slid(:)
-      !> Whether blocks were built in a stage, so that they carry only what came after them
+      !> True if blocks were built in a stage, so that they carry only what came after them
       logical :: has_built = .false.
-      !> Whether no joint has slid in stages, and yet the last shape built at once slides or falls
+      !> True if no joint has slid in stages, and yet the last shape built at once slides or falls
       logical :: slides_at_once = .false.
-      !> Whether blocks moved in time, and the largest opening or slip against the law of contact
+      !> True if blocks moved in time, and the largest opening or slip against the law of contact
       !> then [m/s]
       logical :: has_residual = .false.
       real(wp) :: residual = 0.0_wp
       !> The largest that matters
       type(contact_note_t) :: rough
-      !> The largest share of restitution that was taken away
+      !> The largest reduction of restitution, as a share
       type(contact_note_t) :: reduced
       !> Accepted steps
       integer :: steps = 0
@@ -104,14 +104,14 @@ module dda_verdict
 
 contains
 
-   !> Whether a block has turned by 45 degrees against all blocks whose motion is given, fixed ones
+   !> True if a block has turned by 45 degrees against all blocks whose motion is given, fixed ones
    !> among them, or has moved by its own size and no chain of blocks that touched at the beginning,
    !> each still within its size of the next, ties it to a fixed block or to one that is held
    pure logical function has_fallen(system, pair, held)
       type(block_system_t), intent(in) :: system  !! The blocks, which have moved
       !> The pairs of blocks that touched at the beginning: (2, n_pair)
       integer, intent(in) :: pair(:, :)
-      type(held_point_t), intent(in), optional :: held(:)  !! Held and led points
+      type(held_point_t), intent(in), optional :: held(:)  !! Held and prescribed points
       integer :: directions(size(system%area)), i, last
       logical :: far(size(system%area)), tied(size(system%area)), near
       real(wp) :: least, most
@@ -144,7 +144,7 @@ contains
       has_fallen = .not. all(tied)
    end function has_fallen
 
-   !> How far the smaller of two blocks has left the place to which the larger would carry it
+   !> Distance of the smaller of two blocks from the place to which the larger would carry it
    pure real(wp) function parted(system, pair)
       type(block_system_t), intent(in) :: system
       integer, intent(in) :: pair(2)  !! The two blocks: (2)
@@ -158,7 +158,7 @@ contains
       end associate
    end function parted
 
-   !> Whether anything means collapse in a dynamic run
+   !> True if a dynamic run has a criterion of collapse
    pure logical function tests_collapse(settings)
       type(settings_t), intent(in) :: settings
 
@@ -166,10 +166,10 @@ contains
          & .and. (settings%collapse_rotation > 0.0_wp .or. settings%collapse_displacement > 0.0_wp)
    end function tests_collapse
 
-   !> Whether the blocks have gone as far as means collapse; keeps how far they have
+   !> Compare the blocks with the criteria of collapse; keeps their progress
    pure subroutine has_collapsed(run, collapsed)
       type(run_t), intent(inout) :: run
-      logical, intent(out) :: collapsed  !! Whether they have collapsed
+      logical, intent(out) :: collapsed  !! True if they have collapsed
       real(wp) :: displacement
 
       collapsed = .false.
@@ -190,7 +190,7 @@ contains
       end associate
    end subroutine has_collapsed
 
-   !> Displacement of the measured point that is asked for [m]
+   !> Displacement of the monitoring point that is asked for [m]
    pure real(wp) function displacement_of_point(settings, system)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -202,8 +202,8 @@ contains
       end associate
    end function displacement_of_point
 
-   !> Whether the blocks are farther at the end of a run than before its last part, so that it does
-   !> not say whether they come back
+   !> True if the blocks are farther at the end of a run than before its last part, so that it is
+   !> unknown whether they come back
    pure logical function still_moves_away(settings, march)
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
@@ -238,12 +238,12 @@ contains
       end associate
    end subroutine measure_step
 
-   !> Judge a static run by its last two steps.
-   !> It stands if the joint forces balance the full load of every block but for a negligible share,
-   !> and its strains. It falls if a step proves so; or, where a displacement means collapse, if a
-   !> corner has moved as far. What rests once a block has fallen does not stand
+   !> Judge a static run by its last two steps. It stands if the joint forces balance the full load
+   !> of every block except for a negligible share, and its strains. It falls if a step proves so;
+   !> or, where a displacement means collapse, if a corner has moved as far. After a block has
+   !> fallen, rest is collapse
    pure integer function judge_verdict(march, step, settings)
-      type(march_t), intent(in) :: march  !! The march, with the acceleration of the step before
+      type(march_t), intent(in) :: march  !! The march, with the acceleration of the last step
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
       logical :: at_rest, falls
@@ -279,7 +279,7 @@ contains
          & far_away = max(far_away, march%allowed_motion/settings%max_displacement_ratio)
    end function far_away
 
-   !> Whether a step is no shorter than the one before, so that its forces do not grow because stiff
+   !> True if a step is no shorter than the one before, so that its forces do not grow because stiff
    !> parts relax less in it; or shorter only because it goes as far as a step may
    pure logical function relaxes_enough(march, step)
       type(march_t), intent(in) :: march
@@ -288,7 +288,7 @@ contains
       relaxes_enough = .not. step%is_shorter .or. is_full(march, step)
    end function relaxes_enough
 
-   !> Whether a step goes about as far as it may
+   !> True if a step goes about as far as it may
    pure logical function is_full(march, step)
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
@@ -296,7 +296,7 @@ contains
       is_full = step%farthest >= full*longest_motion(march)
    end function is_full
 
-   !> Whether the forces of a step tell where blocks would come to rest: they lose a good part in
+   !> True if the forces of a step show where blocks would come to rest: they lose a good part in
    !> it, or have turned
    pure logical function points_to_rest(step)
       type(step_context_t), intent(in) :: step
@@ -304,7 +304,7 @@ contains
       points_to_rest = step%way_to_rest <= beyond_rest*step%farthest
    end function points_to_rest
 
-   !> Whether the forces of a step balance all loads. Where blocks move, a step that comes to rest
+   !> True if the forces of a step balance all loads. Where blocks move, a step that comes to rest
    !> has only proven the shape it started from
    pure logical function is_at_rest(march, step, settings)
       type(march_t), intent(in) :: march
@@ -320,7 +320,7 @@ contains
          & min(march%rounding, barely*march%displacement))
    end function is_at_rest
 
-   !> Whether a step proves a fall: blocks have fallen far beyond any elastic motion, and the loads'
+   !> True if a step proves a fall: blocks have fallen far beyond any elastic motion, and the loads'
    !> work turns into speed alone, or acceleration is steady while no energy is stored
    pure logical function proves_fall(march, step, settings)
       type(march_t), intent(in) :: march
@@ -345,7 +345,7 @@ contains
          & .or. is_steady .and. (step%kinetic > 0.9_wp*step%work .or. stores_nothing))
    end function proves_fall
 
-   !> Whether a joint slides at the end of a step
+   !> True if a joint slides at the end of a step
    pure logical function slides(step)
       type(step_context_t), intent(in) :: step
 
@@ -356,7 +356,7 @@ contains
    !> Farthest that a corner has moved since the beginning
    pure function largest_displacement(system, current, since) result(largest)
       type(block_system_t), intent(in) :: system
-      !> Whether they move
+      !> True if they move
       logical, intent(in) :: current
       !> The blocks at another time to measure from, where they move
       type(block_system_t), intent(in), optional :: since
