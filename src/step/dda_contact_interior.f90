@@ -91,7 +91,7 @@ contains
    !> these. Its forces add no energy, however far they are from Coulomb's law
    pure subroutine solve_convex(p, tolerance, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: tolerance       !! What may be left of the problem, as an opening [m]
+      real(wp), intent(in) :: tolerance       !! Permitted residual, as an opening [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
@@ -128,7 +128,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: trial(:, :)          !! Other forces: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)       !! The best so far: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! What these leave
+      type(residual_t), intent(inout) :: residual  !! Residual of these
       type(residual_t) :: left
 
       left = residual_of(p, trial, move_blocks(p, trial))
