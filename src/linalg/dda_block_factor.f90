@@ -50,19 +50,19 @@ contains
       !> Blocks whose diagonal block or couplings have changed since the factor was usable; all if
       !> it is not given: (n_block)
       logical, intent(in), optional :: changed(:)
-      logical :: anew(size(factor%plan%first) - 1)
+      logical :: fresh(size(factor%plan%first) - 1)
       integer :: p
 
-      anew = .not. (present(changed) .and. factor%usable)
+      fresh = .not. (present(changed) .and. factor%usable)
       associate (plan => factor%plan)
-         do p = 1, size(anew)
-            if (present(changed)) anew(p) = anew(p) .or. &
+         do p = 1, size(fresh)
+            if (present(changed)) fresh(p) = fresh(p) .or. &
                & any(changed(plan%block(plan%first(p):plan%first(p + 1) - 1)))
-            if (anew(p)) anew(plan%panel(plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))) &
+            if (fresh(p)) fresh(plan%panel(plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))) &
                & = .true.
          end do
-         call assemble_fronts(plan, matrix, anew, factor%number)
-         call eliminate_fronts(plan, anew, factor%number, factor%exchange, factor%usable)
+         call assemble_fronts(plan, matrix, fresh, factor%number)
+         call eliminate_fronts(plan, fresh, factor%number, factor%exchange, factor%usable)
       end associate
    end subroutine factorise
 

@@ -16,16 +16,16 @@ module dda_fronts
 contains
 
    !> Lay the blocks of the matrix into panels
-   pure subroutine assemble_fronts(plan, matrix, anew, number)
+   pure subroutine assemble_fronts(plan, matrix, fresh, number)
       type(elimination_plan_t), intent(in) :: plan
       type(block_matrix_t), intent(in) :: matrix
-      logical, intent(in) :: anew(:)           !! Panels to be factored: (n_panel)
+      logical, intent(in) :: fresh(:)           !! Panels to be factored: (n_panel)
       real(wp), intent(inout) :: number(*)     !! Numbers of the panels
       integer :: b, c, e, height, k, nd, p, r, width
 
       nd = plan%n_dof
-      do p = 1, size(anew)
-         if (.not. anew(p)) cycle
+      do p = 1, size(fresh)
+         if (.not. fresh(p)) cycle
          number(plan%start(p):plan%start(p + 1) - 1) = 0.0_wp
          height = nd*(plan%first(p + 1) - plan%first(p) + plan%first_row(p + 1) - plan%first_row(p))
          do b = plan%first(p), plan%first(p + 1) - 1
@@ -35,7 +35,7 @@ contains
       end do
       do e = 1, size(plan%given, 2)
          p = plan%given(1, e)
-         if (.not. anew(p)) cycle
+         if (.not. fresh(p)) cycle
          r = nd*plan%given(2, e)
          c = nd*plan%given(3, e)
          width = nd*(plan%first(p + 1) - plan%first(p))
@@ -65,9 +65,9 @@ contains
    end subroutine add_block
 
    !> Eliminate panel by panel
-   pure subroutine eliminate_fronts(plan, anew, number, exchange, usable)
+   pure subroutine eliminate_fronts(plan, fresh, number, exchange, usable)
       type(elimination_plan_t), intent(in) :: plan
-      logical, intent(in) :: anew(:)
+      logical, intent(in) :: fresh(:)
       real(wp), intent(inout) :: number(*)
       integer, intent(inout) :: exchange(*)  !! Exchanges of rows in the panels: (n_dof*n_block)
       !> True if all pivots of a symmetric matrix are positive, those of another one not zero
@@ -77,29 +77,29 @@ contains
 
       usable = .false.
       allocate (share((plan%n_dof*plan%most_rows)**2), source=0.0_wp)
-      do p = 1, size(anew)
+      do p = 1, size(fresh)
          width = plan%n_dof*(plan%first(p + 1) - plan%first(p))
          below = plan%n_dof*(plan%first_row(p + 1) - plan%first_row(p))
-         if (anew(p)) then
+         if (fresh(p)) then
             call factor_front(plan%symmetric, width, below, number(plan%start(p)), &
                & exchange(plan%n_dof*(plan%first(p) - 1) + 1), info)
             if (info /= 0) return
          end if
          if (below == 0) cycle
          associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))
-            if (.not. any(anew(plan%panel(row)))) cycle
+            if (.not. any(fresh(plan%panel(row)))) cycle
          end associate
          call multiply_front(plan%symmetric, width, below, number(plan%start(p)), share)
-         call spread_share(plan, p, anew, below, share, number)
+         call spread_share(plan, p, fresh, below, share, number)
       end do
       usable = .true.
    end subroutine eliminate_fronts
 
    !> Add the products of one panel to those that have its rows
-   pure subroutine spread_share(plan, p, anew, below, share, number)
+   pure subroutine spread_share(plan, p, fresh, below, share, number)
       type(elimination_plan_t), intent(in) :: plan
       integer, intent(in) :: p, below  !! The panel, and its rows below the diagonal
-      logical, intent(in) :: anew(:)
+      logical, intent(in) :: fresh(:)
       real(wp), intent(in) :: share(below, *)  !! The products: (below, below)
       real(wp), intent(inout) :: number(*)
       integer :: at(plan%first_row(p + 1) - plan%first_row(p)), height, i, k, n, nd, t, width
@@ -114,7 +114,7 @@ contains
          call find_rows(plan, t, plan%row(plan%first_row(p) + n:plan%first_row(p + 1) - 1), &
             & at(k:), n)
          n = k - 1 + n
-         if (.not. anew(t)) cycle
+         if (.not. fresh(t)) cycle
          i = nd*(k - 1) + 1
          call add_share(nd, at(k:), at(k:n), plan%symmetric, below, share(i, i), nd*height, &
             & number(plan%start(t)))
