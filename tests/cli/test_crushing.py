@@ -98,6 +98,20 @@ def test_the_least_strength_is_found(tmp_path: Path) -> None:
     assert float(row["critical"]) == pytest.approx(5.0, rel=1e-7)
 
 
+def beside_tangents(folder: Path, deck: str) -> tuple[dict[str, str], float]:
+    """Row of a search, and the load factor that a linear programme of tangents has for its scene."""
+    pytest.importorskip("scipy", reason="the linear programme wants scipy")
+    verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
+    from live_assemblies import programme
+    from voussoir.verify.deck import read_deck
+
+    (row,) = rows(folder, deck, head="")
+    (results,) = {path.parent for path in folder.rglob("results.csv")}
+    blocks = verify.read_table(results / "blocks.csv")[1]
+    scene = verify.scene_of(read_deck(results).with_value("load_factor", "1"), blocks, [folder], verify.Finding())
+    return row, programme(scene, crushes=True)
+
+
 @pytest.mark.parametrize(
     ("shape", "rise", "strength"),
     [(shape, rise, strength) for shape, rise in (("segmental", 2.5), ("parabolic", 3.5), ("segmental", 1.8))
@@ -107,16 +121,8 @@ def test_the_least_strength_is_found(tmp_path: Path) -> None:
 def test_an_arch_carries_what_a_programme_of_tangents_has(
     tmp_path: Path, shape: str, rise: float, strength: float
 ) -> None:
-    pytest.importorskip("scipy", reason="the linear programme wants scipy")
-    verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-    from live_assemblies import programme
-    from voussoir.verify.deck import read_deck
-
-    (row,) = rows(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4), head="")
-    (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}
-    blocks = verify.read_table(folder / "blocks.csv")[1]
-    scene = verify.scene_of(read_deck(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
-    assert float(row["critical"]) == pytest.approx(programme(scene, crushes=True), rel=1e-7)
+    row, limit = beside_tangents(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4))
+    assert float(row["critical"]) == pytest.approx(limit, rel=1e-7)
 
 
 RINGS = (
@@ -132,17 +138,9 @@ RINGS = (
 def test_rings_that_crush_and_slide_carry_what_a_programme_of_tangents_has(
     tmp_path: Path, friction: float, place: float, strength: float
 ) -> None:
-    pytest.importorskip("scipy", reason="the linear programme wants scipy")
-    verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-    from live_assemblies import programme
-    from voussoir.verify.deck import read_deck
-
-    (row,) = rows(tmp_path, RINGS.format(friction=friction, place=place) + material(strength, 2e4), head="")
-    (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}
-    blocks = verify.read_table(folder / "blocks.csv")[1]
-    scene = verify.scene_of(read_deck(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
+    row, limit = beside_tangents(tmp_path, RINGS.format(friction=friction, place=place) + material(strength, 2e4))
     assert row["verdict"] == "found"
-    assert float(row["critical"]) == pytest.approx(programme(scene, crushes=True), rel=1e-7)
+    assert float(row["critical"]) == pytest.approx(limit, rel=1e-7)
     assert int(row["factorisations"]) < 60
 
 
