@@ -114,7 +114,7 @@ contains
    !> Check that the mode of one case can run its scene
    pure subroutine check_mode(deck, warns, scene, warnings, error)
       type(deck_t), intent(in) :: deck
-      logical, intent(in) :: warns  !! True if doubts are told
+      logical, intent(in) :: warns  !! True if warnings are reported
       !> A scene of these blocks and joints, if they are from a file
       type(scene_t), intent(in) :: scene
       type(warnings_t), intent(inout) :: warnings

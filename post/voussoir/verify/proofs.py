@@ -137,9 +137,9 @@ def rounding_of(block: Block) -> float:
 
 
 def rounding_at(block: Block, points: np.ndarray) -> np.ndarray:
-    """What rounding of corners makes of a unit force at the ends of a joint: force [1, 1] and moment [m].
+    """Force [1, 1] and moment [m] that rounding of corners adds to a unit force at the ends of a joint.
 
-    The force acts elsewhere, and turns with a joint whose ends move: by much where the joint is short.
+    Rounding moves the ends: it displaces the force, and rotates it by the rounding over the length of the joint.
     """
     off, length = rounding_of(block), float(np.linalg.norm(points[1] - points[0]))
     turn = off / length if length > 0.0 else 0.0
