@@ -222,6 +222,9 @@ contains
 
       mean = 0.0_wp
       before = 0.0_wp
+      opening = 0.0_wp
+      ! a test of rest is about equilibrium, not about oscillations
+      if (run%step%state%fineness < 1.0_wp) return
       do b = 1, merge(size(follows), 0, size(mean, 1) == 6)
          e = run%system%equation(b)
          if (e == 0 .or. .not. follows(b)) cycle
