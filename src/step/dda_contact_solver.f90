@@ -11,7 +11,7 @@
 !> Equation (M5) of docs/method.md
 module dda_contact_solver
    use dda_contact_faces, only : settle_faces
-   use dda_contact_interior, only : solve_convex, solve_interior
+   use dda_contact_interior, only : solve_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & pose_contacts, residual_of, residual_t, speed_of
    use dda_contact_sweeps, only : sweep_joints
@@ -108,9 +108,10 @@ contains
       call sweep_joints(p, exact, first_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
-      if (residual%opening > enough) call solve_interior(p, enough, force, residual, passes)
+      if (residual%opening > enough) &
+         & call solve_interior(p, enough, .false., force, residual, passes)
       if (residual%opening > near_solution*speed) &
-         & call solve_convex(p, convex_tolerance*speed, force, residual, passes)
+         & call solve_interior(p, convex_tolerance*speed, .true., force, residual, passes)
       if (residual%opening > tolerance) &
          & call sweep_joints(p, tolerance, last_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
