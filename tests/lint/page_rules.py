@@ -148,7 +148,7 @@ def offences(path: Path) -> list[str]:
     if mean > MEAN_WORDS or long > LONG_WORDS:
         found.append(f"{name}:1: {mean:.1f} words per sentence, {long} in the 90th percentile; "
                      f"at most {MEAN_WORDS:.0f} and {LONG_WORDS}: {_longest(text)}")
-    for rule in (_long_lines, _phrases, _sentences, _numbers, _days, _files):
+    for rule in (_long_lines, _tables, _phrases, _sentences, _numbers, _days, _files):
         found += [f"{name}:{line}: {words}" for line, words in rule(text, path)]
     return found
 
@@ -181,6 +181,14 @@ def _long_lines(text: str, _path: Path) -> Iterator[tuple[int, str]]:
     for number, line in enumerate(without_code(text).splitlines(), 1):
         if len(line) > LINE_LENGTH and not is_table(line) and not re.match(r"\s*\S*\]\(\S+\)\S*$|\s*!?\[.*\)$", line):
             yield number, f"{len(line)} characters, at most {LINE_LENGTH}"
+
+
+def _tables(text: str, _path: Path) -> Iterator[tuple[int, str]]:
+    """Tables that no renderer shows as such: the line below their head has another number of cells."""
+    lines = re.sub(r"`[^`\n]*`|\\\|", " ", without_code(text)).splitlines()
+    for number, (head, rule) in enumerate(zip(lines, lines[1:]), 1):
+        if is_table(head) and re.fullmatch(r"\s*\|[\s|:-]+\|\s*", rule) and head.count("|") != rule.count("|"):
+            yield number, f"{head.count('|') - 1} cells over {rule.count('|') - 1} dashes: give as many of both"
 
 
 def _phrases(text: str, _path: Path) -> Iterator[tuple[int, str]]:

@@ -90,6 +90,7 @@ WORDS = " ".join(["word"] * 19)
     [
         (f"Every {WORDS} here.", "words per sentence"),
         ("x" * 121, "121 characters"),
+        ("| a | b | c |\n|---|---|\n| 1 | 2 | 3 |", "3 cells over 2 dashes"),
         ("The line of\nthrust touches.", "write thrust line"),
         ("The file has a row a case.", "write per"),
         ("`dda check` says what it computes.", "write computes"),
