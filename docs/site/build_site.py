@@ -90,16 +90,18 @@ pre code.language-message { white-space: pre-wrap; }
 math { font-size: 1.1em; }
 span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertical-align: middle; }
 td span.formula { display: inline; }
-div.formula { overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
-@media (max-width: 768px) { .wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; } }
+.formula.shown { display: block; overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
+@media (max-width: 768px) {
+.wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; }
+.wy-table-responsive td:first-child > code { white-space: normal; } }
 @media (min-width: 769px), print {
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th { padding: 6px 8px; }
 .wy-table-responsive td:last-child code { overflow-wrap: anywhere; }
 pre code { white-space: pre-wrap !important; } }
 @media print {
-.rst-content .wy-table-responsive, .rst-content pre, .rst-content div.formula, .rst-content span.formula
+.rst-content .wy-table-responsive, .rst-content pre, .rst-content .formula
 { overflow: visible !important; max-width: none; }
-.rst-content span.formula { display: inline; }
+.rst-content span.formula:not(.shown) { display: inline; }
 .rst-content .wy-table-responsive table { min-width: 0; width: 100%; font-size: 70%; }
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th
 { padding: 2px 4px !important; font-size: inherit; }
@@ -209,7 +211,9 @@ def with_formulas(text: str) -> str:
         mathml = convert(match["shown"] or match["inline"], display="block" if shown else "inline")
         mathml = mathml.replace("|", "&#124;")  # a bar would part the cells of a table
         if shown:
-            return f'<div class="formula">{mathml}</div>'
+            # a <div> within a paragraph or a list item would end it
+            tag = "div" if text[:match.start()].endswith("\n\n") else "span"
+            return f'<{tag} class="formula shown">{mathml}</{tag}>'
         # a bare <math> at the beginning of a line would end the paragraph
         return f'<span class="{"formula" if len(match["inline"]) > LONG else "short"}">{mathml}</span>'
 
