@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -10,9 +9,8 @@ from matplotlib.collections import PolyCollection
 
 import voussoir
 from voussoir.plot.case_joints import JointMarks
-from voussoir.plot.case_picture import draw_supports, row_with_safety
+from voussoir.plot.case_picture import draw_supports
 from voussoir.plot.case_scene import scene_of
-from voussoir.plot.case_title import safety_of
 from voussoir.plot.figure_style import STONE, house_style
 from voussoir.plot.motion import motion_of
 from voussoir.plot.thrust_path import thrust_pairs
@@ -38,21 +36,19 @@ SHAPES = {
 def main() -> None:
     """Draw."""
     with house_style():
-        figure, grid = plt.subplots(5, 2, figsize=(6.0, 11.0), layout="constrained")
-        grid.flat[-1].remove()
+        figure, grid = plt.subplots(3, 3, figsize=(6.0, 5.4), layout="constrained")
         for axes, (title, keys) in zip(grid.flat, SHAPES.items()):
             run = voussoir.run(f"&arch {keys} /\n&joint friction_deg = 60 /\n")
             scene = scene_of(run, 1)
             draw_supports(axes, [block.corners for block in scene.supports])
             axes.add_collection(PolyCollection(scene.shapes(0.0), facecolor=STONE, edgecolor="#777777", linewidth=0.6))
             joints = run.joints_of(1)
-            marks = JointMarks(scene, joints, motion_of(scene.blocks, scene.supports, 0.0, 0.0), 1.0)
+            marks = JointMarks(scene, joints, motion_of(scene.blocks, scene.supports, 0.0, 0.0), 1.0, 0.5)
             marks.draw_thrust(axes, thrust_pairs(scene, joints))
             axes.autoscale_view()
             axes.set_aspect("equal")
             axes.set_axis_off()
-            row = row_with_safety(run, 1)
-            axes.set_title(f"{title}\n" + textwrap.fill(row["verdict"] + safety_of(row, run), 40), fontsize=9)
+            axes.set_title(title, fontsize=11)
         figure.savefig(Path(__file__).parents[1] / "images" / "shapes.svg", metadata={"Date": None})
 
 
