@@ -15,6 +15,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
@@ -25,7 +26,7 @@ from voussoir.plot.design_chart import ChartError  # noqa: E402
 from voussoir.plot.figure_style import INK, house_style  # noqa: E402
 from voussoir.plot.motion import distance, motion_of  # noqa: E402
 from voussoir.plot.sheet import Sheet  # noqa: E402
-from voussoir.plot.sweep_chart import draw_map, draw_sweep  # noqa: E402
+from voussoir.plot.sweep_chart import draw_contours, draw_map, draw_sweep  # noqa: E402
 from voussoir.plot.thrust_path import chain_pairs  # noqa: E402
 from voussoir.results import Block  # noqa: E402
 
@@ -334,6 +335,14 @@ def test_two_keys_are_a_map_with_contours(grid, tmp_path: Path) -> None:
     assert main(["plot", str(grid.folder), "--map", "half_angle_deg", "horizontal_coefficient", "--y", "exact",
                  "--out", str(tmp_path), "--format", "png"]) == 0
     assert (tmp_path / "map_half_angle_deg_horizontal_coefficient_exact.png").exists()
+
+
+def test_contours_in_a_corner_of_a_map_have_no_overlapping_labels() -> None:
+    field = np.add.outer(np.zeros(9), np.linspace(0.02, 0.2, 11))
+    field[0, -1] = 1.0
+    axes = Figure().subplots()
+    draw_contours(axes, np.linspace(60.0, 110.0, 11), np.linspace(20.0, 60.0, 9), field)
+    assert [text.get_text() for text in axes.texts] == ["0.15"]
 
 
 def test_without_a_search_the_map_is_of_verdicts(tmp_path: Path) -> None:

@@ -29,6 +29,8 @@ VERDICTS = {
 }
 #: Most contours of a map, and most cells that have a mark in their middle
 MOST_CONTOURS, MOST_MARKS = 7, 400
+#: Length of a contour over the sides of its map from which it has its value: labels of shorter ones overlap
+LABELLED = 0.25
 #: Colours of the values of a map: viridis without its yellow, on which white contours are lost
 MAP_COLORS = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.75, 256)))
 
@@ -129,13 +131,18 @@ def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, leg
 
 
 def draw_contours(axes: Axes, along: np.ndarray, up: np.ndarray, field: np.ndarray) -> None:
-    """Draw contours with their values, linear between the computed cases."""
+    """Draw contours, linear between the computed cases; long ones have their value."""
     finite = field[np.isfinite(field)]
     if min(field.shape) < 2 or len(np.unique(finite)) < 3:
         return
     lines = axes.contour(
         along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
-    axes.clabel(lines, fmt="%.3g", fontsize=type_of(TINY))
+    sides = np.array([np.ptp(along), np.ptp(up)])
+    long = [
+        level for level, paths in zip(lines.levels, lines.allsegs)
+        if any(np.hypot(*(np.diff(path, axis=0) / sides).T).sum() > LABELLED for path in paths)
+    ]
+    axes.clabel(lines, long, fmt="%.3g", fontsize=type_of(TINY))
 
 
 def swept(run: Results, key: str) -> str:
