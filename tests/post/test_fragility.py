@@ -13,7 +13,8 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir.command.main import main  # noqa: E402
-from voussoir.plot.fragility import Lognormal, fit_shares, fit_values  # noqa: E402
+from voussoir.plot.fragility import Lognormal, draw_fragility, fit_shares, fit_values  # noqa: E402
+from voussoir.results import read  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 
@@ -92,6 +93,8 @@ def test_a_campaign_over_records_becomes_a_curve(
     words = capsys.readouterr().out.splitlines()[0].replace(",", "").split()
     assert [float(words[3]), float(words[5])] == pytest.approx([exact.median, exact.dispersion], rel=2e-3)
     assert (out / "plots" / "fragility.png").stat().st_size > 5000
+    figure, _ = draw_fragility(read(out))
+    assert figure.axes[0].get_xlabel() == "peak acceleration of the ground [m/s²]"
 
 
 @pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from voussoir.plot.design_chart import ChartError, swept_columns
 from voussoir.plot.figure_style import INK, SMALL, Picture, type_of
+from voussoir.plot.units import axis_label
 from voussoir.results import Results, Table
 
 #: Swept columns that say how strong a motion is, the first that is there counts
@@ -73,14 +74,14 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
     found = run.cases.take(run.cases["verdict"] == "found")
     if len(found) > 1 and column is None:
         strength, share, fit = _of_searches(found)
-        left, label = len(run.cases) - len(found), "searched strength of the ground's motion"
+        left, name = len(run.cases) - len(found), run.searched or "strength"
     else:
         decided = np.isin(run.cases["verdict"], ("collapsed", "completed", "stable"))
         column = column or _strength_column(run.cases)
         if column not in swept_columns(run.cases):
             raise ChartError(f"expected a swept column of numbers, got '{column}'; name another")
         strength, share, fit = _of_verdicts(run.cases.take(decided), column)
-        left, label = len(run.cases) - int(decided.sum()), column.replace("_", " ")
+        left, name = len(run.cases) - int(decided.sum()), column
     figure = Picture(figsize=(5.2, 3.9), layout="constrained")
     axes = figure.subplots()
     axes.plot(strength, share, "o", color=INK[0], label="computed", zorder=3, clip_on=False)
@@ -88,7 +89,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
         fine = np.geomspace(strength.min() / 1.5, strength.max() * 1.3, 200)
         words = f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}"
         axes.plot(fine, fit(fine), color=INK[1], label=words)
-    axes.set(xlabel=label, ylabel="share of records with collapse", ylim=(-0.02, 1.02), xlim=(0.0, None))
+    axes.set(xlabel=axis_label(name), ylabel="share of records with collapse", ylim=(-0.02, 1.02), xlim=(0.0, None))
     axes.legend(loc="best")
     notes = [f"{left} of {len(run.cases)} cases without a verdict"] if left else []
     notes += [] if fit else ["no lognormal fit: all records collapse above one value and none below"]
