@@ -2,7 +2,7 @@
 module dda_case_remarks
    use dda_block_system, only : block_system_t
    use dda_kinds, only : degree, wp
-   use dda_search, only : critical_t
+   use dda_search, only : critical_t, search_t
    use dda_settings, only : overturned, settings_t, verdict
    use dda_step_context, only : contact_note_t
    use dda_text, only : counted, short_text, to_text
@@ -11,7 +11,7 @@ module dda_case_remarks
    private
 
    public :: change_remark, completed_remark, contact_remark, fall_remark, joined, jump_remark
-   public :: kept_places_remark, path_remark
+   public :: kept_places_remark, path_remark, undecided_remark
 
    !> Displacement of a moving block over the largest
    real(wp), parameter :: moves = 1.0e-3_wp
@@ -150,6 +150,23 @@ contains
          end do
       end if
    end function change_remark
+
+   !> Value at which a search is undecided, and the reason; at the upper end of the range a remedy
+   pure function undecided_remark(search, critical) result(remark)
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(in) :: critical
+      character(len=:), allocatable :: remark
+
+      remark = "the bracket cannot be narrowed further"
+      if (allocated(critical%reason)) then
+         remark = "at "//short_text(critical%undecided_at)//": "//critical%reason
+         if (critical%undecided_at >= search%high) remark = "at search%high = " &
+            & //short_text(critical%undecided_at)//": "//critical%reason//"; lower search%high"
+      end if
+      if (allocated(critical%fallen) .and. allocated(critical%standing)) remark = remark &
+         & //"; collapsed at "//short_text(critical%falls)//", stable at " &
+         & //short_text(critical%stands)
+   end function undecided_remark
 
    !> Remark on contact residuals and on reduced restitution
    pure function contact_remark(rough, reduced) result(remark)

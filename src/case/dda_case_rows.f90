@@ -6,7 +6,7 @@ module dda_case_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
    use dda_case_remarks, only : change_remark, completed_remark, contact_remark, fall_remark, &
-      & joined, jump_remark, kept_places_remark, path_remark
+      & joined, jump_remark, kept_places_remark, path_remark, undecided_remark
    use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
@@ -185,14 +185,8 @@ contains
 
       associate (critical => this%critical)
          row%verdict = verdict_word(critical%verdict)
-         if (critical%verdict == verdict%undecided) then
-            remark = "the bracket cannot be narrowed further"
-            if (allocated(critical%reason)) &
-               & remark = "at "//short_text(critical%undecided_at)//" "//critical%reason
-            if (allocated(critical%fallen) .and. allocated(critical%standing)) remark = remark &
-               & //"; collapsed at "//short_text(critical%falls)//", stable at " &
-               & //short_text(critical%stands)
-         end if
+         if (critical%verdict == verdict%undecided) &
+            & remark = undecided_remark(this%search, critical)
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (ends_on_path(critical%standing)) &
             & row%path_time = some_number(critical%standing%outcome%path_time)

@@ -100,7 +100,8 @@ contains
          outcome%reason = "round-off of coordinates loads a small block with more than its " &
             & //"weight; compute it apart from larger ones"
       else if (outcome%verdict == verdict%undecided) then
-         outcome%reason = "step limit reached; neither equilibrium nor collapse established"
+         outcome%reason = "step limit of analysis%steps reached; neither "// &
+            & "equilibrium nor collapse established"
       end if
    end subroutine conclude
 
@@ -117,7 +118,7 @@ contains
          outcome%verdict = verdict%completed
       else
          outcome%verdict = verdict%undecided
-         outcome%reason = "step limit reached before the end of the run"
+         outcome%reason = "step limit of analysis%steps reached before the end of the run"
       end if
    end subroutine conclude_in_time
 
