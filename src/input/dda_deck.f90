@@ -363,7 +363,7 @@ contains
       i = parameter%key
       if (deck_key(i)%kind == key_kind%numbers .eqv. parameter%item > 0) return
       problem = trim(deck_key(i)%name)//" is a list; name one item, such as "// &
-         trim(deck_key(i)%name)//"(2)"
+         trim(deck_key(i)%name)//"(1)"
       if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items; remove the "// &
          "parentheses"
    end subroutine find_parameter

@@ -77,6 +77,13 @@ ANALYSES = ("2 5 1 1 0.01 0.01\n1 1 1 0.2 0 0 0 0 0 0 0 0 0\n30 0 0\n",
             (INPUT / "terrace_ddaml.ana").read_text().replace("Unitmass", "Mass"))
 
 
+@pytest.mark.parametrize("group", ["search", "sweep"])
+def test_a_list_key_is_refused_with_an_item_that_its_list_has(tmp_path: Path, group: str) -> None:
+    (tmp_path / "deck.nml").write_text(f"&vehicle axles = 1e3, position = 0 /\n&{group} parameter = 'axles' /\n")
+    stderr = run_dda("check", "deck.nml", cwd=tmp_path).stderr
+    assert stderr == f"deck.nml:2: error: {group}%parameter: axles is a list; name one item, such as axles(1)\n"
+
+
 @pytest.mark.parametrize("text", LINES if HAS_XML else LINES[:1])
 def test_message_about_lines_is_whole(tmp_path: Path, text: str) -> None:
     (tmp_path / "a.geo").write_text(text)
