@@ -138,7 +138,7 @@ contains
          if (deck%value(fill_passive_share)%given) key = fill_passive_share
          if (deck%value(fill_backing_height)%given) key = fill_backing_height
          problem = "expected passive_stiffness in current geometry, or with strength of "// &
-            & "joints, got none; give it"
+            & "joints, got none; give it in N/m3, or remove this key"
       else if (deck%value(arch_buttress_width)%given &
          & .and. any(deck%value(support_left_dx:support_right_rotation_deg)%given)) then
          key = arch_buttress_width
