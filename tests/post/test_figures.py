@@ -23,9 +23,9 @@ from voussoir.plot.bare_scene import draw_file  # noqa: E402
 from voussoir.plot.case_picture import draw_case  # noqa: E402
 from voussoir.plot.case_scene import scene_of  # noqa: E402
 from voussoir.plot.design_chart import ChartError  # noqa: E402
-from voussoir.plot.figure_style import INK, house_style  # noqa: E402
+from voussoir.plot.figure_style import EXACT_DPI, INK, house_style  # noqa: E402
 from voussoir.plot.motion import distance, motion_of  # noqa: E402
-from voussoir.plot.sheet import Sheet  # noqa: E402
+from voussoir.plot.sheet import EDGE, Sheet  # noqa: E402
 from voussoir.plot.sweep_chart import draw_contours, draw_map, draw_sweep  # noqa: E402
 from voussoir.plot.thrust_path import chain_pairs  # noqa: E402
 from voussoir.results import Block  # noqa: E402
@@ -335,6 +335,21 @@ def test_two_keys_are_a_map_with_contours(grid, tmp_path: Path) -> None:
     assert main(["plot", str(grid.folder), "--map", "half_angle_deg", "horizontal_coefficient", "--y", "exact",
                  "--out", str(tmp_path), "--format", "png"]) == 0
     assert (tmp_path / "map_half_angle_deg_horizontal_coefficient_exact.png").exists()
+
+
+def test_legend_beside_a_tower_ends_at_the_margin_of_a_png(tmp_path: Path) -> None:
+    (tmp_path / "tower.blocks").write_text(
+        "block fixed\n-1 -0.5\n2 -0.5\n2 0\n-1 0\nblock\n0 0\n1 0\n1 1.2\n0 1.2\n"
+        "block\n0 1.2\n1 1.2\n0.8 2.2\n0.2 2.2\n")
+    run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'tower.blocks' /\n"
+                            "&search parameter = 'horizontal_coefficient' /\n")
+    with house_style(8):
+        figure = draw_case(run, 1, sheet=Sheet(160 / 25.4))
+        figure.set_dpi(EXACT_DPI)
+        figure.canvas.draw()
+        (legend,) = figure.legends
+        ends = [text.get_window_extent().x1 for text in legend.get_texts()]
+    assert figure.bbox.x1 - max(ends) == pytest.approx(EDGE * EXACT_DPI / 72.0, abs=1.0)
 
 
 def test_contours_in_a_corner_of_a_map_have_no_overlapping_labels() -> None:

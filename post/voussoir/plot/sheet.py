@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
-from voussoir.plot.figure_style import SMALL, Picture, type_of
+from voussoir.plot.figure_style import EXACT_DPI, SMALL, Picture, type_of
 
 #: Width of a picture for which none is given [inch], and points per inch
 WIDTH, POINTS = 5.2, 72.0
@@ -71,7 +71,7 @@ class Sheet:
     def start(self, low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:
         """A figure for a piece of plane and its bare axes."""
         width = self.drawing_width(low, high)
-        figure = Picture(figsize=(self.width, self.width), dpi=POINTS)
+        figure = Picture(figsize=(self.width, self.width), dpi=EXACT_DPI)
         figure.exact_size = True
         FigureCanvasAgg(figure)
         height = max(width * (high[1] - low[1]) / (high[0] - low[0]), LEAST_HEIGHT * POINTS * self.width)
