@@ -6,6 +6,7 @@ import hashlib
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
@@ -13,6 +14,7 @@ from voussoir.deck import assessment
 from voussoir.deck.run import run as run_deck
 from voussoir.plot.assess_drawing import axle_groups, draw_scheme
 from voussoir.plot.assess_text import assumptions_of, cases_of
+from voussoir.plot.case_scene import scene_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.command.main import main
 
@@ -224,7 +226,9 @@ def test_positions_without_a_factor_have_a_mark_that_says_why(tmp_path: Path) ->
         "&fill height = 0.3, unit_weight = 20e3, passive_coefficient = 1.0 /\n"
         "&vehicle axles = 40e3, 60e3, spacings = 1.8 /\n&search parameter = 'load_factor' /\n"
         "&sweep parameter = 'position', values = -3.4, -2, -1, -0.5, 2 /\n")
-    axes = draw_positions(run, run.cases).axes[0]
+    axes, below = draw_positions(run, run.cases).axes
+    ends = np.array([x for block in scene_of(run, 1).supports for x, _ in block.corners])
+    assert below.get_xlim() == (ends.min(), ends.max())
     marked = {line.get_label(): list(line.get_xdata()) for line in axes.lines if not line.get_label().startswith("_")}
     still = [row["position"] for row in run.cases.rows() if row["verdict"] == "stable"]
     assert still and marked["no multiple collapses it"] == still

@@ -34,7 +34,7 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
     place = float(place_of[least]) if worst is None else worst
     scene = scene_of(run, 1)
     shapes = scene.shapes(0.0)
-    corners = np.vstack(shapes)
+    corners = np.vstack([*shapes, *(block.corners for block in scene.supports)])
     low, high = corners.min(axis=0), corners.max(axis=0)
     left, right = min(low[0], place_of.min()), max(high[0], place_of.max())
     # as wide as the diagram, and as high as that makes them
