@@ -15,6 +15,21 @@ from voussoir_benches.validation_sketch import sketch
 
 #: Folder of the sketches beside the page
 SKETCHES = "images/verification"
+#: Heads of the entries of several decks, by the first of them
+HEADS = {
+    "incline": "Blocks that slide down a slope",
+    "newmark_flat": "Newmark's sliding block",
+    "overhang_stands": "Stacks with an overhang",
+    "rocking_stocky": "Rocking blocks released from rest",
+    "pulse_rocks": "Blocks in a rectangular pulse",
+    "dry_wall_2x4": "Dry-stone walls under horizontal load",
+    "lateral_arch": "Arches under horizontal load",
+    "point_load_quarter_15": "Semicircles under a point load",
+    "buttresses_1_stand": "Semicircle on buttresses 1 R high",
+    "buttresses_2_stand": "Semicircle on buttresses 2 R high",
+    "buttresses_3_stand": "Semicircle on buttresses 3 R high",
+    "arch_pulse_100": "Arch of seven voussoirs in rectangular pulses",
+}
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
 
 _HEAD = """# Verification manual
@@ -155,12 +170,12 @@ def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
     columns = _columns(pairs, len(decks) > 1)
     cells = [[cell(*pair) for cell in columns.values()] for pair in pairs]
     exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
+    first = lines[0].scene.benchmark
     if len(decks) == 1:
-        deck = lines[0].scene.benchmark
-        about = [f"### {titles[deck]}", "", f"Deck: {links[deck]}.", exact]
+        about = [f"### {titles[first]}", "", f"Deck: {links[first]}.", exact]
     else:
-        family = _problem(lines[0].scene)[0].replace("_", " ").capitalize()
-        about = [f"### {family}", "", *(f"- {link}:\n  {titles[deck]}" for deck, link in links.items()), "", exact]
+        listed = [f"- {link}:\n  {titles[deck]}" for deck, link in links.items()]
+        about = [f"### {HEADS.get(first, titles[first])}", "", *listed, "", exact]
     if lines[0].shapes:
         about += ["", f"![{lines[0].scene.benchmark}]({SKETCHES}/{lines[0].scene.benchmark}.svg)"]
         if _plot(lines):

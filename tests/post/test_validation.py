@@ -166,6 +166,12 @@ def test_page_of_the_documents_has_every_scene() -> None:
             assert f"| {check.what} | {exact} |" in entry
 
 
+def test_entries_of_several_decks_have_heads_of_their_own() -> None:
+    page = (REPOSITORY / "docs" / "validation.md").read_text()
+    found = re.findall(r"^### (.+)\n\n- \[`(\w+)`\]", page, re.M)
+    assert {deck: head for head, deck in found} == validation_page.HEADS
+
+
 def test_entry_has_both_geometries_in_one_row() -> None:
     """A column of five cubes collapses at b/h = 0.2; deformable blocks with large displacements at a little less."""
     lines = [line for scene in SCENES if scene.deck == "column" for line in run_program(scene)]
