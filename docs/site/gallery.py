@@ -30,8 +30,6 @@ dda run input/gallery/01_semicircle.nml
 voussoir plot 01_semicircle
 ```
 
-`cmake --build build --target gallery` writes this page and its pictures.
-
 ## Every shape
 
 The shapes of `&arch shape` on abutments, a pier or buttresses, each with its thrust line under dead load.
