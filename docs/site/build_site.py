@@ -91,7 +91,7 @@ math { font-size: 1.1em; }
 span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertical-align: middle; }
 td span.formula { display: inline; }
 .formula.shown { display: block; overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
-@media (max-width: 768px) {
+@media screen and (max-width: 768px) {
 .wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; }
 .wy-table-responsive td:first-child > code { white-space: normal; } }
 @media (min-width: 769px), print {
