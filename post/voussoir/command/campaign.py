@@ -113,7 +113,7 @@ def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> 
 
 
 def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary) -> int:
-    """Say what there is: 0 if each case has a verdict, else 3."""
+    """Print the number of verdicts; return 0 if each case has one, else 3."""
     missing = campaign.total - summary.cases
     if not arguments.quiet:
         print(

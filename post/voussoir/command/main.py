@@ -107,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def fail(problem: Exception, chosen: argparse.Namespace) -> int:
-    """Say why a subcommand has failed: FILE:LINE, that of what it reads where nothing better is known; its status."""
+    """Print why a subcommand has failed, with FILE:LINE or else the name of its input; return its status."""
     inputs = (getattr(chosen, name, None) for name in ("folder", "table", "deck", "file"))
     place, status = next(filter(None, inputs), None), getattr(problem, "status", 2)
     if place is None and isinstance(problem, (KeyError, ValueError)):

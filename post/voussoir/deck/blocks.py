@@ -83,13 +83,13 @@ class Blocks(Deck):
     def from_shapely(
         cls, polygons: Any, fixed: Any = (), material: Union[int, Sequence[int]] = 1, **keys: Any
     ) -> Blocks:
-        """Blocks from polygons of shapely: the blocks; `dropped` names what has no area, with a warning.
+        """Return blocks from polygons of shapely; shapes without an area are listed in `dropped`, with a warning.
 
         Parameters
         ----------
         polygons : geometry or iterable of geometries
-            Polygons that can move; collections give their parts. A polygon with holes is cut into
-            pieces that no force parts.
+            Polygons that can move; of collections, their members. A polygon with holes is cut into
+            bonded pieces.
         fixed : likewise, optional
             Polygons that never move.
         material : int or sequence of int, optional
@@ -128,7 +128,7 @@ class Blocks(Deck):
         return len(self.shapes)
 
     def add_polygon(self, polygon: Any, fixed: bool = False, material: int = 1) -> int:
-        """Add a polygon of shapely; one with holes becomes pieces that no force parts; ValueError for one in space."""
+        """Add a polygon of shapely; one with holes becomes bonded pieces; ValueError for a polygon in space."""
         from voussoir.deck.shapely_blocks import pieces_of
 
         heights = {corner[2] for corner in polygon.exterior.coords if len(corner) == 3}
@@ -140,11 +140,11 @@ class Blocks(Deck):
         return len(self.shapes)
 
     def material(self, number: int, **properties: float) -> None:
-        """Say what a material from 2 on is: density, unit_weight, young, poisson; the deck's keys say it of 1."""
+        """Set density, unit_weight, young or poisson of a material from 2 on; material 1 has the deck's keys."""
         self._materials[_whole(number, 2)] = _words(properties, _MATERIAL)
 
     def joint(self, first: int, second: int, **law: float) -> None:
-        """Say the law between two materials: friction_deg, cohesion, tension."""
+        """Set the law between two materials: friction_deg, cohesion, tension."""
         first, second = _whole(first, 1), _whole(second, 1)
         self._laws[min(first, second), max(first, second)] = _words(law, _LAW)
 

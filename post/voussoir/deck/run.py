@@ -60,27 +60,27 @@ Runnable = Union[str, Path, Groups, Deck]
 
 
 def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any) -> results.Results:
-    """Run a deck and read what it leaves.
+    """Run a deck and read its results.
 
     Parameters
     ----------
     deck : str, Path, mapping or Deck
-        A deck's file; the text of one; its groups, such as {"arch": {"voussoirs": 36},
+        A file or the text of a deck; its groups, such as {"arch": {"voussoirs": 36},
         "search": {"parameter": "thickness_ratio"}}; or an Arch or Blocks.
     out : str or Path, optional
-        Folder of the results. Without it they vanish with the object that is given back; a deck
-        that is no file is written there, too, as deck.nml.
+        Folder of the results; without it the folder is removed with the returned object. A deck
+        that is no file is also written there, as deck.nml.
     jobs : int, optional
         Cases computed at the same time.
     **set
         Keys as in decks, by their names (friction_deg=40), with the group where several have one (**{"arch%radius":
-        5.0}), or a group at a time (search={"parameter": "friction_deg"}, for which search="friction_deg" will do).
-        sweep wants a dict or a list of them, and a deck that is no file.
+        5.0}), or whole groups: search={"parameter": "friction_deg"}, or search="friction_deg" for short. sweep is a
+        dict or a list of dicts, for a deck that is no file.
 
     Returns
     -------
     Results
-        What `voussoir.results.read` gives. A case may be undecided.
+        The results as `voussoir.results.read` returns them. A case may be undecided.
 
     Raises
     ------

@@ -196,7 +196,7 @@ def linked(run: Results, name: str, key: str) -> bool:
 
 
 def note(axes: Axes, lost: int, count: int, column: str) -> None:
-    """Say above the axes how many cases have no value."""
+    """Write above the axes how many cases have no value."""
     if lost:
         words = "critical value" if column == "critical" else f"value of {column}"
         axes.set_title(f"{lost} of {count} cases have no {words}", fontsize=type_of(SMALL), color="#555555")

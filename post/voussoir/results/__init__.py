@@ -170,11 +170,11 @@ class Results:
     Attributes
     ----------
     folder : Path
-        Where they were read.
+        Folder from which they were read.
     cases : Table
         results.csv, in the order of the cases.
     joints : Table or None
-        joints.csv, likewise; None if the deck did not want it.
+        joints.csv, likewise; None if it was not written.
     frames, frame_joints : Table or None
         frames.csv and frame_joints.csv, likewise.
     blocks, points, reactions : Table or None
@@ -244,11 +244,11 @@ class Results:
         return read_record(self.folder)
 
     def setting(self, name: str) -> str | None:
-        """What the deck says of a key such as "arch%radius"; None if it leaves it out."""
+        """Value of a key in the deck, such as "arch%radius"; None if it is not set."""
         return self.record.setting(name)
 
     def settings(self, name: str) -> list[str]:
-        """All that the deck says of a key with a list, such as "vehicle%axles"; empty if it leaves it out."""
+        """Values of a list key in the deck, such as "vehicle%axles"; empty if it is not set."""
         return self.record.values.get(name, [])
 
     @property
@@ -302,7 +302,7 @@ class Results:
         ]
 
     def points_of(self, number: int) -> list[Table]:
-        """Ways of the measured points of one case, a table each; none where none were written."""
+        """Trajectories of the monitoring points of one case, one table per point; empty if none were written."""
         if self.points is None:
             return []
         rows = self.points.where(case=number)
@@ -336,19 +336,19 @@ def read(folder: str | Path, choice: Choice | None = None) -> Results:
     folder : str or Path
         Where `dda run` has written them.
     choice : callable, optional
-        Which columns of results.csv are read, from the names of all; other tables are then left out.
+        Selects the columns of results.csv from their names; other tables are then left out.
 
     Returns
     -------
     Results
-        The tables with their types, cases in order whatever the order in which they ended.
+        The tables with their types, sorted by case.
 
     Raises
     ------
     FileNotFoundError
         If there is no results.csv in the folder.
     DamagedTable
-        If a table holds what `dda` does not write.
+        If a table has contents that `dda` does not write.
     """
     folder = Path(folder)
     cases = _read_table(folder / "results.csv", choice)

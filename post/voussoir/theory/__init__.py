@@ -44,7 +44,7 @@ _LIMITS = (
 
 
 def limits(theory: str) -> dict[str, float]:
-    """How far a theory reaches.
+    """Range of validity of a theory.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def curve_slope(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value
 
 
 def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
-    """Line of thrust through the extrados of crown and springing, as the eccentricity ratio 2e/t at beta: eq. (11).
+    """Thrust line through the extrados of crown and springing, as the eccentricity ratio 2e/t at beta: eq. (11).
 
     The ratio is -1 at the extrados and 1 at the intrados; eta in (0, 2) must be thick enough for a thrust h2 > 0.
     """
