@@ -40,6 +40,14 @@ def test_formulas_end_no_paragraph(site: Path) -> None:
     assert re.findall(r"</p>\s*<math|</math>\s*<p>", text) == []
 
 
+def test_no_list_or_table_is_shown_as_text(site: Path) -> None:
+    """A paragraph has no line that begins with the mark of an item or a cell."""
+    for page in sorted(site.glob("*.html")):
+        paragraphs = re.findall(r"<p>(.*?)</p>", page.read_text(encoding="utf-8"), re.S)
+        shown = [words for words in paragraphs if re.search(r"^(\* |- |\|)", words, re.M)]
+        assert shown == [], page.name
+
+
 def test_every_key_is_there(site: Path) -> None:
     text = (site / "keys.html").read_text(encoding="utf-8")
     help_text = subprocess.run([DDA, "help", "keys"], capture_output=True, text=True).stdout
