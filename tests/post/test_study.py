@@ -15,7 +15,8 @@ pytest.importorskip("voussoir.theory", reason="PYTHONPATH wants the build's pyth
 
 from voussoir import theory  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
-from voussoir.deck.study import SAME, Series, StudyError, study  # noqa: E402
+from voussoir.deck.study import SAME, Series, Study, StudyError, study  # noqa: E402
+from voussoir.plot.study_chart import draw_study  # noqa: E402
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 pytestmark = pytest.mark.skipif(not os.environ.get("DDA"), reason="DDA wants the name of the program")
@@ -99,6 +100,14 @@ def test_elastic_shift_vanishes_with_the_first_power_of_compliance(tmp_path: Pat
     (series,) = study(tmp_path / "arch.nml", "young", 3, double=True).series
     assert series.verdict()[0] == pytest.approx(1.0, abs=0.01)
     assert series.limit()[0] == pytest.approx(theory.discrete_critical(8, math.pi / 2), abs=1e-7)
+
+
+def test_curves_of_a_study_have_the_unit_of_their_result() -> None:
+    values = np.array([1.0, 0.5, 0.25, 0.125])
+    series = [Series("u of point 1", "m", values**2), Series("ratio", "", values)]
+    axes = draw_study(Study("analysis%time_step", list(values), np.array([1, 2, 4, 8]), series)).axes[0]
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names == ["u of point 1 [m]: order 2.00", "ratio: order 1.00"]
 
 
 def test_command_prints_writes_and_draws(tmp_path: Path, capsys, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,7 +28,8 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
         errors = series.errors
         at = values[len(values) - len(errors):]
         order = series.verdict()[0]
-        words = series.name + (f": order {order:.2f}" if not math.isnan(order) else ": no order")
+        name = f"{series.name} [{series.unit}]" if series.unit else series.name
+        words = name + (f": order {order:.2f}" if not math.isnan(order) else ": no order")
         color = INK[number % 3]
         axes.plot(
             at, np.where(errors > 0.0, errors, np.nan), color=color, marker=_MARKERS[number], markersize=4.5,
