@@ -80,7 +80,6 @@ STYLE = """.wy-nav-content { max-width: 1060px; }
 .wy-table-responsive table td, .wy-table-responsive table th { white-space: normal; }
 .wy-table-responsive table { min-width: 100%; }
 .wy-table-responsive td code { white-space: normal; overflow-wrap: normal; }
-.wy-table-responsive td:first-child > code { white-space: nowrap; }
 .rst-content h2, .rst-content h3, .rst-content h3 code, .rst-content p code, .rst-content li code
 { white-space: normal; overflow-wrap: anywhere; }
 .rst-content img { background: #fff; max-width: 100%; max-height: 44rem; width: auto; height: auto; }
@@ -91,9 +90,7 @@ math { font-size: 1.1em; }
 span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertical-align: middle; }
 td span.formula { display: inline; }
 .formula.shown { display: block; overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
-@media screen and (max-width: 768px) {
-.wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; }
-.wy-table-responsive td:first-child > code { white-space: normal; } }
+@media screen and (max-width: 768px) { .wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; } }
 @media (min-width: 769px), print {
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th { padding: 6px 8px; }
 .wy-table-responsive td:last-child code { overflow-wrap: anywhere; }
@@ -106,7 +103,7 @@ pre code { white-space: pre-wrap !important; } }
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th
 { padding: 2px 4px !important; font-size: inherit; }
 .rst-content .wy-table-responsive td code { white-space: normal !important; overflow-wrap: anywhere; font-size: 90%; }
-.rst-content .wy-table-responsive td:first-child code { white-space: nowrap !important; overflow-wrap: normal; }
+.rst-content .wy-table-responsive td:first-child code { overflow-wrap: normal; }
 .rst-content p:has(img + img) { grid-template-columns: 1fr 1fr; }
 .rst-content p:has(+ p > img) { break-after: avoid; }
 .rst-content tr, .rst-content img { break-inside: avoid; } }
