@@ -38,7 +38,7 @@ module dda_block_rows
 
 contains
 
-   !> Tell the blocks as they are at the beginning
+   !> Rows of the blocks at the beginning
    pure subroutine tell_blocks(scene, blocks)
       type(scene_t), intent(in) :: scene
       type(told_blocks_t), intent(out) :: blocks  !! The blocks, without displacements
@@ -146,8 +146,8 @@ contains
          if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
          if (all(contacts%face(j)%open)) row(j)%state = "open"
          if (row(j)%state /= "sliding") cycle
-         ! friction acts against the way in which the second block slides; without friction the slip
-         ! itself tells the way
+         ! friction acts against the sliding of the second block; without friction the slip gives
+         ! its direction
          way = sign(1.0_wp, contacts%gap(3, j))
          if (abs(contacts%force(3, j)) > 0.0_wp) way = -sign(1.0_wp, contacts%force(3, j))
          row(j)%slides = some_number(way*place%tangent)
@@ -175,7 +175,7 @@ contains
       row%point = (force(1)*row%intrados + force(2)*row%extrados)/row%normal_force
    end subroutine tell_forces
 
-   !> Tell what each joint does in a collapse; its motion is that of the last step
+   !> Set the role of each joint in a collapse; its motion is that of the last step
    pure subroutine tell_roles(fallen, system, contacts, row, motion)
       !> Contacts at the end of the collapse; without joints they are those of the rows
       type(contacts_t), intent(in) :: fallen
@@ -268,7 +268,7 @@ contains
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    pure subroutine tell_nearest(this, joint_row, blocks)
       type(case_t), intent(in) :: this
-      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+      !> Rows of the joints: (n_joint), or (0) if there are none
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene

@@ -18,18 +18,18 @@ module dda_case
 
    public :: case_t, prepare_case, searched_name
 
-   !> One case in three stages: prepared, computed, told. Only the second may run beside other
+   !> One case in three stages: prepared, computed, reported. Only the second may run beside other
    !> cases: the others make texts, and gfortran keeps the length of a text that a function returns
    !> in memory that threads share
    type :: case_t
-      type(scene_plan_t) :: plan  !! What its scene needs
+      type(scene_plan_t) :: plan  !! Plan of its scene
       !> True to search a critical value; to write tables of joints or blocks
       logical :: searches = .false., tells_tables = .true.
       logical :: proves = .true.     !! True if its verdict is proven
       logical :: limerick = .false.  !! True if Shi's scheme decides
       type(deck_family_t) :: family  !! The scenes of the search
       type(search_t) :: search       !! The search
-      type(critical_t) :: critical   !! What the search found
+      type(critical_t) :: critical   !! Result of the search
       type(decision_t) :: decision   !! Decision of a case that searches nothing
       type(scene_t) :: scene         !! Scene of the collapse, or of the decision
       !> Scene nearest to critical that stands, where it was asked for
@@ -46,7 +46,7 @@ module dda_case
       !> True if it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
       character(len=:), allocatable :: jump_note  !! Jump of the factor between positions, if any
-      type(proof_t) :: proof            !! What proves the verdict, where tables are told
+      type(proof_t) :: proof            !! Proof of the verdict, if tables are written
       real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio
       logical :: exact_known = .false.  !! True if it is known
       real(wp) :: seconds = 0.0_wp      !! Wall time of the computation [s]
@@ -85,11 +85,11 @@ contains
       if (has_group(deck, search_group)) name = trim(parameter_name(deck%searched))
    end function searched_name
 
-   !> What a deck asks to be searched
+   !> Search of a deck
    pure subroutine prepare_search(plan, searched, family, search)
       type(scene_plan_t), intent(in) :: plan
       character(len=*), intent(in) :: searched      !! Name of the searched parameter
-      type(deck_family_t), intent(inout) :: family  !! New but for its deck
+      type(deck_family_t), intent(inout) :: family  !! New apart from its deck
       type(search_t), intent(inout) :: search
 
       call new_family(family%deck%searched, family)
@@ -97,7 +97,7 @@ contains
          call search_bracket(deck, search%low, search%high)
          search%in_time = plan%velocities
          search%tolerance = deck%value(search_tolerance)%number
-         ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
+         ! Shi's verdicts near the limit are no sharper, nor those of a motion in steps
          if (deck%value(analysis_mode)%text /= "static" &
             & .and. .not. deck%value(search_tolerance)%given) search%tolerance = 1.0e-4_wp
          if (source_of(deck) == "arch") search%resolution = arch_resolution(deck)

@@ -65,7 +65,7 @@ contains
       if (proof%outcome%verdict == verdict%stable) this%decision%system = this%scene%system
    end procedure compute_decision
 
-   !> What the album of the case is to hold
+   !> Plan the pictures of the case
    module procedure plan_album
       integer :: frames
 

@@ -2,7 +2,7 @@
 !>
 !> Both are of limit analysis: forces prove that a load can be carried, a mechanism that it cannot
 !> be under any law of friction. A collapse on the loading path below the associated limit has no
-!> proof of this kind, and none is told.
+!> proof of this kind.
 submodule (dda_compute_case) dda_case_proof
    use dda_bar_joints, only : bar_joint
    use dda_deck, only : deck_t
@@ -113,7 +113,7 @@ contains
       proof%same_shape = .not. any(abs(proof%scene%system%vertex - falls%system%vertex) > 0.0_wp)
    end subroutine prove_search
 
-   !> Prove the decision of one value; nothing is proven where limit analysis knows no scene of it
+   !> Prove the decision of one value, if limit analysis applies to its scene
    pure subroutine prove_side(family, value, decision, scene, proof)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value  !! The value
@@ -177,7 +177,7 @@ contains
    pure subroutine prove_state(scene, graph, decision, proof)
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> What is to be proven, with what limit analysis has said when it was found, if it was asked
+      !> Decision to prove, with that of limit analysis if there is one
       type(decision_t), intent(in) :: decision
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: answer

@@ -32,12 +32,12 @@ module dda_case_rows
 
 contains
 
-   !> Tell a case
+   !> Rows of a case
    pure subroutine tell_case(this, row, joint_row, blocks, remark)
       type(case_t), intent(in) :: this
       !> Its row; the fields deck, number and swept are left to the caller
       type(result_row_t), intent(out) :: row
-      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+      !> Rows of the joints: (n_joint), or (0) if there are none
       type(joint_row_t), allocatable, intent(out) :: joint_row(:)
       type(told_blocks_t), intent(out) :: blocks            !! Its blocks; unallocated without any
       character(len=:), allocatable, intent(out) :: remark  !! For the user, beside the row
@@ -119,7 +119,7 @@ contains
       if (deck%value(scene_kind)%text == "blocks") deck_friction_acts = lacks_friction(deck%plan)
    end function deck_friction_acts
 
-   !> Tell a case that searches nothing
+   !> Rows of a case without a search
    pure subroutine tell_decision(this, row, joint_row, blocks, remark)
       type(case_t), intent(in) :: this
       type(result_row_t), intent(inout) :: row
@@ -158,7 +158,7 @@ contains
       end associate
    end subroutine tell_decision
 
-   !> Tell the blocks at the end of a decision
+   !> Rows of the blocks at the end of a decision
    pure subroutine tell_end(this, blocks)
       type(case_t), intent(in) :: this
       type(told_blocks_t), intent(inout) :: blocks
@@ -173,7 +173,7 @@ contains
       end if
    end subroutine tell_end
 
-   !> Tell the search of a case
+   !> Row of the search of a case
    pure subroutine tell_search(this, row, joint_row, blocks, remark)
       type(case_t), intent(in) :: this
       type(result_row_t), intent(inout) :: row
@@ -223,9 +223,8 @@ contains
          & row%condition = some_number(outcome%condition)
    end subroutine tell_condition
 
-   !> Fill the columns of a closed bracket. Where its ends lie lopsided about the value at which the
-   !> collapse stops, that value is its middle; where they lie closer than rounding can tell apart,
-   !> it is told as wide as that
+   !> Fill the columns of a closed bracket. If its ends are at different distances from the value at
+   !> which the collapse stops, that value is its middle; its width is at least the rounding error
    pure subroutine tell_bracket(critical, row)
       type(critical_t), intent(in) :: critical
       type(result_row_t), intent(inout) :: row

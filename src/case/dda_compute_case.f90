@@ -54,7 +54,7 @@ module dda_compute_case
          type(case_t), intent(inout) :: this
       end subroutine compute_decision
 
-      !> What the album of the case is to hold
+      !> Plan the pictures of the case
       pure module subroutine plan_album(this)
          type(case_t), intent(inout) :: this
       end subroutine plan_album
@@ -93,7 +93,7 @@ module dda_compute_case
          real(wp), intent(in) :: dead(:, :)
          type(load_arc_t), intent(in) :: arc(:)  !! The live loads: (n)
          logical, intent(in) :: stands           !! True if the dead load is known to stand
-         real(wp), intent(in) :: near            !! How near the place is to be [m]
+         real(wp), intent(in) :: near            !! Tolerance of the place [m]
          !> The least factor so far in, with these arcs out
          type(least_factor_t), intent(inout) :: least
       end subroutine seek_least_factor
@@ -160,8 +160,8 @@ contains
       this%standing = this%scene
    end subroutine see_standing
 
-   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
-   !> tables of joints, for pictures, or to follow a sliding collapse
+   !> Make the scene of a decision that a chain has made without it, if it is needed: for tables of
+   !> joints, for pictures, or to follow a sliding collapse
    pure subroutine see_collapse(this, value, decision)
       type(case_t), intent(inout) :: this
       real(wp), intent(in) :: value  !! Value of the parameter that was decided

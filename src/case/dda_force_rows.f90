@@ -50,7 +50,7 @@ contains
    pure function bar_lines(number, this) result(lines)
       integer, intent(in) :: number           !! Number of the case
       type(case_t), intent(in) :: this
-      character(len=:), allocatable :: lines  !! Rows, parted by line ends; empty without bars
+      character(len=:), allocatable :: lines  !! Rows, separated by line ends; empty without bars
       type(growing_text_t) :: rows
       real(wp) :: time
       integer :: i
@@ -134,7 +134,7 @@ contains
             & contacts%force, support))
          first = count(support(2, :) == 0) + 1
          do i = first, size(support, 2)
-            ! the points of a block are told together, once
+            ! the points of a block have their rows together, once
             if (any(support(1, first:i - 1) == support(1, i))) cycle
             call share_among_points(this%scene%settings, system, contacts, time, support, &
                & support(1, i), reaction)
@@ -143,14 +143,14 @@ contains
    end subroutine find_reactions
 
    !> Forces that carry the load: of joints, at their two corners and along them on the second
-   !> block; of held points, along x and y
+   !> block; of restrained points, along x and y
    pure function proof_forces_lines(number, value, proof) result(lines)
       !> Number of the case
       integer, intent(in) :: number
       !> Value of what is searched as text; empty if nothing is
       character(len=*), intent(in) :: value
       type(proof_t), intent(in) :: proof
-      !> Rows, parted by line ends
+      !> Rows, separated by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       character(len=:), allocatable :: start
@@ -175,7 +175,7 @@ contains
       lines = lines_of(rows)
    end function proof_forces_lines
 
-   !> Rows of the forces of held points
+   !> Rows of the forces of restrained points
    pure subroutine add_held(start, proof, n, rows)
       !> First fields of a row
       character(len=*), intent(in) :: start

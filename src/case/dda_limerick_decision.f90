@@ -130,7 +130,7 @@ contains
 
    !> Corners of the scene's blocks at the end of a run
    pure subroutine place_corners(kind, run, system)
-      character(len=*), intent(in) :: kind  !! What the blocks are made from
+      character(len=*), intent(in) :: kind  !! Lines of the blocks
       type(limerick_run_t), intent(in) :: run
       !> The blocks; where their corners have moved to is set
       type(block_system_t), intent(inout) :: system
@@ -142,7 +142,7 @@ contains
          ! the last eight are springings, which stand for abutments and do not move
          system%moved(:, :n - 8) = run%blocks%vertex(:, :n - 8)
       case ("lines")
-         ! edges are parted at the joints: these corners are the last of the measured points
+         ! edges are split at the joints: these corners are the last of the monitoring points
          associate (point => run%blocks%measured_point)
             system%moved = point(:, size(point, 2) - n + 1:)
          end associate
@@ -278,7 +278,7 @@ contains
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)
       type(deck_family_t), intent(in) :: family
-      !> What is searched; where the far end needs no check, the search strides out from the start
+      !> The search; where the far end needs no check, the search strides out from the start
       type(search_t), intent(in) :: search
       type(critical_t), intent(out) :: critical
       integer :: answer

@@ -47,7 +47,7 @@ contains
             end do
          end associate
       end do
-      ! moments are seen from the block, in its own size: the least forces do not depend on the
+      ! moments are about the block, in units of its size: the least forces do not depend on the
       ! origin
       place = system%centroid(:, block)
       size_of = sqrt(system%area(block))
@@ -61,7 +61,7 @@ contains
       end do
    end procedure share_among_points
 
-   !> A force with its moment seen from another point, in a length
+   !> A force with its moment about another point, in units of a length
    pure function moved(wrench, place, length) result(seen)
       real(wp), intent(in) :: wrench(3)  !! Force, and moment about the origin: (3)
       real(wp), intent(in) :: place(2)   !! The point: (2) [m]
@@ -71,10 +71,10 @@ contains
       seen = [wrench(1:2), (wrench(3) - cross(place, wrench(1:2)))/length]
    end function moved
 
-   !> The least of the forces that add up to what is wanted: x = A' y with A A' y = b
+   !> The least forces with a given sum: x = A' y with A A' y = b
    pure function least_forces(a, b) result(x)
-      real(wp), intent(in) :: a(:, :)  !! What each force is to the block: (3, n)
-      real(wp), intent(in) :: b(3)     !! What is wanted: (3)
+      real(wp), intent(in) :: a(:, :)  !! Force and moment of each on the block: (3, n)
+      real(wp), intent(in) :: b(3)     !! The sum: (3)
       real(wp) :: x(size(a, 2))        !! The forces: (n)
 
       x = matmul(least_squares(matmul(a, transpose(a)), b, negligible), a)

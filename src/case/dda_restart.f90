@@ -1,8 +1,8 @@
 !> The state of a run as a file, for a continuation that is equal to the last bit
 !>
-!> The file holds what a run cannot make anew: motions, velocities, stresses, joints with their
+!> The file holds what a run cannot compute again: motions, velocities, stresses, joints with their
 !> forces, and the march; everything else follows from the deck. Each number is checked on reading,
-!> for a check sum does not say who has written it.
+!> since a checksum does not prove its origin.
 module dda_restart
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, open_binary, sync_binary
@@ -20,17 +20,17 @@ module dda_restart
 
    public :: check_restart, load_restart, save_restart, write_numbers, read_numbers
 
-   !> First bytes of the file; another layout wants another number
+   !> First bytes of the file; another layout needs another number
    character(len=*), parameter :: title = "voussoir restart 5"
 
-   !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
-   !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
-   !> passes, steps to spare for events
+   !> Integers of a file beside those of its joints: blocks, corners, unknowns per block, true if
+   !> blocks move, true if joints are searched; joints, springs at restrained points, steps, passes,
+   !> steps to spare for events
    integer, parameter :: n_count = 10
    !> Numbers of the march: time, length of the next step, energies with their time
    integer, parameter :: n_march = 12
 
-   !> What a file holds
+   !> Contents of a file
    type :: state_t
       integer(int32) :: count(n_count) = 0  !! The whole numbers: (n_count)
       !> The joints as whole numbers: (n_joint_whole, n_joint)
@@ -45,7 +45,7 @@ module dda_restart
       real(wp), allocatable :: stress(:, :)    !! Stress of the blocks: (3, n_block) [Pa]
       !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
       real(wp), allocatable :: reach(:)
-      real(wp), allocatable :: held_force(:)  !! Forces at held points: (n_spring) [N/m]
+      real(wp), allocatable :: held_force(:)  !! Forces at restrained points: (n_spring) [N/m]
       real(wp) :: march(n_march) = 0.0_wp     !! The march: (n_march)
    end type state_t
 
@@ -78,7 +78,7 @@ module dda_restart
          type(state_t), intent(in) :: state
          !> The blocks at their beginning in, where they were out
          type(block_system_t), intent(inout) :: system
-         character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
+         character(len=*), intent(inout) :: fault  !! Fault; unchanged if there is none
       end subroutine take_blocks
 
       !> The march of a file
@@ -90,8 +90,8 @@ module dda_restart
          character(len=*), intent(inout) :: fault
       end subroutine take_march
 
-      !> Joints from numbers that are finite: found ones made anew where blocks move, given ones
-      !> with the state that they had
+      !> Joints from numbers that are finite: found again where blocks move, given ones with their
+      !> stored state
       pure module subroutine unpack_joints(settings, system, whole, number, contacts, sound)
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
@@ -156,7 +156,7 @@ contains
       if (allocated(error)) return
       fault = ""
       call check_counts(settings, system, contacts, whole, size(number), fault)
-      ! told from the bits of what is infinite or none: a signalling NaN may not be touched
+      ! distinguished by the bits of infinity and NaN: a signalling NaN may not be touched
       if (fault == "" .and. any(iand(transfer(number, [0_int64]), all_ones) == all_ones)) &
          & fault = "numbers that are none"
       if (fault == "") call take_state(whole, number, state)
@@ -182,7 +182,7 @@ contains
       call read_numbers(file, title, whole, number, error)
    end subroutine check_restart
 
-   !> What a file must have in common with the run that goes on from it
+   !> Numbers that a file and the run that continues it have in common
    pure function owner_of(settings, system, contacts) result(owner)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -193,14 +193,14 @@ contains
          & merge(1, 0, settings%current), merge(1, 0, contacts%searched)]
    end function owner_of
 
-   !> Check what a file says of its owner and of its lengths
+   !> Check the owner and the lengths of a file
    pure subroutine check_counts(settings, system, contacts, whole, n_number, fault)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       integer(int32), intent(in) :: whole(:)  !! Whole numbers of the file: (:)
-      integer, intent(in) :: n_number         !! How many other numbers it has
-      character(len=*), intent(inout) :: fault  !! What is wrong; left as it is if nothing is
+      integer, intent(in) :: n_number         !! Number of its other numbers
+      character(len=*), intent(inout) :: fault  !! Fault; unchanged if there is none
       integer(int64) :: wanted(2)
       logical :: same(5)
 
@@ -251,7 +251,7 @@ contains
 
       !> The next numbers of the file
       function next(n) result(values)
-         integer, intent(in) :: n  !! How many
+         integer, intent(in) :: n  !! Number of them
          real(wp) :: values(n)     !! The numbers: (n)
 
          values = number(at + 1:at + n)
@@ -259,11 +259,11 @@ contains
       end function next
    end subroutine take_state
 
-   !> Write a file of numbers in the machine's own form, with a check sum before them; one of
-   !> that name is replaced at once, when the new one is on the disk
+   !> Write a file of numbers in the machine's own form, after a checksum; a file of that name is
+   !> replaced when the new one is on the disk
    subroutine write_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: title  !! Its first bytes, which tell what it holds
+      character(len=*), intent(in) :: title  !! Its first bytes, which identify its contents
       integer(int32), intent(in) :: whole(:)
       real(wp), intent(in) :: number(:)
       type(error_t), allocatable, intent(out) :: error
@@ -287,7 +287,7 @@ contains
    !> Read a file of numbers that is whole
    subroutine read_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
-      character(len=*), intent(in) :: title  !! What its first bytes must be
+      character(len=*), intent(in) :: title  !! Its required first bytes
       integer(int32), allocatable, intent(out) :: whole(:)
       real(wp), allocatable, intent(out) :: number(:)
       !> Allocated if it is missing, another file, or damaged

@@ -233,7 +233,7 @@ contains
    pure function blocks_of(outline, whole, k) result(block)
       type(outline_t), intent(in) :: outline
       integer(int32), intent(in) :: whole(:)
-      integer, intent(in) :: k  !! Which of its contacts
+      integer, intent(in) :: k  !! Number among its contacts
       integer :: block(2)       !! First and second block of the joint: (2)
 
       block(whole(1 + k)) = outline%block(whole(5 + k))

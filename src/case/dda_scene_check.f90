@@ -55,9 +55,9 @@ contains
       type(deck_t), intent(inout) :: deck
       !> The scene of the first case, if its blocks are from a file
       type(scene_t), intent(out) :: scene
-      !> What cannot be run, or a file that is not there
+      !> Fault of the scene, or a missing file
       type(error_t), allocatable, intent(out) :: error
-      !> Is told what is done
+      !> Progress callback
       class(watch_t), intent(inout), optional :: watch
       !> Cases that will be computed, as choose_cases reads them: the others are not checked
       character(len=*), intent(in), optional :: cases

@@ -1,17 +1,16 @@
 !> The load of least factor among many live loads
 !>
 !> The loads lie on arcs along which they are quadratic in a share of the way. A mechanism of one
-!> load says how much power all others have on it, and so which of them is carried at a smaller
-!> factor still. That none has been missed is proven by forces, arc by arc: the loads of an arc lie
-!> within the triangle of its ends and the point where its tangents meet, and what carries these
-!> three carries all of them.
+!> load gives the power of all others on it, and so a load with a smaller factor. That none has been
+!> missed is proven by forces, arc by arc: the loads of an arc lie within the triangle of its ends
+!> and the point where its tangents meet, and forces that carry these three carry all of them.
 submodule (dda_compute_case) dda_worst_load
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : begin_walk, find_limit, limit_load_t, limit_state, load_walk_t, &
       & walk_to
    implicit none
 
-   !> What a search works on
+   !> Working data of a search
    type :: chase_t
       type(joint_graph_t) :: graph         !! The joints
       real(wp), allocatable :: dead(:, :)  !! Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
@@ -153,14 +152,14 @@ contains
       if (to - from < 1.0_wp) then
          call pass(arc, k, middle, chase, least)
       else
-         ! so near to the least its own least is looked for
+         ! so near to the least its own least is sought
          call descend(arc, k, middle, chase, least)
       end if
       call pass_between(arc, k, from, middle, chase, least)
       call pass_between(arc, k, middle, to, chase, least)
    end subroutine pass_between
 
-   !> True if a load of an arc is carried at a factor but for a small share of it
+   !> True if a load of an arc is carried at a factor less a small share of it
    pure subroutine carry(arc, weight, factor, chase, carried)
       type(load_arc_t), intent(in) :: arc
       real(wp), intent(in) :: weight(3)  !! Shares of its three loads

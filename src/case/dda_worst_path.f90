@@ -72,7 +72,7 @@ contains
    !> Try positions between others until none may have a smaller factor
    pure subroutine close_in(this, near, least, trials)
       type(case_t), intent(inout) :: this
-      real(wp), intent(in) :: near  !! Positions so near are not parted [m]
+      real(wp), intent(in) :: near  !! Positions so near are not divided [m]
       type(least_factor_t), intent(inout) :: least
       type(trials_t), intent(inout) :: trials
       real(wp) :: inverse, middle
@@ -100,7 +100,7 @@ contains
       real(wp), intent(in) :: near
       type(least_factor_t), intent(in) :: least
       type(trials_t), intent(in) :: trials
-      logical, allocatable :: open(:)  !! Whether: (n - 1)
+      logical, allocatable :: open(:)  !! True for those: (n - 1)
       real(wp) :: change(size(trials%place) - 1), most
       integer :: k, n
 

@@ -1,9 +1,9 @@
 !> The position of a vehicle at which the least load factor is carried
 !>
-!> Between two passages of an axle from block to block its loads are quadratic in the position.
-!> Which of all these is carried at the least factor, under the associated rule, is a question of
-!> the joint graph; the pressure of fill, which the arch leans against on the side away from the
-!> vehicle, makes as many graphs as there are sides.
+!> Between two passages of an axle from block to block its loads are quadratic in the position. The
+!> joint graph gives the load of least factor under the associated rule. The pressure of fill, which
+!> the arch leans against on the side away from the vehicle, makes as many graphs as there are
+!> sides.
 submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
@@ -27,12 +27,12 @@ submodule (dda_compute_case) dda_worst_position
    !> Offset of an axle beside a passage, and resolution of the worst position, over the total size
    real(wp), parameter :: beside = 1.0e-10_wp, near = 1.0e-6_wp
 
-   !> What the positions have in common
+   !> Data that all positions share
    type :: bridge_t
       !> The scene without the vehicle, its live loads at a factor of one
       type(scene_t) :: scene
       type(vehicle_t) :: vehicle         !! The vehicle
-      type(road_t) :: road               !! What it stands on
+      type(road_t) :: road               !! Road below it
       type(fill_t), allocatable :: fill  !! Fill that it stands on
       logical :: stands = .false.        !! True if it stands without live loads
    end type bridge_t
@@ -88,7 +88,7 @@ contains
          if (this%misses_worst) then
             least%factor = no_limit
          else if (.not. least%factor > 0.0_wp) then
-            ! dead loads that fall do so under either rule; the associated one knows no order of
+            ! dead loads that collapse do so under either rule; the associated one has no order of
             ! loads and would go on to live loads that prop them
             deck%value(analysis_flow)%text = "coulomb"
          else if (has_path(bridge)) then
@@ -124,7 +124,7 @@ contains
    pure subroutine drive(this, bridge, ways, by_path, least)
       type(case_t), intent(inout) :: this      !! Its deck has the vehicle as it drives
       type(bridge_t), intent(inout) :: bridge  !! Likewise; both end as they were
-      integer, intent(in) :: ways              !! How many ways it drives, 1 or 2
+      integer, intent(in) :: ways              !! Number of ways it drives, 1 or 2
       logical, intent(in) :: by_path           !! By loading paths, else by associated limits
       type(least_factor_t), intent(inout) :: least
       real(wp) :: before
@@ -225,7 +225,7 @@ contains
       leans = allocated(scene%settings%boundary%bounded)
    end function leans
 
-   !> What a deck has of a bridge
+   !> Bridge of a deck
    pure subroutine take_bridge(deck, scene, bridge)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
@@ -319,7 +319,7 @@ contains
       at = from + (to - from)*side_changes(bridge%fill, bridge%scene%origin, total)
    end function turns
 
-   !> Which fill the bridge leans against with the vehicle at a position
+   !> Side of the fill that the bridge leans against with the vehicle at a position
    pure integer function side_at(bridge, position) result(side)
       type(bridge_t), intent(in) :: bridge
       real(wp), intent(in) :: position  !! Where its first axle is [m]

@@ -34,7 +34,7 @@ contains
    pure subroutine close_bracket(family, search, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical  !! What was found; chains may be halves
+      type(critical_t), intent(out) :: critical  !! Result; chains may be halves
       type(proposal_t) :: proposal
       real(wp) :: limit, start, value
       integer :: answer, in_vain, undecided
@@ -169,7 +169,7 @@ contains
    pure real(wp) function not_again(value, critical, undecided)
       real(wp), intent(in) :: value     !! The value to decide next
       type(critical_t), intent(in) :: critical
-      integer, intent(in) :: undecided  !! How many values in a row were undecided
+      integer, intent(in) :: undecided  !! Number of consecutive undecided values
       real(wp) :: share
 
       not_again = value
@@ -179,8 +179,8 @@ contains
       not_again = critical%falls + share*(critical%stands - critical%falls)
    end function not_again
 
-   !> True if the last collapse is the one that the proposal asked for, at the tolerance, so that
-   !> another trace would tell nothing new
+   !> True if the last collapse is at the value of the proposal, within the tolerance: another trace
+   !> would add nothing
    pure logical function proved(search, limit, critical, proposal)
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: limit
@@ -211,7 +211,7 @@ contains
       real(wp), intent(in) :: value   !! The value
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer  !! One of verdict
-      !> True if the decision is kept whole, as of a run in time; otherwise its verdict will do
+      !> True if the decision is kept whole, as in dynamic searches; otherwise its verdict suffices
       logical, intent(in), optional :: whole
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error

@@ -26,7 +26,7 @@ contains
       !> True if it counts: not where joints of what stands may have slid on the way to its loads,
       !> nor where the programme has no solution
       logical, intent(out) :: decided
-      !> What a chain much like it lacks, or nothing, in; what this one lacks out
+      !> Deficit of a similar chain, or none, in; deficit of this chain out
       type(deficit_t), intent(inout) :: deficit
       integer :: j, n
 
@@ -93,7 +93,7 @@ contains
             end associate
          end do
          outcome%acceleration_ratio = power*fastest/(inertia*sqrt(free))
-         ! slower motions drown in rounding
+         ! slower motions are rounding errors
          outcome%rest_tolerance = outcome%acceleration_ratio*deficit%noise/deficit%least
       end associate
    end subroutine show_mechanism
@@ -129,8 +129,8 @@ contains
       opening(:, n + 1) = [change(1) + turn, change(1) - turn, change(2)]
    end subroutine move_blocks
 
-   !> Make the decision of a chain that of all its blocks, with its forces or its mechanism as
-   !> certificate; any other decision stays as it is
+   !> Extend the decision of a chain to all its blocks, with its forces or its mechanism as
+   !> certificate; any other decision is unchanged
    elemental subroutine unfold(decision)
       type(decision_t), intent(inout) :: decision
 

@@ -22,23 +22,23 @@ module dda_collapse_trace
    type :: proposal_t
       logical :: usable = .false.  !! True if it stops anywhere
       real(wp) :: value = 0.0_wp   !! The value
-      !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
-      !> coordinates can tell apart
+      !> Half the width of the bracket to close around it: of the tolerance, or of the effect of
+      !> rounded coordinates
       real(wp) :: half = 0.0_wp
-      !> How far beyond and before it to decide; more than half where the margin, which knows
-      !> nothing of moving blocks, only comes near
+      !> Distance beyond and before it at which to decide; more than half where blocks move: their
+      !> margin in reference geometry is only an estimate
       real(wp) :: reach = 0.0_wp
    end type proposal_t
 
-   !> Share of the value by which moving blocks are first looked for beyond its margin's zero
+   !> First distance of decisions with moving blocks from the zero of the margin, over the value
    real(wp), parameter :: first_reach = 1.0e-3_wp
    !> Half a bracket is no narrower than this share of its value
    real(wp), parameter :: least_share = 4.0e-12_wp
-   !> What each joint adds to that share
+   !> Increase of that share per joint
    real(wp), parameter :: share_of_joint = 2.0e-14_wp
-   !> How far a sharp margin may be off over its unit: half the gap at which limit analysis ends
+   !> Error of a sharp margin over its unit: half
    real(wp), parameter :: least_margin = 0.5_wp*resolution
-   !> How far a margin may be off over the one before it
+   !> Error of a margin over the previous one
    real(wp), parameter :: sharpness = 1.0e-3_wp
    !> Least and largest first step of the secant method over the value
    real(wp), parameter :: first_step(2) = [1.0e-3_wp, 0.3_wp]
@@ -53,8 +53,8 @@ module dda_collapse_trace
    type :: margin_t
       real(wp) :: value = 0.0_wp  !! The margin [N/m]
       real(wp) :: unit = 1.0_wp   !! Forces that it is small beside [N/m]
-      real(wp) :: error = 0.0_wp  !! How far it may be off [N/m]
-      real(wp) :: noise = 0.0_wp  !! Margin that a decision cannot tell from zero [N/m]
+      real(wp) :: error = 0.0_wp  !! Its error [N/m]
+      real(wp) :: noise = 0.0_wp  !! Margin that a decision takes for zero [N/m]
       !> True if a chain stands, in another mechanism than before: it may do so at its limit through
       !> a range of values
       logical :: is_beyond = .false.
@@ -68,7 +68,7 @@ contains
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: limit  !! The end of the range on the side that stands
-      type(critical_t), intent(inout) :: critical  !! What was found so far
+      type(critical_t), intent(inout) :: critical  !! Results so far
       type(proposal_t), intent(out) :: proposal    !! Where the collapse stops
       !> True to end with the first secant, to exclude values: the secant method does not converge
       !> where a margin has no zero
@@ -100,7 +100,7 @@ contains
       if (critical%current) proposal%reach = first_reach*abs(value)
       if (critical%current) return
       proposal%half = max(proposal%half, noise)
-      ! beside its stop a mechanism becomes too slow for a decision to tell it from rest
+      ! close to its stop a decision takes the slow mechanism for rest
       if (allocated(critical%fallen)) then
          associate (outcome => critical%fallen%outcome)
             if (outcome%acceleration_ratio > 0.0_wp) proposal%half = max(proposal%half, noise &
@@ -120,7 +120,7 @@ contains
       logical, intent(in) :: enough        !! True if the first secant is
       type(critical_t), intent(inout) :: critical
       real(wp), intent(out) :: value  !! The zero
-      real(wp), intent(out) :: noise  !! How far rounding may move it
+      real(wp), intent(out) :: noise  !! Its rounding error
       logical, intent(out) :: found   !! True if there is one
       type(deficit_t) :: fallen
       type(margin_t) :: margin(2)
@@ -168,7 +168,7 @@ contains
    pure subroutine see_margin(family, value, tolerance, critical, margin, found)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value
-      real(wp), intent(in) :: tolerance  !! How far that of a graph may be off over its unit
+      real(wp), intent(in) :: tolerance  !! Permitted error of that of a graph over its unit
       type(critical_t), intent(inout) :: critical
       type(margin_t), intent(out) :: margin
       logical, intent(out) :: found
@@ -193,7 +193,7 @@ contains
    pure subroutine margin_at(family, value, tolerance, critical, margin, unit, found)
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value      !! The value
-      real(wp), intent(in) :: tolerance  !! How far the margin may be off over its unit
+      real(wp), intent(in) :: tolerance  !! Permitted error of the margin over its unit
       type(critical_t), intent(inout) :: critical
       real(wp), intent(out) :: margin, unit  !! As of `find_margin` [N/m]
       logical, intent(out) :: found    !! True if it could be found
@@ -219,8 +219,8 @@ contains
       critical%factorisations = critical%factorisations + n
    end subroutine margin_at
 
-   !> True if a collapse takes power that the loads alone do not tell: what is crushed does, and a
-   !> bar that yields
+   !> True if a collapse dissipates power beside that of the loads: by crushing, or by a bar that
+   !> yields
    pure logical function takes_power(fallen)
       type(decision_t), intent(in) :: fallen
 

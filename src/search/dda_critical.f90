@@ -34,8 +34,7 @@ module dda_critical
       !> Search a family whose parameter is a load coefficient
       pure module subroutine find_critical_load(family, search, critical, done)
          class(family_t), intent(in) :: family
-         !> What is searched; where it is not done its low end may become a value that may stand
-         !> between others that fall
+         !> The search; if it is not done, its low end may become
          type(search_t), intent(inout) :: search
          type(critical_t), intent(inout) :: critical
          logical, intent(out) :: done  !! True if the search could be done so
@@ -90,13 +89,13 @@ contains
       if (allocated(critical%standing)) call unfold(critical%standing)
    end subroutine find_critical
 
-   !> Search both sides of a value: above it, or below it where that falls and the ends stand. What
-   !> is found on the other side is told beside what is found there, or instead of it
+   !> Search both sides of a value: above it, or below it where that falls and the ends stand. The
+   !> result of the other side is reported beside it, or instead of it
    pure subroutine close_both(family, search, value, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: value                !! A value that stands, or one that falls
-      type(critical_t), intent(inout) :: critical  !! What was found so far
+      type(critical_t), intent(inout) :: critical  !! Results so far
       type(search_t) :: part(2)
       type(critical_t) :: found(2)
       integer :: i, steps, passes, factorisations, first
@@ -171,8 +170,8 @@ contains
    !> the way in which it falls, or for the elastic sharing of the forces of what stands
    pure subroutine tell_whole(family, wanted, critical)
       class(family_t), intent(in) :: family
-      integer, intent(in) :: wanted  !! What is told, collapsed or stable
-      !> What was found, a decision of that verdict among it
+      integer, intent(in) :: wanted  !! The verdict, collapsed or stable
+      !> Results, among them a decision with that verdict
       type(critical_t), intent(inout) :: critical
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error

@@ -32,15 +32,16 @@ contains
    !> them, from the rest that blocks come to
    pure subroutine follow_from_rest(family, value, settings, stations, is_balanced, scene, graph, &
       & proof)
-      !> The family of the scene, of which it is made anew behind a path: its contacts leave room
+      !> Family of the scene. The scene is rebuilt behind a path: until then its contacts leave
+      !> memory free
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value                  !! Its parameter
       type(settings_t), intent(in) :: settings
       type(load_stations_t), intent(in) :: stations
       logical, intent(in) :: is_balanced             !! True if forces balance the dead loads
       type(scene_t), intent(inout) :: scene
-      type(joint_graph_t), intent(inout) :: graph    !! Its joints, made anew, too
-      type(graph_verdict_t), intent(inout) :: proof  !! How the path went
+      type(joint_graph_t), intent(inout) :: graph    !! Its joints, rebuilt likewise
+      type(graph_verdict_t), intent(inout) :: proof  !! Result of the path
       type(coulomb_state_t), allocatable :: start
       type(error_t), allocatable :: error
       integer :: n
@@ -93,7 +94,7 @@ contains
          if (slides) return
          call scene_graph(settings, scene%system, scene%contacts, graph)
       end associate
-      ! the springs of bars and fill have forces that contacts do not tell
+      ! contacts do not include the forces of bars and fill
       if (size(graph%kind) == size(scene%contacts%joint)) &
          & call take_state(graph, dead%contacts, start)
    end subroutine rest_under_dead_loads

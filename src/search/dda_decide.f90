@@ -65,9 +65,9 @@ contains
       end associate
    end procedure decide_by_steps
 
-   !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
-   !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
-   !> that the blocks were given
+   !> Run a dynamic analysis from the beginning, or from the end of an earlier run. Where it begins
+   !> in equilibrium, a static run comes first, under the loads of time 0 on a ground at rest;
+   !> velocities are the given ones
    module procedure run_in_time
       type(settings_t) :: static
       type(decision_t) :: settled
@@ -177,8 +177,8 @@ contains
       end associate
    end subroutine decide_by_graph
 
-   !> True if joints slide in the state that Coulomb's law has led to, or have strength, of which
-   !> the path alone knows what is lost: no elastic sharing without slip is looked for then
+   !> True if joints slide at the end of the loading path, or have strength whose loss only the path
+   !> follows: an elastic sharing without slip is not sought then
    pure logical function has_slid(proof)
       type(graph_verdict_t), intent(in) :: proof
 
@@ -193,7 +193,7 @@ contains
       end associate
    end function has_slid
 
-   !> True if a run of steps can tell what the graph does not: steps know neither bounded forces nor
+   !> True if steps can decide where the graph does not: steps have neither bounded forces nor
    !> strength
    pure logical function may_run(scene)
       type(scene_t), intent(in) :: scene
@@ -255,7 +255,7 @@ contains
       end associate
    end procedure record_collapse
 
-   !> Where the measured points are in a state that no run has led to
+   !> Monitoring points in a state that no run has reached
    pure subroutine show_end(settings, decision, album)
       type(settings_t), intent(in) :: settings
       type(decision_t), intent(in) :: decision

@@ -1,10 +1,9 @@
 !> Stability of a structure under Coulomb friction: the decision of searches
 !>
-!> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
-!> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
-!> run again under Coulomb friction. Where blocks keep their places and friction alone holds them,
-!> the verdict is that of the joint graph, with a proof, and the run only tells how the forces are
-!> shared out.
+!> The convex problem, in which sliding opens the joint, comes first: its collapses are collapses
+!> under every flow rule. Structures that stand there without sliding stand. Others are run again
+!> under Coulomb friction. In reference geometry, where friction alone holds the blocks, the verdict
+!> is that of the joint graph, with a proof, and steps only distribute the forces.
 module dda_decision
    use dda_block_system, only : block_system_t
    use dda_contacts, only : contacts_t
@@ -24,8 +23,7 @@ module dda_decision
 
    interface
 
-      !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
-      !> stage that falls is the last
+      !> Decide a scene stage by stage, or at once where no block is built or removed
       pure module subroutine decide_in_stages(scene, decision, album, onward, last)
          !> The scene at its beginning, or where an earlier run has left it
          type(scene_t), intent(in) :: scene
@@ -37,7 +35,7 @@ module dda_decision
          real(wp), intent(out) :: last  !! Time at which the last stage began [s]
       end subroutine decide_in_stages
 
-      !> Which blocks and contacts there are from a time on
+      !> Set the blocks and contacts that exist from a time on
       pure module subroutine enter_stage(settings, time, system, contacts)
          type(settings_t), intent(in) :: settings
          real(wp), intent(in) :: time  !! The time [s]
@@ -46,8 +44,8 @@ module dda_decision
          type(contacts_t), intent(inout) :: contacts
       end subroutine enter_stage
 
-      !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
-      !> will do; where it does not know the first one a run tells it
+      !> Blocks and contacts of a collapse. Limit analysis proves it by any mechanism; where that is
+      !> not the first motion, steps find it
       pure module subroutine record_collapse(scene, proof, decision, album)
          type(scene_t), intent(in) :: scene
          type(graph_verdict_t), intent(in) :: proof  !! That it falls
@@ -85,9 +83,9 @@ module dda_decision
          type(album_t), intent(inout), optional :: album
       end subroutine decide_by_steps
 
-      !> Run in time from the beginning, or from where a run has ended. Where it is to begin in
-      !> balance a static run leads there, under what acts at time 0 on a ground at rest; velocities
-      !> are those that the blocks were given
+      !> Run a dynamic analysis from the beginning, or from the end of an earlier run. Where it
+      !> begins in equilibrium, a static run comes first, under the loads of time 0 on a ground at
+      !> rest; velocities are the given ones
       pure module subroutine run_in_time(scene, decision, album, onward)
          type(scene_t), intent(in) :: scene
          !> The decision; the counts of the run are added to those that it has

@@ -63,21 +63,21 @@ contains
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: no_order  !! True if the order in which loads come is nothing to it
-      real(wp), intent(in) :: width    !! How wide the range is
+      real(wp), intent(in) :: width    !! Width of the range
 
       may_seek = no_order
       if (load == searched_load%tilt) may_seek = only_weight(scene%settings) &
          & .and. width <= acos(-1.0_wp)
    end function may_seek
 
-   !> True if gravity that tilts so far is upright gravity and a push, but for its size
+   !> True if gravity at this angle is upright gravity and a push, up to its magnitude
    pure logical function is_push(tilt)
       real(wp), intent(in) :: tilt  !! The angle from upright [rad]
 
       is_push = cos(tilt) > 1.0e-6_wp .and. abs(tilt) < 2.0_wp
    end function is_push
 
-   !> What is searched, from where it does nothing
+   !> Value of the parameter, relative to the one without effect
    pure real(wp) function coefficient(load, settings)
       integer, intent(in) :: load
       type(settings_t), intent(in) :: settings
@@ -135,8 +135,7 @@ contains
       if (decision%state == load_state%stands) call move_alloc(decision%force, proof%force)
    end subroutine carry_load
 
-   !> What a coefficient of one adds to the loads; of gravity that tilts, what its angle adds at
-   !> first
+   !> Loads added by a coefficient of one; for tilting gravity, their initial rate with its angle
    pure function added_loads(load, settings, scene, graph, value) result(live)
       integer, intent(in) :: load
       type(settings_t), intent(in) :: settings
@@ -195,7 +194,7 @@ contains
    !> Give blocks their whole weight where a path has ended on a chord between two directions of it
    pure subroutine restore_weight(stations, proof)
       type(load_stations_t), intent(in) :: stations
-      !> How the path ended; its forces grow by a few millionths
+      !> Result of the path; its forces grow by a few millionths
       type(graph_verdict_t), intent(inout) :: proof
       real(wp) :: weight
 
@@ -205,9 +204,9 @@ contains
       proof%state%load = proof%state%load/weight
    end subroutine restore_weight
 
-   !> A value of the range that stands, where 0 does not. The mechanism of one that falls rules out
-   !> all values at which the loads drive it: a half line, or half a turn of gravity. What is left
-   !> of the range is looked through until a value stands or nothing is left
+   !> A value of the range that stands, where 0 does not. The mechanism of one that falls excludes
+   !> all values at which the loads drive it: a half line, or half a turn of gravity. The rest of
+   !> the range is searched until a value stands or nothing is left
    pure subroutine seek_rest(load, scene, graph, low, high, value, found, n_factorisation)
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene

@@ -20,13 +20,13 @@ submodule (dda_critical) dda_load_search
       integer :: end = path_end%reached  !! One of path_end
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
-      real(wp) :: half = 0.0_wp  !! How far it may be off
+      real(wp) :: half = 0.0_wp  !! Its error
       type(limit_t) :: limit  !! The associated limit, with the sign of the side
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
       logical :: stands_upright = .true.  !! True if the path leads further than its dead loads
       logical :: falls_dead = .false.     !! True if no forces balance the dead loads
-      type(graph_verdict_t) :: proof      !! How it falls, or stands at the end of the range
+      type(graph_verdict_t) :: proof      !! Collapse, or equilibrium at the end of the range
    end type side_t
 
    !> Relative excess over a limit for its mechanism
@@ -81,7 +81,8 @@ contains
       search%start = search%low
    end procedure find_critical_load
 
-   !> Look for what stands where nothing balances the dead loads: limit analysis goes out from there
+   !> Seek values that stand where no forces balance the dead loads: limit analysis starts from
+   !> there
    pure subroutine look_elsewhere(family, scene, graph, search, low, high, right, left, origin, &
       & may_stand, n)
       class(family_t), intent(in) :: family
@@ -92,7 +93,7 @@ contains
       type(side_t), intent(inout) :: right, left
       real(wp), intent(out) :: origin    !! A value that may stand, low where none is known
       logical, intent(out) :: may_stand  !! True if not all of the range is known to fall
-      integer, intent(out) :: n          !! Factorisations but for those of the two sides
+      integer, intent(out) :: n          !! Factorisations without those of the two sides
       real(wp) :: from, to, margin
       logical :: found, no_order
 
@@ -115,7 +116,7 @@ contains
       call follow_side(family, scene, graph, origin, max(low, from - margin), -1.0_wp, search, left)
    end subroutine look_elsewhere
 
-   !> How a side falls that limit analysis brings down
+   !> Mechanism of a side that limit analysis has found to collapse
    pure subroutine tell_fall(settings, graph, side)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
@@ -130,11 +131,11 @@ contains
       end if
    end subroutine tell_fall
 
-   !> Follow the path to one side: limit analysis says how far it can lead at most
+   !> Follow the path to one side, at most to the limit of limit analysis
    pure subroutine follow_side(family, scene, graph, origin, last, outward, search, side)
       class(family_t), intent(in) :: family
       type(scene_t), intent(inout) :: scene        !! The scene at the high end
-      type(joint_graph_t), intent(inout) :: graph  !! Its joints, made anew behind a path
+      type(joint_graph_t), intent(inout) :: graph  !! Its joints, rebuilt behind a path
       !> Value from which the range is searched: 0, or one that stands where 0 does not
       real(wp), intent(in) :: origin
       real(wp), intent(in) :: last     !! End of the range on this side
@@ -187,7 +188,8 @@ contains
    end subroutine follow_side
 
    !> True if a path ends at the associated limit: where nothing slides in the collapse both rules
-   !> agree, and limit analysis is sharper; what does not settle so near to the limit falls there
+   !> agree, and limit analysis is sharper; a path that does not converge so near to the limit ends
+   !> there
    pure logical function is_at_limit(side)
       type(side_t), intent(in) :: side
 
@@ -270,8 +272,8 @@ contains
       end associate
    end subroutine take_associated
 
-   !> The verdict of the range. Where it falls on both sides, the critical value is that to the
-   !> right, and the other one is told beside it
+   !> Verdict of the range. If it collapses on both sides, the critical value is that to the right,
+   !> and the other one is reported beside it
    pure subroutine conclude(search, low, high, scene, right, left, critical)
       type(search_t), intent(in) :: search
       real(wp), intent(in) :: low, high  !! Ends of the range, from where it does nothing

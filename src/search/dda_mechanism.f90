@@ -17,7 +17,7 @@ module dda_mechanism
    public :: mechanism_role, mechanism_role_enum, role_of_joint
    public :: largest_of, slides
 
-   !> What a joint does in a mechanism
+   !> Role of a joint in a mechanism
    type :: mechanism_role_enum
       integer :: locked = 0        !! Both corners closed and stuck
       integer :: open = 1          !! Both corners open
@@ -114,8 +114,8 @@ contains
       if (mechanism%sliding_share > 1.0_wp - little) mechanism%mode = "sliding"
    end subroutine mechanism_of
 
-   !> What every joint does in the last step; openings small beside the largest motion are elastic.
-   !> A joint turns about a corner that is closed; if it slides there, too, the turn is told
+   !> Role of every joint in the last step; openings small beside the largest motion are elastic. A
+   !> joint turns about a corner that is closed, also if it slides there
    pure function role_of_joint(contacts, largest) result(role)
       !> Contacts at the end of a step
       type(contacts_t), intent(in) :: contacts
@@ -156,7 +156,7 @@ contains
       if (present(motion)) largest_of = max(largest_of, maxval(norm2(motion(1:2, :), dim=1)))
    end function largest_of
 
-   !> Numbers in rising order without repetition; equal but for rounding counts as equal
+   !> Numbers in ascending order without repetition; equal up to rounding counts as equal
    pure function each_once(numbers) result(once)
       real(wp), intent(in) :: numbers(:)  !! Any numbers: (:)
       real(wp), allocatable :: once(:)    !! The numbers: (:)

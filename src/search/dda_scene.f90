@@ -49,11 +49,11 @@ module dda_scene
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
-      !> True if they are chains but for strain, arches that differ by their thickness ratio alone
+      !> True if they are chains apart from strain
       logical :: chains = .false.
       type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
       type(settings_t) :: chain_settings  !! Settings of their runs
-      !> What does not depend on the thickness; made by the one who searches
+      !> Rays, which do not depend on the thickness; made once per search
       type(arch_rays_t) :: rays
       !> True if its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them

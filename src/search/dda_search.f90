@@ -15,7 +15,7 @@ module dda_search
 
    public :: search_t, critical_t, decision_t, limit_t, proof_t, keep_decision, shed
 
-   !> What is searched
+   !> Input of a search
    type :: search_t
       real(wp) :: low = 0.0_wp           !! Least value of the parameter
       real(wp) :: high = 1.0_wp          !! Largest value of the parameter
@@ -40,11 +40,11 @@ module dda_search
       real(wp), allocatable :: force(:, :)
       !> Velocities of the mechanism that does not let pass the second: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
-      !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
+      !> Load added per unit of the coefficient: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: live(:, :)
    end type limit_t
 
-   !> What was found
+   !> Result of a search
    type :: critical_t
       integer :: verdict = 0  !! found, or the verdict of both ends, or undecided
       !> Why the last undecided value is; unallocated if none was
@@ -60,12 +60,12 @@ module dda_search
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
-      type(link_t) :: link  !! The chain that was looked at last
-      type(deficit_t) :: deficit  !! What its forces lack, where the next one begins
+      type(link_t) :: link  !! The last chain
+      type(deficit_t) :: deficit  !! Its deficit, from which the next one starts
       real(wp) :: other = 0.0_wp      !! Value at which it falls in the other direction
       logical :: has_other = .false.  !! True if it does so within the range
-      integer :: others = 0           !! Values that a search in time has run beside its bracket
-      !> Neighbours between which the answer of a search in time changes too: (2, n)
+      integer :: others = 0           !! Values of a dynamic search beside its bracket
+      !> Other neighbours with different verdicts in a dynamic search: (2, n)
       real(wp), allocatable :: other_change(:, :)
       type(limit_t) :: limit               !! The associated limit of a load coefficient
       type(scene_t), allocatable :: scene  !! The scene of a value of the coefficient, whichever
@@ -80,12 +80,12 @@ module dda_search
 
    !> A decided structure
    type :: decision_t
-      type(outcome_t) :: outcome      !! How the run ended; its counts are those of all runs
+      type(outcome_t) :: outcome      !! Result of the run; its counts are those of all runs
       type(block_system_t) :: system  !! Blocks at the end
       type(contacts_t) :: contacts    !! Contacts at the end
       integer :: flow = 1             !! Flow rule of the run that gave them, one of flow_rule
-      logical :: by_graph = .false.   !! True if the joint graph has told how it falls
-      !> What limit analysis says of the full load, where it was asked on the way
+      logical :: by_graph = .false.   !! True if the mechanism is that of the joint graph
+      !> Decision of limit analysis for the full load, if there is one
       type(load_decision_t), allocatable :: limit
       !> True if outcome and contacts are those of the left half of a row, up to its plane of
       !> symmetry
@@ -95,7 +95,8 @@ module dda_search
 
    !> Proofs of a case and their figures
    type :: proof_t
-      !> N1, N2, T of each joint, then the forces of held points; unallocated without: (3, n) [N/m]
+      !> N1, N2, T of each joint, then the forces of restrained points; unallocated without: (3, n)
+      !> [N/m]
       real(wp), allocatable :: force(:, :)
       !> Value of what is searched at which they carry the load
       real(wp) :: force_at = 0.0_wp
@@ -120,7 +121,7 @@ module dda_search
       logical :: has_limit = .false.
       !> Least and greatest thrust of a joint: (2) [N/m]
       real(wp) :: thrust(2) = 0.0_wp
-      !> Which of them there are
+      !> True for those that exist
       logical :: has_thrust(2) = .false.
    end type proof_t
 
@@ -151,8 +152,9 @@ contains
       end select
    end subroutine keep_decision
 
-   !> Give back what a search does not ask a kept decision for: its springs, and its blocks but
-   !> for their bars, which the family makes anew at any value, unless a path has moved them
+   !> Deallocate the parts of a kept decision that a search does not need: its springs, and its
+   !> blocks without their bars, which the family rebuilds at any value, unless a path has moved
+   !> them
    pure subroutine shed(decision, keeps_joints)
       type(decision_t), intent(inout) :: decision
       !> True if it keeps its joints: a load coefficient moves none

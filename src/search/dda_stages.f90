@@ -1,9 +1,8 @@
 !> Stages: blocks built or removed while others are stable or move
 !>
-!> A static run follows the loading path from stage to stage. What a block that is taken away has
-!> carried is a load on its neighbours at first, which then goes to nothing; a block that is built
-!> fits where it stands, without force, and then gets its weight. A dynamic run goes on with the
-!> velocities of the blocks that stay.
+!> A static run follows the loading path from stage to stage. The forces of a removed block act on
+!> its neighbours at first and then go to nothing; a new block fits its place, without force, and
+!> then gets its weight. A dynamic run goes on with the velocities of the blocks that stay.
 submodule (dda_decision) dda_stages
    use dda_block_system, only : begin_motion
    use dda_boundary, only : present_at, stage_times
@@ -172,7 +171,7 @@ contains
       end if
    end subroutine record_stage
 
-   !> Which joints have slid against friction since a state, or since there was no load
+   !> True for joints that have slid against friction since a state
    pure function has_slid(after, n, before) result(slid)
       type(coulomb_state_t), intent(in) :: after
       !> Number of joints that are asked for, the first ones
@@ -189,7 +188,7 @@ contains
          & .and. sum(after%force(:2, :n), dim=1) > slip_share*maxval(abs(after%force))
    end function has_slid
 
-   !> Which blocks and contacts there are from a time on
+   !> Set the blocks and contacts that exist from a time on
    module procedure enter_stage
       logical :: present(size(system%area)), kept(size(contacts%joint))
       integer :: b, j, n
@@ -259,7 +258,7 @@ contains
    end subroutine hand_over
 
    !> A number for each joint of a stage that is the same in all stages: that of the joint between
-   !> all blocks, then of the held point, then of the bar
+   !> all blocks, then of the restrained point, then of the bar
    pure function labels(stage, all, graph) result(label)
       type(scene_t), intent(in) :: stage
       type(contacts_t), intent(in) :: all

@@ -1,15 +1,15 @@
 !> Critical value of a parameter of dynamic runs, by bisection
 !>
-!> What falls in time need not fall for all that is more, so values on both sides are run too. The
-!> critical value is the first change from the end that stands, or from the low end where both ends
-!> agree; what changes beyond it is kept for the log.
+!> A dynamic verdict need not change only once, so values on both sides are run too. The critical
+!> value is the first change from the end that stands, or from the low end where both ends agree;
+!> changes beyond it are listed in the log.
 submodule (dda_critical) dda_time_search
    use dda_bracket, only : decide_at
    implicit none
 
    !> Maximum number of runs of a search
    integer, parameter :: max_runs = 200
-   !> Where else two neighbours are parted, if their middle is undecided
+   !> Other position that separates two neighbours if their middle is undecided
    real(wp), parameter :: share(6) = [0.5_wp, 0.4_wp, 0.6_wp, 0.25_wp, 0.75_wp, 0.1_wp]
    !> Where other values are run, from the critical value to an end
    real(wp), parameter :: probe(4) = [0.02_wp, 0.1_wp, 0.3_wp, 0.65_wp]
@@ -18,7 +18,7 @@ submodule (dda_critical) dda_time_search
    !> Largest relative distance of neighbours separated by undecided runs
    real(wp), parameter :: widest = 1.0e-3_wp
 
-   !> What has been run
+   !> A value that was run
    type :: runs_t
       integer :: n = 0                          !! Number of decided values
       real(wp) :: value(max_runs + 2) = 0.0_wp  !! The values, increasing: (n or more)
@@ -77,7 +77,7 @@ contains
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
    !> where both agree
    pure integer function first_change(runs)
-      type(runs_t), intent(in) :: runs  !! What has been run; not all alike
+      type(runs_t), intent(in) :: runs  !! The values that were run, with different verdicts
 
       associate (falls => runs%falls(:runs%n))
          first_change = findloc(falls(:runs%n - 1) .neqv. falls(2:), .true., dim=1, &
@@ -85,7 +85,7 @@ contains
       end associate
    end function first_change
 
-   !> Halve the first change till its neighbours are as near as was asked for
+   !> Halve the first change until its neighbours are within the tolerance
    pure subroutine halve_change(family, search, runs, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search

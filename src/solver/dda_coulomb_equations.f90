@@ -6,10 +6,10 @@
 !>
 !>    v = v0 - U y,   y = D (opening of v at these joints)      (Sherman, Morrison and Woodbury)
 !>
-!> is a small full system for y. Answers are kept until the matrix is factored again, so that a
-!> joint may change to and fro for nothing. Where rounding may have lost more of a solution's forces
-!> than it should, what it leaves of the load is looked at: if it is too much, the solution is
-!> corrected, then the matrix factored.
+!> is a small full system for y. Answers are kept until the matrix is factored again, so that
+!> repeated changes of a joint cost nothing. Where rounding may have lost too much of the forces of
+!> a solution, its residual is checked: if that is too large, the solution is corrected, then the
+!> matrix factored.
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
@@ -37,7 +37,7 @@ module dda_coulomb_equations
    type :: coulomb_equations_t
       !> Matrix and factor
       type(joint_matrix_t) :: base
-      !> Whether the equations can be solved
+      !> True if the equations can be solved
       logical :: usable = .false.
       !> Pivots that a search for faces may take, and factorisations of the matrix altogether
       integer :: most_pivots = 100, most_factorisations = huge(1)
@@ -55,7 +55,7 @@ module dda_coulomb_equations
       integer, allocatable :: joint(:)
       !> Place of each joint among them, 0 for the others: (n_joint)
       integer(small), allocatable :: place(:)
-      !> What their stiffness is more than in the factor: (3, 3, max_answer)
+      !> Their stiffness less that of the factor: (3, 3, max_answer)
       real(wp), allocatable :: difference(:, :, :)
       !> Number of the answer to a unit force along each of their parts, or 0: (3, max_answer)
       integer, allocatable :: answer(:, :)
@@ -67,7 +67,7 @@ module dda_coulomb_equations
       real(wp), allocatable :: response(:, :, :)
       !> The largest of it: (max_answer)
       real(wp) :: reach(max_answer) = 0.0_wp
-      !> How the joints that have changed open with it: (3, max_answer, max_answer)
+      !> Openings of the changed joints by it: (3, max_answer, max_answer)
       real(wp), allocatable :: opening(:, :, :)
       !> Answers in use: (n_active)
       integer, allocatable :: active(:)
@@ -114,7 +114,7 @@ contains
    pure subroutine use_faces(equations, joints, faces, damping, viscosity)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> What corners and joints do: (3, n_joint)
+      !> Faces of corners and joints: (3, n_joint)
       integer(small), intent(in), contiguous :: faces(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
@@ -165,7 +165,7 @@ contains
    pure subroutine note_changes(equations, joints, few)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      logical, intent(out) :: few  !! Whether there was room for them
+      logical, intent(out) :: few  !! True if there was room for them
       integer :: c, j, k
       logical :: is_new(3, max_answer)
 
@@ -190,7 +190,7 @@ contains
          is_new(:, c) = any(abs(equations%difference(:, :, c)) > 0.0_wp, 2) &
             & .and. equations%answer(:, c) == 0
       end do
-      ! an answer costs as much as a solution: none is looked for where a new factor will be
+      ! an answer costs as much as a solution: none is computed where a new factor follows
       if (count(is_new(:, :equations%n_change)) > min(max_new, &
          & equations%most_answers - equations%n_answer)) return
       do c = 1, equations%n_change
@@ -230,7 +230,7 @@ contains
       end associate
    end subroutine find_answer
 
-   !> How one joint opens and slips with a motion
+   !> Opening and slip of one joint by a motion
    pure function opening_of(joints, j, motion) result(opening)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j              !! Number of the joint
@@ -251,7 +251,7 @@ contains
    !> The small full matrix of the answers in use: unity and differences times openings
    pure subroutine factor_capacity(equations, regular)
       type(coulomb_equations_t), intent(inout) :: equations
-      logical, intent(out) :: regular  !! Whether it has factors
+      logical, intent(out) :: regular  !! True if it has factors
       integer :: a, i, n
       logical :: is_active(equations%n_answer)
 
@@ -286,11 +286,11 @@ contains
       real(wp), intent(in), contiguous :: load(:, :)
       !> Motion of the blocks: (3, n_block)
       real(wp), intent(out), contiguous :: motion(:, :)
-      !> How the joints open with it: (3, n_joint)
+      !> Openings of the joints by it: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
-      !> Whether another load will be asked for more often
+      !> True if other loads follow more often
       logical, intent(in), optional :: once
-      !> What may be left of the load, and rounding of the openings of blocks that move far
+      !> Permitted residual of the load, and rounding of the openings of blocks that move far
       real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
       real(wp), allocatable :: rest(:, :)
       real(wp) :: bound, lost
@@ -373,7 +373,7 @@ contains
       integer, intent(in) :: n                !! Unknowns of all blocks
       real(wp), intent(in) :: response(n, *)  !! Answers
       integer, intent(in) :: active(:)        !! Those in use: (n_active)
-      real(wp), intent(in) :: y(:)            !! How much of each: (n_active)
+      real(wp), intent(in) :: y(:)            !! Share of each: (n_active)
       real(wp), intent(inout) :: x(n)         !! The motion
       integer :: i
 

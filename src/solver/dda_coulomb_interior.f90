@@ -133,7 +133,7 @@ contains
       type(coulomb_problem_t), intent(in) :: q
       type(coulomb_lack_t), intent(in) :: lack        !! Residuals of the iterate
       real(wp), intent(in) :: share                   !! Step over the distance to the first bound
-      type(joint_matrix_t), intent(inout) :: matrix   !! Its factor is made anew
+      type(joint_matrix_t), intent(inout) :: matrix   !! Its factor is computed again
       !> The iterate; unchanged where the factor is not usable
       type(coulomb_iterate_t), intent(inout) :: x
       real(wp), intent(out) :: length                 !! Step over the full one

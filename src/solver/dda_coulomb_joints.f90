@@ -13,14 +13,14 @@ module dda_coulomb_joints
    public :: new_coulomb_joints, take_coulomb_joints
    public :: set_force_unit, in_units, in_newtons, in_motion_units, in_metres
 
-   !> What a corner of a joint can do
+   !> Possible states of a corner of a joint
    type :: end_role_enum
       integer(small) :: contact = 1_small  !! It pushes or is open
       integer(small) :: tied = 2_small     !! It pushes and pulls
       integer(small) :: absent = 3_small   !! There is none
    end type end_role_enum
 
-   !> What a joint can do along itself
+   !> Possible states of a joint along itself
    type :: shear_role_enum
       integer(small) :: frictional = 1_small  !! It sticks, or slides at Coulomb's limit
       integer(small) :: tied = 2_small        !! It never slides
@@ -35,14 +35,14 @@ module dda_coulomb_joints
    !> Joints in units of their own
    type :: coulomb_joints_t
       type(joint_graph_t) :: graph            !! The joints, every quantity in these units
-      !> What each corner can do: (2, n_joint)
+      !> Role of each corner: (2, n_joint)
       integer(small), allocatable :: end_role(:, :)
-      !> What each joint can do along itself: (n_joint)
+      !> Role of each joint along itself: (n_joint)
       integer(small), allocatable :: shear_role(:)
       real(wp) :: force_unit = 1.0_wp         !! Unit of forces [N/m]
       real(wp) :: arm_unit = 1.0_wp           !! Unit of arms [m]
       real(wp) :: motion_unit = 1.0_wp        !! Unit of displacements and gaps [m]
-      logical :: has_weight = .false.         !! Whether a load has chosen the unit of force
+      logical :: has_weight = .false.         !! True if a load has set the unit of force
    end type coulomb_joints_t
 
    !> Least strength over the weight of a block
@@ -53,7 +53,7 @@ contains
    !> Joints in units of their own, of a graph that is kept
    pure subroutine new_coulomb_joints(graph, load, joints)
       type(joint_graph_t), intent(in) :: graph
-      !> What they carry, by which their unit of force is chosen: (3, n_block)
+      !> Their load, which sets the unit of force: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The same in units of their own
       type(coulomb_joints_t), intent(out) :: joints
@@ -63,10 +63,10 @@ contains
       call take_coulomb_joints(taken, load, joints)
    end subroutine new_coulomb_joints
 
-   !> Joints in units of their own, taken over from a graph
+   !> Joints in units of their own, from a graph
    pure subroutine take_coulomb_joints(graph, load, joints)
       type(joint_graph_t), intent(inout) :: graph
-      !> What they carry, by which their unit of force is chosen: (3, n_block)
+      !> Their load, which sets the unit of force: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The same in units of their own
       type(coulomb_joints_t), intent(out) :: joints
@@ -79,7 +79,7 @@ contains
          mass = positive_or_one(mean(scaled%mass(1, :)))
          joints%motion_unit = compliance
          scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
-         ! lengths have told their unit
+         ! the unit of length is set
          deallocate (scaled%length)
          scaled%compliance = scaled%compliance/compliance
          if (allocated(scaled%gap)) scaled%gap = scaled%gap/joints%motion_unit
@@ -89,11 +89,11 @@ contains
       call set_force_unit(joints, load)
       call drop_faint_strength(joints)
       call set_roles(joints)
-      ! roles tell what kinds have told
+      ! roles replace the kinds
       deallocate (joints%graph%kind)
    end subroutine take_coulomb_joints
 
-   !> Strength that no force feels is none: dry joints have a start of their own
+   !> Remove strength that is small beside all forces: dry joints have a start of their own
    pure subroutine drop_faint_strength(joints)
       type(coulomb_joints_t), intent(inout) :: joints
 
@@ -105,7 +105,7 @@ contains
    !> Choose the unit of force, and with it that of motion; not by a load that is zero
    pure subroutine set_force_unit(joints, load)
       type(coulomb_joints_t), intent(inout) :: joints
-      real(wp), intent(in) :: load(:, :)  !! What they carry: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)  !! Their load: (3, n_block) [N/m, N/m, N]
       real(wp) :: unit
 
       unit = mean(norm2(load(:2, :), 1))
@@ -151,7 +151,7 @@ contains
       end do
    end subroutine set_roles
 
-   !> What a joint that may slide can do along itself
+   !> Role of a joint that may slide
    pure integer(small) function slide_role(graph, j)
       type(joint_graph_t), intent(in) :: graph
       integer, intent(in) :: j  !! Number of the joint

@@ -1,4 +1,4 @@
-!> Coulomb's law at the joints of an assembly, with slip remembered
+!> Coulomb's law at the joints of an assembly, with the history of slip
 !>
 !> A corner is closed and pushes, or is open; a joint sticks with the shear force that it has, or
 !> slides at +-friction*(N1 + N2). Between two states the blocks move and
@@ -6,9 +6,9 @@
 !>    N = max(0, t),  gap = max(0, -compliance*t),  t = N_before - (opening + gap_before)/compliance
 !>    T = t_T within +-friction*(N1 + N2),          t_T = T_before - slip/compliance_T
 !>
-!> Where both corners are open the joint carries no shear force and forgets the one it had. A whole
-!> joint carries more: N >= -pull, |T| <= cohesion + friction*(N1 + N2). A corner that opens loses
-!> that for good, and so do both where the joint slides.
+!> Where both corners are open the joint carries no shear force, and later starts without one. A
+!> whole joint carries more: N >= -pull, |T| <= cohesion + friction*(N1 + N2). A corner that opens
+!> loses that for good, and so do both where the joint slides.
 !>
 !> Equation (M4) of docs/method.md
 module dda_coulomb_law
@@ -22,7 +22,7 @@ module dda_coulomb_law
    public :: unloaded_state, add_springs, apply_law, force_faces, imbalance, joint_stiffness
    public :: shear_face, spring_forces
 
-   !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
+   !> State of a corner or a joint: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
       integer(small) :: open = 0_small          !! The corner is open: no force
       integer(small) :: closed = 1_small        !! The corner is closed
@@ -45,7 +45,7 @@ module dda_coulomb_law
       real(wp), allocatable :: gap(:, :)
       !> Slip of each joint that its spring does not give back: (n_joint)
       real(wp), allocatable :: slip(:)
-      !> What corner 1, corner 2 and the joint along itself do: (3, n_joint)
+      !> States of corner 1, corner 2 and the joint along itself: (3, n_joint)
       integer(small), allocatable :: face(:, :)
       !> Corners that have kept their strength; unallocated where none has any: (2, n_joint)
       logical, allocatable :: whole(:, :)
@@ -105,12 +105,12 @@ contains
       end associate
    end function strength
 
-   !> What a joint does along itself, where it can do nothing else
+   !> State of a joint along itself, where only one is possible
    pure integer(small) function shear_face(joints, j, ends, otherwise)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j          !! Number of the joint
-      integer(small), intent(in) :: ends(2)    !! What its corners do: (2)
-      integer(small), intent(in) :: otherwise  !! What it does if it has the choice
+      integer(small), intent(in) :: ends(2)    !! States of its corners: (2)
+      integer(small), intent(in) :: otherwise  !! Its state where several are possible
 
       shear_face = otherwise
       if (joints%shear_role(j) == shear_role%absent) then
@@ -231,11 +231,11 @@ contains
       end do
    end function damped_mass
 
-   !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
+   !> Stiffness of a joint: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j
-      integer(small), intent(in) :: faces(3)  !! What it does: (3)
+      integer(small), intent(in) :: faces(3)  !! Its states: (3)
       real(wp) :: stiffness(3, 3)      !! Rows N1, N2, T; columns opening 1, opening 2, slip
       integer :: i
 
@@ -279,7 +279,7 @@ contains
    !> The same of all joints
    pure subroutine spring_forces(joints, faces, opening, force)
       type(coulomb_joints_t), intent(in) :: joints
-      !> What corners and joints do: (3, n_joint)
+      !> States of corners and joints: (3, n_joint)
       integer(small), intent(in), contiguous :: faces(:, :)
       real(wp), intent(in), contiguous :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
@@ -308,7 +308,7 @@ contains
       end do
    end subroutine add_springs
 
-   !> What is not balanced of a load
+   !> Unbalanced part of a load
    pure subroutine imbalance(joints, load, force, rest)
       type(coulomb_joints_t), intent(in) :: joints
       real(wp), intent(in), contiguous :: load(:, :)   !! The load: (3, n_block)

@@ -1,9 +1,9 @@
 !> State of an assembly under a sudden load
 !>
-!> Coulomb's law knows no unit of force: a load that grows in proportion from nothing makes every
-!> force and every motion grow in proportion, so that all at once is a loading path, too. Interior
-!> springs with strong damping find which joints stick and slide, an open-close loop with ever less
-!> damping has the last word.
+!> Coulomb's law has no unit of force: a load that grows in proportion from nothing makes every
+!> force and every motion grow in proportion, so that the whole load at once is a loading path, too.
+!> Interior springs with strong damping find which joints stick and slide; an open-close loop with
+!> less and less damping decides.
 submodule (dda_loading_path) dda_coulomb_start
    use dda_coulomb_equations, only : path_damping, solve_equations, use_faces
    use dda_coulomb_interior, only : coulomb_iterate_t
@@ -81,7 +81,7 @@ contains
       real(wp), intent(in) :: load(:, :)
       real(wp), intent(in) :: first   !! Damping to begin with
       type(coulomb_state_t), intent(out) :: state
-      logical, intent(out) :: stands  !! Whether its forces balance the load
+      logical, intent(out) :: stands  !! True if its forces balance the load
       integer, parameter :: most_passes = 12
       real(wp), parameter :: least = 1.0e-13_wp
       type(coulomb_iterate_t) :: inner
@@ -125,7 +125,7 @@ contains
       integer, intent(in) :: most
       !> In: the faces to begin with; out: the state after the step
       type(coulomb_state_t), intent(inout) :: after
-      !> What the forces leave of the load
+      !> Residual of the load
       real(wp), intent(out) :: left
       !> Number of passes, 0 if the faces did not settle
       integer, intent(out) :: passes
@@ -170,7 +170,7 @@ contains
       real(wp), intent(in) :: tolerance                 !! Tolerance of the interior springs
       type(coulomb_iterate_t), intent(inout) :: inner  !! The iterate, from which it goes on
       type(coulomb_state_t), intent(out) :: state
-      logical, intent(out) :: settled                   !! Whether the interior springs have settled
+      logical, intent(out) :: settled  !! True if the interior springs have converged
       type(coulomb_state_t) :: unloaded
       real(wp), allocatable :: opening(:, :)
 

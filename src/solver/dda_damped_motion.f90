@@ -28,7 +28,7 @@ contains
       !> Enough, sharp or between: the faces of joints that carry next to nothing depend on it
       real(wp), intent(in) :: tolerance
       type(coulomb_iterate_t), intent(inout) :: x  !! The iterate; one that is there goes on
-      logical, intent(out) :: settled              !! Whether the motion was found
+      logical, intent(out) :: settled              !! True if the motion was found
       integer, parameter :: max_iteration = 150, patience = 15, few = 3
       real(wp), parameter :: shortfall = 0.995_wp, nothing = 1.0e-30_wp
       type(coulomb_problem_t) :: q

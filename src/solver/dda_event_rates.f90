@@ -1,7 +1,7 @@
 !> Rates of motion and forces of an assembly under a growing load
 !>
 !> Most faces are given: a corner that pushes stays closed, one with a gap stays open, a joint
-!> within Coulomb's limit sticks. What is left, the weak faces, must agree with the rates: an
+!> within Coulomb's limit sticks. The others, the weak faces, must agree with the rates: an
 !> open-close loop finds them.
 module dda_event_rates
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
@@ -15,9 +15,9 @@ module dda_event_rates
    public :: find_rates, pivot_to_load, rates_t, undamp_rates
    public :: rate_law_t, set_rate_law, weak_force
 
-   !> What a state leaves open
+   !> Undetermined faces of a state
    type :: rate_law_t
-      !> Whether each corner is weak: (2, n_joint)
+      !> True if each corner is weak: (2, n_joint)
       logical(small), allocatable :: weak(:, :)
       !> Limits that each joint may slide at, a positive and a negative shear force: (2, n_joint)
       logical(small), allocatable :: limit(:, :)
@@ -31,15 +31,15 @@ module dda_event_rates
 
    !> Where the line of a motion meets a bend of the law
    type :: break_t
-      !> How far off it is
+      !> Its distance
       real(wp) :: distance = 0.0_wp
       !> Joint that changes, 0 if there is none
       integer :: joint = 0
       !> Corner 1 or 2 that opens or closes, 3 or 4 where the joint begins or ends to slide against
       !> a positive or a negative shear force
       integer :: part = 0
-      !> Whether what decides it rises: the pressure of the corner, or the shear force beyond the
-      !> limit
+      !> True if the deciding quantity rises: the pressure of the corner, or the shear force beyond
+      !> the limit
       logical :: rises = .false.
    end type break_t
 
@@ -51,7 +51,7 @@ module dda_event_rates
       real(wp), allocatable :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
       real(wp), allocatable :: force(:, :)
-      !> What corners and joints do: (3, n_joint)
+      !> Faces of corners and joints: (3, n_joint)
       integer(small), allocatable :: face(:, :)
       !> Rates of opening that may be none
       real(wp) :: still = 0.0_wp
@@ -66,7 +66,7 @@ module dda_event_rates
    real(wp), parameter :: weak_force = 1.0e-9_wp
    !> Round-off over the largest opening rate, and over the largest motion rate
    real(wp), parameter :: rounding = 1.0e-11_wp, lost = 1.0e-14_wp
-   !> Iterations with simultaneous changes, and number of wrong states from which pivots take over
+   !> Iterations with simultaneous changes, and number of wrong states after which pivots follow
    integer, parameter :: few_passes = 6, few_wrong = 16
    !> Maximum number of iterations
    integer, parameter :: most_passes = 100
@@ -80,13 +80,13 @@ module dda_event_rates
          type(rate_law_t), intent(out) :: law
       end subroutine set_rate_law
 
-      !> What joints do with rates of opening
+      !> Faces of joints with given rates of opening
       pure module subroutine follow_law(joints, law, opening, still, faces)
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
          real(wp), intent(in) :: opening(:, :)  !! Rates of opening 1, opening 2, slip: (3, n_joint)
          real(wp), intent(in) :: still          !! Rates of opening that may be none
-         integer(small), intent(inout) :: faces(:, :)  !! What they have done, and do: (3, n_joint)
+         integer(small), intent(inout) :: faces(:, :)  !! Their previous and new faces: (3, n_joint)
       end subroutine follow_law
 
       !> The first bend of the law on a line of rates of opening: without a joint if there is none
@@ -94,12 +94,12 @@ module dda_event_rates
          type(coulomb_joints_t), intent(in) :: joints
          type(rate_law_t), intent(in) :: law
          real(wp), intent(in) :: still          !! Rates of opening that may be none
-         integer(small), intent(in) :: faces(:, :)     !! What the joints do: (3, n_joint)
+         integer(small), intent(in) :: faces(:, :)     !! Faces of the joints: (3, n_joint)
          real(wp), intent(in) :: opening(:, :)  !! Where the line begins: (3, n_joint)
          real(wp), intent(in) :: change(:, :)   !! Where it leads: (3, n_joint)
       end function next_break
 
-      !> How fast what decides a bend rises along a line
+      !> Rate along a line of the quantity that decides a bend
       pure real(wp) module function break_rate(joints, break, faces, change)
          type(coulomb_joints_t), intent(in) :: joints
          type(break_t), intent(in) :: break
@@ -134,7 +134,7 @@ contains
       real(wp), intent(in) :: viscosity
       !> The rates, for which room is made where there is none
       type(rates_t), intent(inout) :: rates
-      !> Whether they agree with their faces
+      !> True if they agree with their faces
       logical, intent(out) :: found
       !> Rates of opening that are prescribed, none if absent: (3, n_joint)
       real(wp), intent(in), contiguous, optional :: opening_rate(:, :)
@@ -187,7 +187,7 @@ contains
          found = n_wrong == 0
          if (found) return
          if (pass >= few_passes .and. n_wrong <= few_wrong) exit
-         ! faces that have been seen come again for ever
+         ! faces that occur twice recur without end
          if (pass > 1) then
             if (all(target == seen)) exit
          end if
@@ -202,15 +202,15 @@ contains
    !> Rates of opening that may be none, because rounding makes as much
    pure real(wp) function no_rate(motion, opening)
       real(wp), intent(in) :: motion(:, :)   !! Motion of the blocks: (3, n_block)
-      real(wp), intent(in) :: opening(:, :)  !! How the joints open with it: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)  !! Openings of the joints by it: (3, n_joint)
 
       ! what moves freely does so by any multiple of what forces open
       no_rate = max(rounding*min(1.0_wp, maxval(abs(opening))), lost*maxval(abs(motion)))
    end function no_rate
 
-   !> Give back what damping has taken from the rates of an assembly that does not move. What is
-   !> soft takes many turns; what does not become less drives a motion, however small a share of the
-   !> load it is, and stays unbalanced
+   !> Restore the part that damping has removed from the rates of an assembly that does not move.
+   !> Soft parts need many turns. A residual that does not decrease drives a motion, however small a
+   !> share of the load it is, and stays unbalanced
    pure subroutine undamp_rates(joints, equations, load_rate, rates)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations  !! Their equations, those of the rates
@@ -227,7 +227,7 @@ contains
          if (rates%unbalanced <= exact) exit
          before = rates%unbalanced
          call imbalance(joints, load_rate, rates%force, rest)
-         ! forces make room for openings, from which they are found anew
+         ! openings replace forces in memory, which are computed again from them
          call solve_equations(equations, joints, rest, more, rates%force, once=.true.)
          rates%motion = rates%motion + more
          rates%opening = rates%opening + rates%force
@@ -259,7 +259,7 @@ contains
    !> A load with the forces that prescribed openings make
    pure subroutine add_drive(joints, faces, load, driven, opening)
       type(coulomb_joints_t), intent(in) :: joints
-      !> What corners and joints do: (3, n_joint)
+      !> Faces of corners and joints: (3, n_joint)
       integer(small), intent(in), contiguous :: faces(:, :)
       !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -272,12 +272,11 @@ contains
       if (present(opening)) call add_springs(joints, faces, opening, 0.0_wp, driven)
    end subroutine add_drive
 
-   !> Lead a motion over to a load: the last word where an open-close loop goes round in circles.
-   !> Any motion has faces that agree with it and a load that it takes, so it solves a neighbouring
-   !> problem. Its load is led over to the one that is asked for, and the motion follows in straight
-   !> pieces. At a bend of the law one face changes, and the motion goes on as the new face allows:
-   !> towards the load, or back (Katzenelson 1965; Lemke's method). It ends at the load, or never
-   !> returns: then there are no rates
+   !> Continue a motion to a load, where an open-close loop recurs. Any motion has faces that agree
+   !> with it and a load, so it solves a neighbouring problem. Its load is moved to the given one,
+   !> and the motion follows in straight pieces. At a bend of the law one face changes, and the
+   !> motion continues as the new face allows: towards the load, or back (Katzenelson 1965; Lemke's
+   !> method). It ends at the load, or never returns: then there are no rates
    pure subroutine pivot_to_load(joints, equations, law, load, motion, opening, faces, found, drive)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -286,11 +285,11 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> Any motion in, the rates out: (3, n_block)
       real(wp), intent(inout) :: motion(:, :)
-      !> How the joints open with it and with the drive: (3, n_joint)
+      !> Openings of the joints by it and by the drive: (3, n_joint)
       real(wp), intent(inout) :: opening(:, :)
-      !> What they have done, and do: (3, n_joint)
+      !> Their previous and new faces: (3, n_joint)
       integer(small), intent(inout), contiguous :: faces(:, :)
-      !> Whether the load was reached
+      !> True if the load was reached
       logical, intent(out) :: found
       !> Rates of opening that are prescribed, none if absent: (3, n_joint)
       real(wp), intent(in), contiguous, optional :: drive(:, :)

@@ -49,7 +49,7 @@ contains
       integer, intent(in) :: most
       !> Velocities: (3, n_block)
       real(wp), intent(inout) :: velocity(:, :)
-      !> Whether a motion without end was found; otherwise velocities and forces are left alone
+      !> True if a motion without end was found; otherwise velocities and forces are unchanged
       logical, intent(out) :: found
       !> Factorisations
       integer, intent(out) :: n_factorisation
@@ -106,7 +106,7 @@ contains
       real(wp), intent(in) :: load(:, :)       !! Loads: (3, n_block) [N/m, N/m, N]
       real(wp), intent(out) :: motion(:, :)    !! Accelerations: (3, n_block)
       real(wp), intent(out) :: force(:, :)     !! N1, N2, T of each joint: (3, n_joint) [N/m]
-      logical, intent(out) :: found            !! Whether they were found
+      logical, intent(out) :: found            !! True if they were found
       integer, intent(out) :: n_factorisation  !! Factorisations
       type(ray_matrix_t) :: springs
       type(load_path_t) :: path

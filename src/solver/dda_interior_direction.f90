@@ -1,8 +1,8 @@
 !> Directions of the interior-point method: barrier stiffness and corrections
 !>
 !> Corrections of the balance are added to the directions of x, v and the factor one by one, which
-!> keeps the balance when the springs spread over many decades. Free rays have springs of a
-!> stiffness that is large: what they open is led back to zero from turn to turn.
+!> keeps the balance when the springs spread over many decades. Free rays have springs of a large
+!> stiffness: each turn reduces their openings.
 module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
    use dda_joint_graph, only : joint_graph_t
@@ -17,13 +17,13 @@ module dda_interior_direction
    public :: direct, direct_again, refine_direction, find_balance, respond_to_live_load, see_rest
    public :: add_yielding, see_yielding
 
-   !> What one turn works on
+   !> Working data of one turn
    type :: turn_t
-      !> What balance lacks, and right-hand sides: (3, 0:n_block)
+      !> Imbalance, and right-hand sides: (3, 0:n_block)
       real(wp), allocatable :: lack(:, :), rest(:, :)
       !> Response to the live load, to the right-hand side: (3, 0:n_block)
       real(wp), allocatable :: unit_response(:, :), response(:, :)
-      !> What the power of the live load lacks of one
+      !> One less the power of the live load
       real(wp) :: lack_of_power = 0.0_wp
       !> Smallest factor whose gap is relative to itself
       real(wp) :: least_factor = 0.0_wp
@@ -195,7 +195,7 @@ contains
       end do
    end subroutine refine_direction
 
-   !> What a direction leaves of the balance
+   !> Imbalance after a direction
    pure subroutine see_rest(graph, path, turn)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
@@ -206,15 +206,15 @@ contains
       call add_ray_forces(graph, path%length, turn%dx, turn%rest)
    end subroutine see_rest
 
-   !> What loads and masses alone leave. Arrays are flat here and below, so that a loop is one
+   !> Imbalance of loads and masses alone. Arrays are flat here and below, so that a loop is one
    pure subroutine begin_rest(n, lack, factor, live, mass, dv, rest)
       integer, intent(in) :: n             !! Numbers of each array
-      real(wp), intent(in) :: lack(n)      !! What balance lacks
+      real(wp), intent(in) :: lack(n)      !! Imbalance
       real(wp), intent(in) :: factor       !! Change of the factor
       real(wp), intent(in) :: live(n)      !! The live load
       real(wp), intent(in) :: mass(n)      !! The masses
       real(wp), intent(in) :: dv(n)        !! The direction of v
-      real(wp), intent(out) :: rest(n)     !! What is left
+      real(wp), intent(out) :: rest(n)     !! Remaining imbalance
 
       rest = -lack + factor*live - mass*dv
    end subroutine begin_rest
@@ -270,10 +270,10 @@ contains
 
    !> sum = sum + factor*more
    pure subroutine add_multiple(n, factor, more, sum)
-      integer, intent(in) :: n           !! How many
+      integer, intent(in) :: n           !! Number of values
       real(wp), intent(in) :: factor     !! The factor
-      real(wp), intent(in) :: more(n)    !! What is added
-      real(wp), intent(inout) :: sum(n)  !! What it is added to
+      real(wp), intent(in) :: more(n)    !! Summand
+      real(wp), intent(inout) :: sum(n)  !! The sum
 
       sum = sum + factor*more
    end subroutine add_multiple

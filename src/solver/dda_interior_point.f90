@@ -43,7 +43,7 @@ contains
    pure subroutine start_by_springs(graph, path, far, springs, point)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
-      logical, intent(in) :: far  !! Whether joints that crush begin at a share of their strength
+      logical, intent(in) :: far  !! True if joints that crush begin at a share of their strength
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(out) :: point  !! Where the iteration begins
       real(wp) :: product, power
@@ -138,7 +138,7 @@ contains
       point = best
    end subroutine solve_cones
 
-   !> Keep a point but for its rates, from which nothing goes on
+   !> Keep a point without its rates, which are not needed again
    pure subroutine keep(point, kept)
       type(interior_point_t), intent(inout) :: point  !! The point; it comes back as it was
       type(interior_point_t), intent(inout) :: kept
@@ -158,7 +158,7 @@ contains
       worst = max(point%gap, point%imbalance, point%violation)
    end function worst
 
-   !> Whether the iteration ends here
+   !> Check for the end of the iteration
    pure subroutine judge(path, goal, turn, idle, n_factorisation, point)
       type(load_path_t), intent(in) :: path
       type(interior_goal_t), intent(in) :: goal

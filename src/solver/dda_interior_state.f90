@@ -17,7 +17,7 @@ module dda_interior_state
    !> Least dead load relative to the live load
    real(wp), parameter :: nothing = 1.0e-14_wp
 
-   !> How the iteration has ended
+   !> End of the iteration
    type :: interior_state_enum
       integer :: running = 0    !! Not yet
       integer :: optimal = 1    !! Forces and velocities agree to the tolerance
@@ -38,7 +38,7 @@ module dda_interior_state
       integer(int8), allocatable :: bounded(:, :)
       !> One for rays of any sign: (n_side, n_joint)
       integer(int8), allocatable :: free(:, :)
-      !> Whether there are rays of other kinds than bounded ones
+      !> True if there are rays of other kinds than bounded ones
       logical :: has_others = .false.
       !> Number of bounded rays, or one
       real(wp) :: n_bounded = 1.0_wp
@@ -46,15 +46,15 @@ module dda_interior_state
       real(wp) :: length = 1.0_wp
       !> Loads at factor zero: (3, 0:n_block)
       real(wp), allocatable :: dead(:, :)
-      !> What a unit of the factor adds: (3, 0:n_block)
+      !> Load added per unit of the factor: (3, 0:n_block)
       real(wp), allocatable :: live(:, :)
       !> Masses: (3, 0:n_block)
       real(wp), allocatable :: mass(:, :)
-      !> Whether there are any
+      !> True if there are any
       logical :: moves = .false.
       !> Joints that crush: (n)
       type(joint_strip_t), allocatable :: strip(:)
-      !> What a unit of force closes a ray by: forces that hold one another, of any size, are small
+      !> Closing of a ray by a unit of force: forces that hold one another, of any size, are small
       real(wp) :: compliance = 0.0_wp
       !> Factor of this path that is one for the caller
       real(wp) :: size = 1.0_wp
@@ -64,14 +64,14 @@ module dda_interior_state
       real(wp) :: largest_dead = 0.0_wp, largest_live = 0.0_wp
    end type load_path_t
 
-   !> What is asked for
+   !> Goal of the iteration
    type :: interior_goal_t
       !> Relative gap of both problems
       real(wp) :: tolerance = 1.0e-9_wp
-      !> Factor of which it is enough to know whether it can be reached
+      !> Factor at which the iteration ends if it is reached or proven out of reach
       real(wp) :: target = no_limit
-      !> Factorisations within which the largest factor is looked for where it cannot; then, what
-      !> proves that is enough
+      !> Factorisations within which the largest factor is sought below the target; later, a proof
+      !> ends the iteration
       integer :: to_limit = 0
       !> A factor for which the live load is so many times as large as the dead load, or one, is
       !> beyond bounds
@@ -92,11 +92,11 @@ module dda_interior_state
       real(wp) :: factor = 0.0_wp
       !> Factor that the velocities do not let pass
       real(wp) :: upper = no_limit
-      !> How much higher that factor may be if the violation is not where forces are small
+      !> Increase of that factor if the violation is not where forces are small
       real(wp) :: margin = 0.0_wp
       !> Relative gap, imbalance, and violation of the flow rule
       real(wp) :: gap = huge(1.0_wp), imbalance = huge(1.0_wp), violation = huge(1.0_wp)
-      !> How the iteration has ended, one of interior_state
+      !> End of the iteration, one of interior_state
       integer :: state = 0
       !> Turns
       integer :: n_turn = 0
@@ -109,7 +109,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero, in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: dead(:, 0:)
-      !> What a factor of one adds: (3, 0:n_block)
+      !> Load added by a factor of one: (3, 0:n_block)
       real(wp), intent(in) :: live(:, 0:)
       type(load_path_t), intent(out) :: path
 

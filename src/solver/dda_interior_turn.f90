@@ -35,7 +35,7 @@ module dda_interior_turn
    !> Range of products, over their target, without correction
    real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
 
-   !> What the products x*s at the end of a step are led to
+   !> Aims of the products x*s at the end of a step
    type :: centring_enum
       integer :: equal = 0    !! One product, with the second order of the direction before
       integer :: within = 1   !! Multiples of it, where they lie beyond them
@@ -45,13 +45,13 @@ module dda_interior_turn
    !> Names of these
    type(centring_enum), parameter :: centring = centring_enum()
 
-   !> What a correction aims at
+   !> Aim of a correction
    type :: centring_t
       !> One of centring
       integer :: kind = centring%equal
       !> The product
       real(wp) :: product = 0.0_wp
-      !> Steps of forces and of rates at whose end products are looked at: (2)
+      !> Steps of forces and of rates at whose ends products are computed: (2)
       real(wp) :: further(2) = 0.0_wp
    end type centring_t
 
@@ -186,8 +186,8 @@ contains
    end subroutine set_stiffness
 
    !> Direction to equal products x*s, with the second order of the predictor; then products that
-   !> would be far smaller or far larger than the others at the end of somewhat longer steps are led
-   !> back (Gondzio 1996)
+   !> would be far smaller or far larger than the others at the end of somewhat longer steps are
+   !> corrected (Gondzio 1996)
    pure subroutine correct(graph, path, goal, springs, point, turn)
       type(joint_graph_t), intent(in) :: graph
       type(load_path_t), intent(in) :: path
@@ -313,7 +313,7 @@ contains
 
    !> Go a share of the way to other numbers
    pure subroutine take_share(n, share, other, number)
-      integer, intent(in) :: n              !! How many
+      integer, intent(in) :: n              !! Number of values
       real(wp), intent(in) :: share         !! The share
       real(wp), intent(in) :: other(n)      !! The others
       real(wp), intent(inout) :: number(n)  !! The numbers
@@ -346,7 +346,7 @@ contains
       steps = 1.0_wp/transpose(hurry)
    end function steps_of_shares
 
-   !> How much of a way a ray goes in one step at least, with each part of a change of its direction
+   !> Inverse of the longest steps of a ray, with each part of a change of its direction
    pure subroutine hurry_by(bounded, from, before, after, hurry)
       integer(int8), intent(in) :: bounded     !! One if it has a bound
       real(wp), intent(in) :: from             !! Its force, or its rate

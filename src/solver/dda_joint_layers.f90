@@ -41,7 +41,7 @@ contains
       allocate (no_layers%joint(0), no_layers%side(0), no_layers%share(0))
    end function no_layers
 
-   !> How far the forces of a joint lie beyond what it can carry without being crushed [N/m]
+   !> Excess of the forces of a joint over its crushing limit [N/m]
    elemental real(wp) function beyond_parabola(strength, n1, n2) result(beyond)
       !> Strength over the whole length; huge where it does not crush [N/m]
       real(wp), intent(in) :: strength
@@ -59,9 +59,9 @@ contains
    pure subroutine touch_parabola(graph, force, most, layers, touched)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: force(:, :)  !! N1, N2, T of each: (3, n_joint) [N/m]
-      real(wp), intent(in) :: most         !! How far beyond they may lie [N/m]
+      real(wp), intent(in) :: most         !! Permitted excess [N/m]
       type(joint_layers_t), intent(inout) :: layers
-      logical, intent(out) :: touched      !! Whether there are new ones
+      logical, intent(out) :: touched      !! True if there are new ones
       real(wp) :: share
       integer :: j, side
 
@@ -119,7 +119,7 @@ contains
       if (allocated(graph%compliance)) call add_springs(graph, layers, layered)
    end subroutine add_layers
 
-   !> What a loading path needs of layers: springs that hardly give, plates that hardly weigh
+   !> Properties of layers on a loading path: stiff springs, light plates
    pure subroutine add_springs(graph, layers, layered)
       type(joint_graph_t), intent(in) :: graph
       type(joint_layers_t), intent(in) :: layers

@@ -1,6 +1,6 @@
 !> Products with the rows of joints, and the matrix A + R S R' of blocks and joint springs
 !>
-!> Blocks have 3 or 6 unknowns: loops take three at a time, so that the compiler knows the length.
+!> Blocks have 3 or 6 unknowns: loops take three at a time, a constant length for the compiler.
 module dda_joint_matrix
    use dda_block_factor, only : block_factor_t, factorise, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern
@@ -28,7 +28,7 @@ contains
       integer, intent(in) :: block(:, :)  !! The two blocks of each joint, 0 if fixed: (2, n_joint)
       integer, intent(in) :: n_dof        !! Unknowns of a block
       integer, intent(in) :: n_block      !! Number of blocks
-      logical, intent(in) :: symmetric    !! Whether the matrix is
+      logical, intent(in) :: symmetric    !! True if the matrix is symmetric
       type(block_matrix_t), intent(out) :: matrix
       type(block_factor_t), intent(out) :: factor
       !> Couplings, as in the type: (n_joint)
@@ -103,7 +103,7 @@ contains
       real(wp), intent(in) :: left(n, 3)    !! Rows of the block that is pushed
       real(wp), intent(in) :: middle(3, 3)  !! Stiffness of the joint
       real(wp), intent(in) :: right(n, 3)   !! Rows of the block that moves
-      real(wp), intent(inout) :: sum(n, n)  !! What is added to
+      real(wp), intent(inout) :: sum(n, n)  !! The sum
       real(wp) :: force(3)
       integer :: c, r
 

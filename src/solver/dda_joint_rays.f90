@@ -32,7 +32,7 @@ module dda_joint_rays
 
 contains
 
-   !> Which rays are bounded, and which are free
+   !> Mark the rays that are bounded, and those that are free
    pure subroutine bound_rays(graph, bounded, free)
       type(joint_graph_t), intent(in) :: graph
       !> One for rays whose factor may not be negative, zero for free and for empty ones:
@@ -57,7 +57,7 @@ contains
 
    !> The shape of the rays of a joint; those of joints with much friction are as long as the others
    pure subroutine ray_shape(kind, friction, shape, part)
-      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      integer, intent(in) :: kind       !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
       integer, intent(out) :: shape     !! Its number
       real(wp), intent(out) :: part(2)  !! Length of normal and of shear forces in them: (2)
@@ -76,7 +76,7 @@ contains
 
    !> The rays of a joint: N1, N2, T of each
    pure function joint_rays(kind, friction) result(ray)
-      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      integer, intent(in) :: kind       !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
       real(wp) :: ray(3, n_side)        !! N1, N2, T: (3, n_side)
       real(wp) :: part(2)
@@ -89,9 +89,9 @@ contains
       ray(3, :) = part(2)*shear(:, shape)
    end function joint_rays
 
-   !> What openings and slip of a joint are resisted by: the springs of its rays in one
+   !> Stiffness of a joint against openings and slip: the sum of the springs of its rays
    pure function joint_spring(kind, friction, stiffness) result(spring)
-      integer, intent(in) :: kind           !! What it can carry, one of joint_kind
+      integer, intent(in) :: kind           !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction      !! Coefficient of friction
       real(wp), intent(in) :: stiffness(:)  !! Stiffness of each ray: (n_side)
       real(wp) :: spring(3, 3)              !! Opening 1, opening 2, slip: (3, 3)
@@ -113,7 +113,7 @@ contains
 
    !> Forces of a joint from the factors of its rays
    pure function sum_of_rays(kind, friction, x) result(force)
-      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      integer, intent(in) :: kind       !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
       real(wp), intent(in) :: x(:)      !! Their factors: (n_side)
       real(wp) :: force(3)              !! N1, N2, T: (3)
@@ -132,8 +132,8 @@ contains
       end associate
    end function sum_of_rays
 
-   !> Rows of a joint as rigid bodies feel them; a block that touches itself has those of both sides
-   !> as its first
+   !> Rows of a joint for rigid bodies; a block that touches itself has those of both sides as its
+   !> first
    pure function scaled_rows(graph, j, length) result(row)
       type(joint_graph_t), intent(in) :: graph
       integer, intent(in) :: j            !! Number of the joint

@@ -35,7 +35,7 @@ module dda_joint_strips
       real(wp) :: share = 0.0_wp     !! Normal force over the strength, of the last turn
       real(wp) :: bend = 0.0_wp      !! Curvature against a change of the normal force, of that
       real(rk) :: column(3) = 0.0_rk     !! Springs of the rays against normal forces
-      real(rk) :: slack = 0.0_rk         !! Curvature, as these springs see it
+      real(rk) :: slack = 0.0_rk         !! Curvature, reduced by these springs
       real(rk) :: arm(3, 2) = 0.0_rk     !! Springs with curvature times the edges
       real(rk) :: soft(2, 2) = 0.0_rk    !! Rates of crushing by forces across the edges
    end type joint_strip_t
@@ -128,7 +128,7 @@ contains
       share = (force(1) + force(2))/strip%strength
    end function part_of_strip
 
-   !> What z1 and z2 are by the forces of the joint
+   !> Values of z1 and z2 by the forces of the joint
    pure function bear_strips(strip, x) result(z)
       type(joint_strip_t), intent(in) :: strip
       real(wp), intent(in) :: x(:, :)
@@ -138,8 +138,8 @@ contains
       z = force(1:2) - 0.5_wp*((force(1) + force(2))/strip%strength)*(force(1) + force(2))
    end function bear_strips
 
-   !> Set z1 and z2 to what they are by the forces of their joint where these hold the larger part
-   !> of them; elsewhere they are led there from turn to turn
+   !> Set z1 and z2 to their values by the forces of their joint where these hold the larger part of
+   !> them; elsewhere they approach them from turn to turn
    pure subroutine renew_strips(strip, x)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(inout) :: x(:, :)  !! Forces along the rays: (n_side, n_joint)
@@ -201,7 +201,7 @@ contains
       end do
    end subroutine see_strips
 
-   !> How far z1 and z2 of a point are from what the forces make of them
+   !> Difference between z1 and z2 of a point and their values by the forces
    pure real(wp) function strip_lack(strip, x) result(lack)
       type(joint_strip_t), intent(in) :: strip(:)
       real(wp), intent(in) :: x(:, :)
@@ -250,7 +250,8 @@ contains
       opening = [y(1) - share*(y(1) + y(2)), y(2) - share*(y(1) + y(2)), 0.0_wp]
    end function crushing
 
-   !> Put a strip into the spring of its joint. What yields is a small difference of what does not
+   !> Put a strip into the spring of its joint. The compliance is a small difference of large
+   !> stiffnesses
    pure subroutine soften_spring(stiffness, strip, spring)
       real(wp), intent(in) :: stiffness(:)        !! z/y of either edge: (2)
       type(joint_strip_t), intent(inout) :: strip !! Receives what yielding needs
@@ -299,7 +300,7 @@ contains
    pure subroutine yield_strip(strip, force, aim, y, rate)
       type(joint_strip_t), intent(in) :: strip
       real(wp), intent(in) :: force(3)       !! Forces of the rays without yielding: N1, N2, T
-      real(wp), intent(in) :: aim(2)         !! What z1 and z2 should change by without rates
+      real(wp), intent(in) :: aim(2)         !! Aimed change of z1 and z2 without rates
       real(wp), intent(out) :: y(2)          !! Rates of crushing
       real(wp), intent(out) :: rate(n_side)  !! Rates that are added to those of the rays
       real(rk) :: left(3), edge(3, 2), crushed(2)

@@ -25,7 +25,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
+      !> Load added by a factor of one: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -55,7 +55,7 @@ contains
       if (power > 0.0_wp) factor = -sum(dead*velocity)/power
    end function stopping_factor
 
-   !> How far forces are from balance with a load and from the law of the joints
+   !> Residuals of forces: of the balance with a load, and of the law of the joints
    pure subroutine check_forces(graph, load, force, imbalance, violation, part)
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (3, n_block) [N/m, N/m, N]
@@ -139,7 +139,7 @@ contains
       end do
    end function flow_margin
 
-   !> Whether a joint has a strength
+   !> True if a joint has a strength
    pure logical function is_crushed(graph, joint)
       type(joint_graph_t), intent(in) :: graph
       integer, intent(in) :: joint  !! Number of the joint
@@ -185,9 +185,9 @@ contains
          & maxval(abs(load(3, :)))/unit_of_length(graph))
    end function larger_load
 
-   !> How far the forces of one joint lie beyond its law [N/m]
+   !> Excess of the forces of one joint over its law [N/m]
    pure real(wp) function beyond_law(kind, friction, force) result(beyond)
-      integer, intent(in) :: kind       !! What it can carry, one of joint_kind
+      integer, intent(in) :: kind       !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
       real(wp), intent(in) :: force(3)  !! N1, N2, T: (3)
 
@@ -210,7 +210,7 @@ contains
       end associate
    end function beyond_law
 
-   !> How far velocities are from a mechanism, and the power of a load on them
+   !> Residual of velocities as a mechanism, and the power of a load on them
    pure subroutine check_velocities(graph, load, velocity, violation, power)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :), velocity(:, :)
@@ -236,8 +236,8 @@ contains
       violation = violation/max(largest, tiny(largest))
    end subroutine check_velocities
 
-   !> How fast one joint moves against what it resists, along the worst of its forces whose normal
-   !> part is one; of joints with much friction, whose shear part is one [m/s]
+   !> Speed of one joint against its resistance, along the worst of its forces whose normal part is
+   !> one; of joints with much friction, whose shear part is one [m/s]
    pure real(wp) function beyond_flow(kind, friction, rate) result(beyond)
       integer, intent(in) :: kind
       real(wp), intent(in) :: friction

@@ -1,9 +1,9 @@
 !> Decision of a load: forces that carry it, or a mechanism with power
 !>
 !> Forces well inside the cones of all joints carry some load. From that load a straight path leads
-!> to the one in question: it can be carried if and only if the path's largest factor is one or
-!> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
-!> reach the end of the path or velocities say that none do.
+!> to the given one: it can be carried if and only if the path's largest factor is one or more. The
+!> interior-point method starts at those forces, in balance, and stops as soon as forces reach the
+!> end of the path or velocities prove that none do.
 module dda_limit_decision
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
@@ -25,7 +25,7 @@ module dda_limit_decision
    public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
    public :: keep_velocities, resolution
 
-   !> Whether a load can be carried
+   !> Decide a load: can it be carried
    type :: load_state_enum
       integer :: undecided = 0  !! Neither is proven
       integer :: stands = 1     !! There are forces that balance it and keep the law of each joint
@@ -67,7 +67,7 @@ module dda_limit_decision
 
 contains
 
-   !> Whether a load can be carried
+   !> Decide a load: can it be carried
    pure subroutine decide_load(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
@@ -80,7 +80,7 @@ contains
       end if
    end subroutine decide_load
 
-   !> Whether joints that crush can carry a load
+   !> Decide a load on joints that crush
    pure subroutine decide_crushing(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)  !! Loads: (3, n_block) [N/m, N/m, N]
@@ -101,7 +101,7 @@ contains
       end if
    end subroutine decide_crushing
 
-   !> Whether joints that do not crush can carry a load
+   !> Decide a load on joints that do not crush
    pure subroutine decide_cones(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
@@ -125,8 +125,8 @@ contains
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
 
-   !> Whether joints that do not crush can carry a load that grows out of another one. What falls
-   !> does so in the mechanism in which it falls first, with the forces of then
+   !> Decide a load that grows out of another one, on joints that do not crush. A collapse is
+   !> reported in the mechanism in which it falls first, with the forces of then
    pure subroutine decide_on_way(graph, dead, load, tolerance, enough, decision)
       type(joint_graph_t), intent(in) :: graph
       !> The load out of which it grows: (3, n_block) [N/m, N/m, N]
@@ -161,10 +161,10 @@ contains
    pure subroutine find_margin(graph, load, tolerance, margin, unit, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: load(:, :)
-      real(wp), intent(in) :: tolerance  !! How far the margin may be off over its unit
+      real(wp), intent(in) :: tolerance  !! Permitted error of the margin over its unit
       real(wp), intent(out) :: margin    !! The margin [N/m]
       real(wp), intent(out) :: unit      !! Forces that it is small beside [N/m]
-      logical, intent(out) :: found      !! Whether it is known
+      logical, intent(out) :: found      !! True if it is known
       integer, intent(out) :: n_factorisation  !! Factorisations
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
@@ -218,7 +218,7 @@ contains
       point%state = interior_state%blocked
    end subroutine see_free_motion
 
-   !> Whether a load has more power on a motion than rounded coordinates make
+   !> True if a load has more power on a motion than rounded coordinates make
    pure logical function drives(load, velocity)
       real(wp), intent(in) :: load(:, :)      !! Loads: (:, n_block)
       real(wp), intent(in) :: velocity(:, :)  !! Velocities: (:, n_block)
@@ -227,7 +227,7 @@ contains
          & *norm2(velocity(1:2, :), dim=1))
    end function drives
 
-   !> Whether a motion neither opens joints nor closes them nor slides against friction, but for
+   !> True if a motion neither opens joints nor closes them nor slides against friction, up to
    !> rounding
    pure logical function is_free(graph, velocity)
       type(joint_graph_t), intent(in) :: graph
@@ -264,10 +264,10 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       !> Forces inside their bounds in, where the path ends out; the load is at factor one
       type(interior_point_t), intent(inout) :: point
-      !> Factorisations within which the largest factor of a path is looked for that does not reach
-      !> the load: none if absent
+      !> Factorisations within which the largest factor of a path is sought that does not reach the
+      !> load: none if absent
       integer, intent(in), optional :: to_limit
-      !> Whether the path is followed to its end, beyond the load; else the load will do
+      !> True if the path is followed to its end, beyond the load; else to the load
       logical, intent(in), optional :: whole
       type(interior_goal_t) :: goal
       type(load_path_t) :: path
@@ -320,7 +320,7 @@ contains
       velocity(3, :) = v(3, 1:)/(largest*unit_of_length(graph))
    end subroutine keep_velocities
 
-   !> What the end of a path to a load at factor one proves; forces that reach it but for rounding
+   !> State proven by the end of a path to a load at factor one; forces that reach it up to rounding
    !> carry it
    pure integer function state_at_end(point) result(state)
       type(interior_point_t), intent(in) :: point  !! Where the path has ended

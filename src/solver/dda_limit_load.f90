@@ -31,7 +31,7 @@ module dda_limit_load
       type(joint_graph_t) :: graph
       !> One for rays whose force may not be negative, and for rays of any sign: (n_side, n_joint)
       integer(int8), allocatable :: bounded(:, :), free(:, :)
-      !> Springs that tell how far the forces are from their bounds
+      !> Springs that measure the distance of forces from their bounds
       type(ray_matrix_t) :: springs
       !> Masses, none: (3, 0:n_block)
       real(wp), allocatable :: mass(:, :)
@@ -42,7 +42,7 @@ module dda_limit_load
       real(wp) :: unit = 1.0_wp
    end type load_walk_t
 
-   !> How a search for a limit load has ended
+   !> End of a search for a limit load
    type :: limit_state_enum
       integer :: not_converged = 0        !! The two factors do not agree to the tolerance
       integer :: found = 1                !! They do
@@ -92,7 +92,7 @@ module dda_limit_load
          integer, intent(in) :: joint
          !> Least and greatest thrust: (2) [N/m]
          real(wp), intent(out) :: thrust(2)
-         !> Which of the two there are: one may have no bound
+         !> True for those of the two that exist: one may have no bound
          logical, intent(out) :: known(2)
       end subroutine find_thrust_range
 
@@ -122,12 +122,12 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
+      !> Load added by a factor of one: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)
       !> Relative gap of the two factors
       real(wp), intent(in) :: tolerance
       type(limit_load_t), intent(out) :: limit
-      !> Whether the dead load is taken to stand
+      !> True if the dead load is taken to stand
       logical, intent(in), optional :: stands
       logical :: decided
 
@@ -144,9 +144,10 @@ contains
    pure subroutine limit_crushing(graph, dead, live, tolerance, stands, limit)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :)  !! Loads at factor zero: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: live(:, :)  !! What a factor of one adds: (3, n_block) [N/m, N/m, N]
+      !> Load added by a factor of one: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: live(:, :)
       real(wp), intent(in) :: tolerance
-      logical, intent(in) :: stands       !! Whether the dead load is taken to stand
+      logical, intent(in) :: stands       !! True if the dead load is taken to stand
       type(limit_load_t), intent(out) :: limit
       type(joint_graph_t) :: joints
       real(wp) :: unit
@@ -160,12 +161,12 @@ contains
          & widest)) limit%state = limit_state%not_converged
    end subroutine limit_crushing
 
-   !> Whether two factors agree, and the forces keep the law of joints that crush
+   !> True if two factors agree, and the forces keep the law of joints that crush
    pure logical function agree(limit, gap, violation)
       type(limit_load_t), intent(in) :: limit
       !> Relative gap
       real(wp), intent(in) :: gap
-      !> How far forces may be beyond a law, over the largest load
+      !> Permitted excess of forces over a law, over the largest load
       real(wp), intent(in) :: violation
 
       agree = limit%upper - limit%lower <= gap*max(abs(limit%lower), abs(limit%upper)) &
@@ -211,7 +212,7 @@ contains
    pure subroutine raise_live_load(graph, dead, live, tolerance, far, springs, point)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
-      !> Whether live loads far larger than the dead load are within bounds
+      !> True if live loads far larger than the dead load are within bounds
       logical, intent(in) :: far
       type(ray_matrix_t), intent(inout) :: springs
       !> Where forces carry the dead load in, where the live load ends out
@@ -301,7 +302,7 @@ contains
          limit%upper = limit%upper + flow_margin(graph, limit%force, limit%velocity)/power
          rounding = 8.0_wp*spacing(max(abs(limit%lower), abs(limit%upper)))
          limit%lower = limit%lower - rounding
-         ! the dead load stands, but for rounding
+         ! the dead load stands, up to rounding
          limit%upper = max(limit%upper + rounding, 0.0_wp)
       end select
    end subroutine certify

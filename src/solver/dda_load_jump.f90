@@ -18,7 +18,7 @@ module dda_load_jump
    public :: balance_rest, far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance
    public :: share_anew
 
-   !> How a motion ends
+   !> End of a motion
    type :: motion_end_enum
       !> It did not settle
       integer :: unsettled = 0
@@ -33,7 +33,7 @@ module dda_load_jump
    !> Names of the ends
    type(motion_end_enum), parameter :: motion_end = motion_end_enum()
 
-   !> What a motion is told and what it tells
+   !> Input and output of a motion
    type :: jump_t
       !> Balance is where no more than this is left of the load
       real(wp) :: tolerance = 0.0_wp
@@ -89,18 +89,18 @@ contains
       & gained, end, opening_rate)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> What grows of the load: (3, n_block)
+      !> Growing part of the load: (3, n_block)
       real(wp), intent(in) :: load_rate(:, :)
-      !> By how much
+      !> Its growth
       real(wp), intent(in) :: width
-      !> How much is asked for
+      !> Required growth
       real(wp), intent(in) :: left
-      !> The state, left as it is unless another in balance is found
+      !> The state, unchanged unless another one in balance is found
       type(coulomb_state_t), intent(inout) :: state
       type(jump_t), intent(inout) :: jump
-      !> How much was gained
+      !> Growth that was gained
       real(wp), intent(out) :: gained
-      !> How the motion ends, one of motion_end
+      !> End of the motion, one of motion_end
       integer, intent(out) :: end
       !> Openings that grow with the load, none if absent: (3, n_joint)
       real(wp), intent(in), optional :: opening_rate(:, :)
@@ -121,7 +121,7 @@ contains
          fall = end
          gained = nudge
          call try_nudge(joints, equations, load_rate, gained, state, jump, moved, end, opening_rate)
-         ! what does not settle falls as it does by a little more
+         ! a motion that does not converge ends as with a little more growth
          if (end == motion_end%unsettled) end = fall
       end if
       if (end == motion_end%balanced .and. gained > left) then
@@ -136,7 +136,7 @@ contains
       equations%most_pivots = most_pivots
    end subroutine nudge_to_balance
 
-   !> Take away what the forces leave of the load, but for rounding
+   !> Remove the unbalanced part of the load, beyond rounding
    pure subroutine balance_rest(joints, equations, state)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -158,7 +158,7 @@ contains
       end do
    end subroutine balance_rest
 
-   !> Let the blocks share out anew what a joint has ceased to carry, at the same load
+   !> Redistribute the force that a joint has ceased to carry, at the same load
    pure subroutine share_anew(joints, equations, far, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -178,7 +178,7 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load_rate(:, :)
-      real(wp), intent(in) :: more  !! By how much
+      real(wp), intent(in) :: more  !! Its growth
       type(coulomb_state_t), intent(in) :: state
       type(jump_t), intent(inout) :: jump
       type(coulomb_state_t), intent(out) :: moved
@@ -196,12 +196,12 @@ contains
       call jump_to_balance(joints, equations, state%motion, moved, jump, end)
    end subroutine try_nudge
 
-   !> Move from event to event at a load that does not change. Where friction lets forces drop, only
-   !> motion that is damped enough has rates: damping rises until it has, and falls again with every
-   !> step that meets no event. It is that of joints, in proportion to their stiffness: parts of the
-   !> assembly that move as one are free while no joint snaps. What is minor beside what is left of
-   !> the load is no event: far from what moves, joints at their limits change what they do by
-   !> rounding alone, and would for ever
+   !> Move from event to event at a constant load. Where friction lets forces drop, only motion that
+   !> is damped enough has rates: damping rises until it has, and falls again with every step that
+   !> meets no event. It is that of joints, in proportion to their stiffness: parts of the assembly
+   !> that move as one are free while no joint snaps. Events that are minor beside the unbalanced
+   !> load do not count: far from the moving blocks, joints at their limits change their faces by
+   !> rounding alone, without end
    pure subroutine jump_to_balance(joints, equations, start, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -262,7 +262,7 @@ contains
    pure type(event_t) function next_turn(joints, state, rest, rates) result(event)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (3, n_block)
+      real(wp), intent(in) :: rest(:, :)  !! Unbalanced load: (3, n_block)
       type(rates_t), intent(in) :: rates
       real(wp) :: minor
 
@@ -274,7 +274,7 @@ contains
 
    !> Leave out what is next to nothing of what forces leave of a load
    pure subroutine leave_minor(rest)
-      real(wp), intent(inout) :: rest(:, :)  !! What forces leave: (3, n_block)
+      real(wp), intent(inout) :: rest(:, :)  !! Unbalanced load: (3, n_block)
       real(wp) :: minor
       integer :: b
 
@@ -284,11 +284,11 @@ contains
       end do
    end subroutine leave_minor
 
-   !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
-   !> that they leave of the load are the same but for a factor; at least one
+   !> Number of steps along rates, each of which would bring balance without damping: while the
+   !> unbalanced forces are the same up to a factor; at least one
    pure real(wp) function stride(joints, rest, rates)
       type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: rest(:, :)  !! What the forces leave of the load: (3, n_block)
+      real(wp), intent(in) :: rest(:, :)  !! Unbalanced load: (3, n_block)
       type(rates_t), intent(in) :: rates
       real(wp), parameter :: bend = 0.3_wp
       real(wp) :: change(size(rest, 1), size(rest, 2)), share, largest
@@ -304,8 +304,8 @@ contains
       stride = max(1.0_wp, stride)
    end function stride
 
-   !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
-   !> blocks have fallen by all that it went
+   !> Check if a motion has come to balance, or far. If a far one has no proof of being endless, the
+   !> blocks have collapsed by its distance
    pure subroutine see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -313,7 +313,7 @@ contains
       real(wp), intent(in) :: start(:, :)  !! Motion where it began: (3, n_block)
       type(coulomb_state_t), intent(in) :: state
       real(wp), intent(in) :: far          !! A motion beyond this is far
-      !> Whether the last step was to bring balance: then only forces that are none may be left
+      !> True if the last step should bring balance: then only negligible forces may be left
       logical, intent(in) :: whole
       !> Rates, other ones where the motion is far
       type(rates_t), intent(inout) :: rates
@@ -339,7 +339,7 @@ contains
       jump%mechanism = state%motion - start
    end subroutine see_end
 
-   !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
+   !> Follow a motion with constant forces: to the next gap that closes, or without end
    pure subroutine see_ray(joints, state, rest, rates, event, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state

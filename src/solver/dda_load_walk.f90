@@ -1,8 +1,8 @@
 !> Forces carried from one load to another
 !>
 !> Of many loads most differ little from another one. Forces well inside the cones of all joints
-!> that carry one load carry those near it after one correction, the smallest in units of how far
-!> each force is from its bound; to loads farther away they are led by the interior-point method,
+!> that carry one load carry those near it after one correction, the smallest in units of the
+!> distance of each force from its bound. For loads farther away the interior-point method follows,
 !> which ends as soon as forces or velocities prove something.
 !>
 !>    A X X A' v = load + A x,    x - X X A' v >= 0
@@ -71,11 +71,11 @@ contains
          & .and. size(walk%springs%strip) == 0), size_of_load(scaled), walk)
    end procedure walk_to
 
-   !> Whether a correction carries the forces to a load
+   !> Carry the forces to a load by a correction, if possible
    pure subroutine try_correction(scaled, walk, carried)
       real(wp), intent(in) :: scaled(:, 0:)     !! The load in the units of the rays: (3, 0:n_block)
       type(load_walk_t), intent(inout) :: walk  !! The walk, whose springs are those of its forces
-      logical, intent(out) :: carried           !! Whether forces inside all bounds balance the load
+      logical, intent(out) :: carried           !! True if forces inside all bounds balance the load
       real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
       real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
       integer :: i, turn
@@ -98,8 +98,8 @@ contains
       end do
    end subroutine try_correction
 
-   !> Draw the forces away from their bounds, and factor the springs that tell how far they are from
-   !> them. Forces that hold one another could grow without end: none is drawn beyond a size
+   !> Draw the forces away from their bounds, and factor the springs that measure their distance.
+   !> Forces that hold one another could grow without end: none is drawn beyond a size
    pure subroutine centre(n_step, largest, walk)
       integer, intent(in) :: n_step    !! Steps
       real(wp), intent(in) :: largest  !! The size

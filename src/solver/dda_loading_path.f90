@@ -1,5 +1,5 @@
-!> The loading path under Coulomb friction: dead loads at once, live loads from event to event,
-!> with slip remembered
+!> The loading path under Coulomb friction: dead loads at once, live loads from event to event, with
+!> the history of slip
 !>
 !>    call new_path(graph, load, path)
 !>    call apply_dead_load(dead_load, path, state, result)
@@ -31,7 +31,7 @@ module dda_loading_path
    public :: loading_path_t, path_rate_t, path_result_t, path_reason, path_reason_enum
    public :: apply_dead_load, follow_path, new_path, load_at_once
 
-   !> What proves a collapse, or prevents a decision
+   !> Proof of a collapse, or cause of a missing decision
    type :: path_reason_enum
       integer :: none = 0              !! The end was reached
       integer :: mechanism = 1         !! A motion that nothing stops and that the load drives
@@ -44,7 +44,7 @@ module dda_loading_path
    !> Names of the reasons
    type(path_reason_enum), parameter :: path_reason = path_reason_enum()
 
-   !> What is made once for an assembly
+   !> Data that are made once per assembly
    type :: loading_path_t
       private
       !> Its joints in units of their own
@@ -59,7 +59,7 @@ module dda_loading_path
       integer, public :: most_factorisations = 0
    end type loading_path_t
 
-   !> What grows along a path
+   !> Growing load of a path
    type :: path_rate_t
       !> Load: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: load(:, :)
@@ -67,13 +67,13 @@ module dda_loading_path
       real(wp), allocatable :: opening(:, :)
    end type path_rate_t
 
-   !> How a path went
+   !> Result of a path
    type :: path_result_t
       !> One of path_end
       integer :: end = 0
       !> One of path_reason
       integer :: reason = 0
-      !> How far it came, as a multiple of the rate
+      !> Its length, as a multiple of the rate
       real(wp) :: reached = 0.0_wp
       !> Joints that changed what they do
       integer :: n_event = 0
@@ -107,12 +107,13 @@ module dda_loading_path
 
    interface
 
-      !> See how soft an assembly is: how far its blocks go by a load while no joint changes. Tall
-      !> columns bend so far that damping which others do not feel would hold them
+      !> Measure the compliance of an assembly: the motion of its blocks by a load while no joint
+      !> changes. Tall columns bend so far that damping which is negligible for others would hold
+      !> them
       pure module subroutine see_softness(joints, equations, load, state)
          type(coulomb_joints_t), intent(in) :: joints
          type(coulomb_equations_t), intent(inout) :: equations  !! Receive their damping at rest
-         real(wp), intent(in) :: load(:, :)                     !! What grows: (3, n_block)
+         real(wp), intent(in) :: load(:, :)                     !! Growing load: (3, n_block)
          type(coulomb_state_t), intent(in) :: state
       end subroutine see_softness
 
@@ -122,17 +123,17 @@ module dda_loading_path
          type(coulomb_equations_t), intent(inout) :: equations
          real(wp), intent(in) :: load(:, :)   !! The load: (3, n_block)
          type(coulomb_state_t), intent(out) :: state
-         type(jump_t), intent(inout) :: jump  !! What a motion tells, where one was needed
-         integer, intent(out) :: end          !! How it ends, one of motion_end
+         type(jump_t), intent(inout) :: jump  !! Output of a motion, where one was needed
+         integer, intent(out) :: end          !! Its end, one of motion_end
       end subroutine load_at_once
 
    end interface
 
 contains
 
-   !> What is made once for an assembly
+   !> Data that are made once per assembly
    pure subroutine new_path(graph, load, path)
-      !> Its joints, which the path takes over
+      !> Its joints; the path moves them
       type(joint_graph_t), intent(inout) :: graph
       !> A load that it carries, for the scale of forces: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
@@ -150,7 +151,7 @@ contains
       type(loading_path_t), intent(inout) :: path
       !> The state, where one was reached
       type(coulomb_state_t), intent(out) :: state
-      !> How it went; "reached" is 1 for the whole load
+      !> Its result; "reached" is 1 for the whole load
       type(path_result_t), intent(out) :: result
       type(jump_t) :: jump
       type(path_rate_t) :: rate
@@ -178,13 +179,13 @@ contains
 
    !> Follow a load, or supports that move, from a state in balance
    pure subroutine follow_path(path, state, rate, h_end, result)
-      !> What was made once
+      !> Data that were made once
       type(loading_path_t), intent(inout) :: path
-      !> In: a state in balance; out: the last one in balance on the way, whole but for what has
-      !> broken as it fell
+      !> In: a state in balance; out: the last one in balance on the way, with what has broken in
+      !> the collapse
       type(coulomb_state_t), intent(inout) :: state
       type(path_rate_t), intent(in) :: rate
-      !> How much of it is asked for, as a multiple
+      !> Required multiple of it
       real(wp), intent(in) :: h_end
       type(path_result_t), intent(out) :: result
       type(path_rate_t) :: way
@@ -241,7 +242,7 @@ contains
    pure subroutine follow(path, first, way, h_end, state, result)
       type(loading_path_t), intent(inout) :: path
       real(wp), intent(in) :: first(:, :)  !! Load at the beginning: (3, n_block)
-      !> What grows, in units of the joints; the largest force is one
+      !> Growing load, in units of the joints; the largest force is one
       type(path_rate_t), intent(in) :: way
       real(wp), intent(in) :: h_end
       type(coulomb_state_t), intent(inout) :: state
@@ -309,10 +310,10 @@ contains
    !> Go on by a jump
    pure subroutine jump_on(path, state, way, width, h_end, result)
       type(loading_path_t), intent(inout) :: path
-      !> The state, left as it is unless another in balance is found
+      !> The state, unchanged unless another one in balance is found
       type(coulomb_state_t), intent(inout) :: state
       type(path_rate_t), intent(in) :: way
-      !> By how much, to see how the blocks move; out: by how much they did
+      !> Growth of the load by which the blocks are set in motion; out: the growth that was reached
       real(wp), intent(inout) :: width
       !> Where the path ends
       real(wp), intent(in) :: h_end
@@ -335,9 +336,9 @@ contains
       end if
    end subroutine jump_on
 
-   !> What a fall, or a motion that did not settle, means for a path
+   !> Result of a path that ends by a collapse, or by a motion that did not converge
    pure subroutine note_fall(end, jump, result)
-      integer, intent(in) :: end  !! How the motion ended
+      integer, intent(in) :: end  !! End of the motion
       type(jump_t), intent(in) :: jump
       type(path_result_t), intent(inout) :: result
 

@@ -10,7 +10,7 @@ module dda_path_event
    public :: event_t, event_kind, event_kind_enum, path_end
    public :: go_back, hold_forces, move_on, next_event
 
-   !> What can happen to a joint
+   !> Events of a joint
    type :: event_kind_enum
       integer :: none = 0         !! Nothing
       integer :: opens = 1        !! A corner no longer pushes
@@ -24,13 +24,13 @@ module dda_path_event
 
    !> The next change of a joint
    type :: event_t
-      real(wp) :: distance = 0.0_wp  !! How far off it is
-      integer :: kind = 0            !! What happens
+      real(wp) :: distance = 0.0_wp  !! Its distance
+      integer :: kind = 0            !! Kind of event
       integer :: joint = 0           !! To which joint
       integer :: corner = 0          !! At which corner, where one opens or closes
    end type event_t
 
-   !> How a path ends
+   !> End of a path
    type :: path_end_enum
       integer :: undecided = 0  !! It is not known whether the assembly stands
       integer :: reached = 1    !! The end was reached, forces balance
@@ -40,7 +40,7 @@ module dda_path_event
    !> Names of the ends of a path
    type(path_end_enum), parameter :: path_end = path_end_enum()
 
-   !> What an event must surpass to count
+   !> Least size of an event that counts
    type :: least_t
       real(wp) :: longest = 0.0_wp  !! Distance within which it counts
       real(wp) :: slow = 0.0_wp     !! Rates of force up to this are none
@@ -55,8 +55,8 @@ module dda_path_event
 
 contains
 
-   !> Rates of a motion that goes on with forces that stay as they are: what moves does so a million
-   !> times as fast as joints deform, and the rounding of its openings is no force
+   !> Rates of a motion with constant forces: blocks move a million times as fast as joints deform,
+   !> and the rounding of its openings is no force
    pure subroutine hold_forces(rates)
       type(rates_t), intent(inout) :: rates
       real(wp), parameter :: rounding = 1.0e-8_wp
@@ -114,10 +114,10 @@ contains
 
    !> Take an event that comes before the others: something positive falls to zero
    pure subroutine meet(rest, rate, least, kind, joint, corner, event)
-      real(wp), intent(in) :: rest        !! What falls, as a force
+      real(wp), intent(in) :: rest        !! Falling quantity, as a force
       real(wp), intent(in) :: rate        !! Its rate
-      type(least_t), intent(in) :: least  !! What it must surpass
-      integer, intent(in) :: kind         !! What happens at zero
+      type(least_t), intent(in) :: least  !! Its least size
+      integer, intent(in) :: kind         !! Event at zero
       integer, intent(in) :: joint        !! Number of the joint
       integer, intent(in) :: corner       !! Corner of the joint, or 0
       type(event_t), intent(inout) :: event
@@ -189,11 +189,12 @@ contains
          & call break_joint(joints, j, state)
    end subroutine move_on
 
-   !> Go back from a fall to where it broke: forces are those just before, what has broken is told
+   !> Go back from a collapse to where it broke: forces are those just before, with the joints that
+   !> broke
    pure subroutine go_back(joints, rates, event, last, state)
       type(coulomb_joints_t), intent(in) :: joints
       type(rates_t), intent(in) :: rates             !! Rates that led to the event
-      type(event_t), intent(in) :: event             !! What broke a joint
+      type(event_t), intent(in) :: event             !! Event that broke a joint
       type(coulomb_state_t), intent(in) :: last      !! State after the event before
       type(coulomb_state_t), intent(inout) :: state  !! With the load at the event
       type(coulomb_state_t) :: there
@@ -211,7 +212,7 @@ contains
    pure subroutine take_shear(joints, j, does, trial, state)
       type(coulomb_joints_t), intent(in) :: joints
       integer, intent(in) :: j       !! Number of the joint
-      integer(small), intent(in) :: does    !! What it does along itself
+      integer(small), intent(in) :: does    !! Its state along itself
       real(wp), intent(in) :: trial  !! The force if it sticks
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: bond(3), bound

@@ -48,7 +48,7 @@ contains
       law%loose = loose(:n)
    end procedure set_rate_law
 
-   !> What joints do with rates of opening
+   !> Faces of joints with given rates of opening
    module procedure follow_law
       real(wp) :: beyond(2), margin
       integer(small) :: before(3, size(faces, 2))
@@ -56,8 +56,8 @@ contains
 
       before = faces
       faces = law%given
-      ! what is closed or sticks does so until it would do more than rounding makes, what is open or
-      ! slides until it would not
+      ! closed and stuck faces remain until a change exceeds rounding, open and sliding ones until
+      ! it does not
       do k = 1, size(law%loose)
          j = law%loose(k)
          do i = 1, 2
@@ -79,12 +79,12 @@ contains
       end do
    end procedure follow_law
 
-   !> How fast a joint that sticks would go beyond its limits
+   !> Rate at which a joint that sticks would exceed its limits
    pure function beyond_limit(joints, j, ends, opening) result(beyond)
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
-      !> What its corners do: (2)
+      !> States of its corners: (2)
       integer(small), intent(in) :: ends(2)
       !> Rates of opening 1, opening 2, slip
       real(wp), intent(in) :: opening(3)
@@ -135,8 +135,8 @@ contains
       integer, intent(in) :: j
       integer(small), intent(in) :: faces(:, :)
       real(wp), intent(in) :: opening(:, :), change(:, :)
-      !> How far off it is that corner 1, corner 2, positive and negative sliding change, and how
-      !> fast they come there; a rate of zero where nothing changes
+      !> Distances to changes of corner 1, corner 2, positive and negative sliding, and rates of
+      !> approach; a rate of zero where nothing changes
       real(wp), intent(out) :: far(4), rate(4)
       real(wp) :: beyond(2), sense
       integer :: i
@@ -163,7 +163,7 @@ contains
       where (rate > 0.0_wp) far = max(0.0_wp, far)/rate
    end subroutine see_bends
 
-   !> How fast what decides a bend rises along a line
+   !> Rate along a line of the quantity that decides a bend
    module procedure break_rate
       real(wp) :: rate(2)
 

@@ -27,9 +27,9 @@ module dda_ray_matrix
       type(block_factor_t) :: factor
       !> Numbers of the factor with more digits
       real(rk), allocatable :: wide(:)
-      !> Whether that one is used
+      !> True if that one is used
       logical :: is_wide = .false.
-      !> Whether the one that is used can be
+      !> True if the factor exists
       logical :: usable = .false.
       !> Unit of length: [m]
       real(wp) :: length = 1.0_wp
@@ -179,11 +179,11 @@ contains
       next = next + 1
    end subroutine soften
 
-   !> sum = sum + a b', the lower triangle alone: no more is looked at of a diagonal block
+   !> sum = sum + a b', the lower triangle alone, the only part used of a diagonal block
    pure subroutine add_lower(a, b, sum)
       real(wp), intent(in) :: a(3, 3)       !! First factor
       real(wp), intent(in) :: b(3, 3)       !! Second factor, transposed
-      real(wp), intent(inout) :: sum(3, 3)  !! What it is added to
+      real(wp), intent(inout) :: sum(3, 3)  !! The sum
 
       sum(:, 1) = sum(:, 1) + (a(:, 1)*b(1, 1) + a(:, 2)*b(1, 2) + a(:, 3)*b(1, 3))
       sum(2:, 2) = sum(2:, 2) + (a(2:, 1)*b(2, 1) + a(2:, 2)*b(2, 2) + a(2:, 3)*b(2, 3))

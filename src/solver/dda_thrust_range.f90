@@ -49,7 +49,7 @@ contains
    pure subroutine split_graph(graph, joint, side, split)
       type(joint_graph_t), intent(in) :: graph
       integer, intent(in) :: joint
-      integer, intent(in) :: side  !! Its block, 1 or 2, from which it is parted
+      integer, intent(in) :: side  !! Its block, 1 or 2, from which it is separated
       type(joint_graph_t), intent(out) :: split
       integer :: n
 

@@ -23,7 +23,7 @@ contains
       !> Couplings, rows of the first block of each pair: (3, 3, n_entry)
       real(rk), intent(in) :: coupling(:, :, :)
       real(rk), allocatable, intent(inout) :: number(:)  !! Numbers of the panels
-      logical, intent(out) :: usable                     !! Whether all pivots are positive
+      logical, intent(out) :: usable                     !! True if all pivots are positive
       integer :: b, e, height, p
 
       if (.not. allocated(number)) allocate (number(plan%start(size(plan%start)) - 1))
@@ -148,7 +148,7 @@ contains
    pure subroutine substitute_panel(width, height, panel, back, z)
       integer, intent(in) :: width, height
       real(rk), intent(in) :: panel(height, width)  !! The panel
-      logical, intent(in) :: back               !! Whether with the transpose
+      logical, intent(in) :: back               !! True if with the transpose
       real(rk), intent(inout) :: z(height)      !! Right-hand side in, solution out
       integer :: c
 
