@@ -1,6 +1,6 @@
 !> Decision of a case: as a chain, by stages, or from a restart; and its frames
 submodule (dda_compute_case) dda_case_decision
-   use dda_chain_decision, only : decide_chain
+   use dda_chain_decision, only : decide_chain, show_first_motion
    use dda_decision, only : decide, decide_in_stages, enter_stage
    use dda_deck, only : source_of
    use dda_deck_scene, only : deck_scene
@@ -21,8 +21,9 @@ contains
       type(decision_t) :: proof
       type(scene_t) :: begun
       real(wp) :: last
-      logical :: decided
+      logical :: decided, told
 
+      told = .false.
       decided = this%family%chains &
          & .and. .not. this%family%chain_settings%collapse_displacement > 0.0_wp
       associate (critical => this%critical)
@@ -33,13 +34,20 @@ contains
             & this%decision, decided, critical%deficit)
       end associate
       if (decided) then
-         ! tables have displacements, and a collapse its first motion, which a chain does not keep
-         if (this%decision%outcome%verdict /= verdict%collapsed .and. this%family%decides_chains &
-            & .and. .not. this%tells_tables) return
+         ! tables have displacements, which a chain that stands does not keep. Loads that grow have
+         ! the mechanism of the first one at which the chain collapses
+         told = this%decision%outcome%verdict /= verdict%collapsed
+         if (.not. told .and. this%plan%halved) call show_first_motion( &
+            & this%critical%link%chain, this%critical%deficit, this%decision, told)
+         if (told .and. this%family%decides_chains .and. .not. this%tells_tables) return
          proof = this%decision
          call unfold(proof)
       end if
       call deck_scene(this%family%deck, this%scene)
+      if (told .and. proof%outcome%verdict == verdict%collapsed) then
+         this%decision%system = this%scene%system
+         return
+      end if
       call plan_fall(this)
       associate (scene => this%scene, boundary => this%scene%settings%boundary)
          if (scene%settings%dynamic .and. this%family%deck%value(output_reactions)%flag) &

@@ -3,8 +3,10 @@
 module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : cone_of
+   use dda_chain_fall, only : chain_fall_t, find_chain_fall
    use dda_chain_path, only : stick_all_along
-   use dda_chain_programme, only : deficit_t, find_deficit, mechanism_of_bounds
+   use dda_chain_programme, only : deficit_t, find_deficit, mechanism_of_bounds, &
+      & open_bounds
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
    use dda_limit_decision, only : load_state
@@ -13,7 +15,7 @@ module dda_chain_decision
    implicit none
    private
 
-   public :: decide_chain, unfold
+   public :: decide_chain, show_first_motion, unfold
 
 contains
 
@@ -97,6 +99,46 @@ contains
          outcome%rest_tolerance = outcome%acceleration_ratio*deficit%noise/deficit%least
       end associate
    end subroutine show_mechanism
+
+   !> Replace the mechanism of a collapse, which stays its certificate, by the first motion and its
+   !> forces
+   pure subroutine show_first_motion(chain, deficit, decision, found)
+      type(chain_t), intent(in) :: chain
+      type(deficit_t), intent(in) :: deficit
+      !> Its decision as a chain in; out, that of all blocks
+      type(decision_t), intent(inout) :: decision
+      !> True if it was found, without slip: sliding changes it under Coulomb friction
+      logical, intent(out) :: found
+      type(decision_t) :: proof
+      type(chain_fall_t) :: fall
+      real(wp) :: largest
+      integer :: j
+
+      call find_chain_fall(chain, deficit, fall, found)
+      if (found) found = all(fall%bound(:fall%n_open) <= 2)
+      if (.not. found) return
+      proof = decision
+      call unfold(proof)
+      associate (contacts => decision%contacts, outcome => decision%outcome, n => fall%n_open)
+         call open_bounds(chain, fall%joint(:n), fall%bound(:n), fall%share(:n), contacts%face, &
+            & contacts%increment)
+         call move_blocks(chain, contacts%increment, outcome%motion)
+         largest = maxval(abs(outcome%motion(1:2, :)))
+         outcome%motion = outcome%motion/largest
+         contacts%increment = contacts%increment/largest
+         contacts%force = fall%force
+         contacts%gap = 0.0_wp
+         do j = 1, size(contacts%face)
+            where (contacts%face(j)%open)
+               contacts%gap(:2, j) = contacts%increment(:2, j)
+               contacts%force(:2, j) = 0.0_wp
+            end where
+            if (all(contacts%face(j)%open)) contacts%force(3, j) = 0.0_wp
+         end do
+      end associate
+      call unfold(decision)
+      decision%limit = proof%limit
+   end subroutine show_first_motion
 
    !> Motion of the blocks from the left springing on, one joint after the other; the last joint
    !> gets the openings that close the row

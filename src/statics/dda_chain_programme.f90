@@ -22,7 +22,7 @@ module dda_chain_programme
    implicit none
    private
 
-   public :: deficit_t, find_deficit, mechanism_of_bounds
+   public :: bound_arms, deficit_t, find_deficit, mechanism_of_bounds, open_bounds
 
    !> Solution of the programme
    type :: deficit_t
@@ -126,26 +126,38 @@ contains
       real(wp), intent(out) :: opening(3, size(chain%joint))
       real(wp), intent(out) :: power  !! Power of the loads on it
       real(wp) :: largest
-      integer :: r
 
-      opening = 0.0_wp
-      do r = 1, 4
-         if (deficit%joint(r) == 0 .or. deficit%share(r) <= no_share) cycle
-         associate (j => deficit%joint(r), bound => deficit%bound(r), share => deficit%share(r))
-            if (bound <= 2) then
-               face(j)%open(bound) = .true.
-               opening(bound, j) = opening(bound, j) + share
-            else
-               face(j)%slip = merge(1, -1, bound == 3)
-               opening(:, j) = opening(:, j) + share*[chain%joint(j)%friction, &
-                  & chain%joint(j)%friction, -real(face(j)%slip, wp)]
-            end if
-         end associate
-      end do
+      call open_bounds(chain, deficit%joint, deficit%bound, deficit%share, face, opening)
       largest = max(maxval(abs(opening)), tiny(1.0_wp))
       opening = opening/largest
       power = deficit%least/largest
    end subroutine mechanism_of_bounds
+
+   !> Openings and slips of joints whose bounds open, and the faces of the joints
+   pure subroutine open_bounds(chain, joint, bound, share, face, opening)
+      type(chain_t), intent(in) :: chain
+      integer, intent(in) :: joint(:), bound(:)   !! Joints and numbers of the bounds: (n)
+      real(wp), intent(in) :: share(:)            !! Their openings: (n) [m]
+      type(joint_face_t), intent(out) :: face(:)  !! The faces: (n + 1)
+      !> Opening 1, opening 2 and slip: (3, n + 1) [m]
+      real(wp), intent(out) :: opening(3, size(chain%joint))
+      integer :: r
+
+      opening = 0.0_wp
+      do r = 1, size(joint)
+         if (joint(r) == 0 .or. share(r) <= no_share*maxval(share)) cycle
+         associate (j => joint(r))
+            if (bound(r) <= 2) then
+               face(j)%open(bound(r)) = .true.
+               opening(bound(r), j) = opening(bound(r), j) + share(r)
+            else
+               face(j)%slip = merge(1, -1, bound(r) == 3)
+               opening(:, j) = opening(:, j) + share(r)*[chain%joint(j)%friction, &
+                  & chain%joint(j)%friction, -real(face(j)%slip, wp)]
+            end if
+         end associate
+      end do
+   end subroutine open_bounds
 
    !> Begin with the given bounds, or where they do not do with such as keep the unknowns finite; a
    !> smooth plane of symmetry bears no weight
@@ -303,18 +315,27 @@ contains
       integer, intent(in) :: joint  !! Number of the joint
       integer, intent(in) :: bound
       real(wp) :: row(4)            !! The row
+
+      row = [bound_arms(chain, joint, bound), 1.0_wp]
+      if (chain%halved) row(2) = 0.0_wp
+   end function bound_row
+
+   !> Coefficients of the unknowns in the force of a bound. They are the motion, about the origin,
+   !> of the blocks behind the joint as the bound opens
+   pure function bound_arms(chain, joint, bound) result(arms)
+      type(chain_t), intent(in) :: chain
+      integer, intent(in) :: joint, bound  !! Numbers of the joint and of its bound
+      real(wp) :: arms(3)                  !! The coefficients: (3)
       real(wp) :: g(3, 3)
 
       g = influence(chain, joint)
       if (bound <= 2) then
-         row(:3) = g(bound, :)
+         arms = g(bound, :)
       else
-         row(:3) = chain%joint(joint)%friction*(g(1, :) + g(2, :)) &
+         arms = chain%joint(joint)%friction*(g(1, :) + g(2, :)) &
             & + merge(-1, 1, bound == 3)*g(3, :)
       end if
-      if (chain%halved) row(2) = 0.0_wp
-      row(4) = 1.0_wp
-   end function bound_row
+   end function bound_arms
 
    !> The bound whose multiplier vanishes first as another one's grows, of several the first in
    !> order; 0 if none does

@@ -597,6 +597,25 @@ def test_hinges_of_a_collapse_are_those_of_its_row(tmp_path: Path) -> None:
         assert sorted({abs(joint["angle_deg"]) for joint in turning}) == angles(row, column)
 
 
+@pytest.mark.parametrize(
+    "arch", ["thickness_ratio = 0.1", "thickness_ratio = 0.05", "voussoirs = 35, thickness_ratio = 0.09",
+             "half_angle_deg = 140, thickness_ratio = 0.2"]
+)
+def test_collapse_of_a_chain_is_that_of_its_joint_graph(tmp_path: Path, arch: str) -> None:
+    # gravity that tilts is left to the joint graph, whose interior point ends at 1e-11
+    tilted = "&load gravity_direction_deg = -90.0000000001 /\n&analysis flow = 'associated' /\n"
+    run_deck(tmp_path, f"&arch {arch} /\n{tilted}")
+    graph = {name: read_table(tmp_path / "deck" / name)[1] for name in ("blocks.csv", "joints.csv")}
+    row = run_deck(tmp_path, f"&arch {arch} /\n")[0]
+    assert row["verdict"] == "collapsed" and row["factorisations"] == "0"
+    for name, columns in (("blocks.csv", ("u", "v")), ("joints.csv", ("normal_force", "shear_force"))):
+        chain = read_table(tmp_path / "deck" / name)[1]
+        largest = max(abs(value) for row in chain for value in numbers(row, *columns))
+        assert len(chain) == len(graph[name]) > 30
+        for mine, others in zip(chain, graph[name], strict=True):
+            assert numbers(mine, *columns) == pytest.approx(numbers(others, *columns), abs=1e-7 * largest)
+
+
 def test_sliding_voussoirs_move_outwards_at_the_springings(tmp_path: Path) -> None:
     (row,) = run_deck(tmp_path, "&arch thickness_ratio = 0.2 /\n&joint friction_deg = 0 /\n")
     joints = read_joints(tmp_path)
