@@ -6,7 +6,7 @@ module dda_chain_balance
    implicit none
    private
 
-   public :: cone_of, sum_loads, joint_force, influence, carry_forces, add_reaction
+   public :: cone_of, sum_loads, influence, carry_forces, add_reaction
 
 contains
 
@@ -45,25 +45,6 @@ contains
          load(:, b + ahead) = total
       end do
    end subroutine sum_loads
-
-   !> Force N1, N2, T of one joint
-   pure function joint_force(chain, load, reaction, j) result(force)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: load(:, :)   !! Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: reaction(3)  !! The unknowns
-      integer, intent(in) :: j
-      real(wp) :: force(3)                 !! The force
-      real(wp) :: s(3), normal, moment
-
-      s = reaction + load(:, j)
-      associate (joint => chain%joint(j))
-         normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
-         force(3) = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
-         moment = s(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1)
-         force(1) = (normal + moment/joint%half)/2.0_wp
-         force(2) = (normal - moment/joint%half)/2.0_wp
-      end associate
-   end function joint_force
 
    !> Coefficients of the unknowns in the force of one joint
    pure function influence(chain, j) result(g)
@@ -106,7 +87,7 @@ contains
    !> a thin one as the sum of those at its corners
    pure subroutine carry_forces(chain, reaction, resultant, magnitude)
       type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: reaction(3)
+      real(wp), intent(in) :: reaction(3)  !! The unknowns: (3) [N/m, N/m, N]
       !> Normal force, moment over half the joint, and shear force: (3, n + 1) [N/m]
       real(wp), intent(out) :: resultant(3, size(chain%joint))
       !> Largest force of a corner by one component of the thrust alone, and the largest thrust: the
