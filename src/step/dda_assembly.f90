@@ -170,7 +170,7 @@ contains
       !> Trial forces before the motion: (3, n_joint) [N/m]
       real(wp), intent(in) :: trial(:, :)
       !> The motion: (n_dof, n_equation); unchanged if the factor is not usable
-      real(wp), intent(inout) :: motion(:, :)
+      real(wp), intent(inout), contiguous :: motion(:, :)
       integer :: j
 
       call refresh(springs, equations)
