@@ -13,12 +13,21 @@ module dda_front
 
    public :: factor_front, multiply_front, substitute_down, substitute_up
 
-   !> Columns up to which inline elimination of symmetric panels is faster than LAPACK
-   integer, parameter :: narrow = 36
+   !> Columns, and rows below the diagonal, up to which inline elimination of symmetric panels is
+   !> faster than LAPACK
+   integer, parameter :: narrow = 36, most_below = 60
    !> Columns that are eliminated inline at a time where a panel is not symmetric
    integer, parameter :: few = 12
 
 contains
+
+   !> True if a symmetric panel is eliminated inline
+   pure logical function is_inline(width, below)
+      integer, intent(in) :: width  !! Columns of the panel
+      integer, intent(in) :: below  !! Rows below its diagonal
+
+      is_inline = width <= narrow .and. below <= most_below
+   end function is_inline
 
    !> Factor a panel
    pure subroutine factor_front(symmetric, width, below, front, exchange, info)
@@ -33,7 +42,7 @@ contains
       height = width + below
       if (.not. symmetric) then
          call factor_pair(width, height, below, front, front(1, width + 1), exchange, info)
-      else if (width <= narrow) then
+      else if (is_inline(width, below)) then
          call factor_narrow(width, height, front, info)
       else
          call dpotrf("L", width, front, height, info)
@@ -142,7 +151,7 @@ contains
       if (.not. symmetric) then
          call dgemm("N", "N", below, below, width, -1.0_wp, front(width + 1, 1), height, &
             & front(1, width + 1), width, 0.0_wp, share, below)
-      else if (width > narrow) then
+      else if (.not. is_inline(width, below)) then
          call dsyrk("L", "N", below, width, -1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
             & below)
       else
@@ -169,7 +178,7 @@ contains
 
       height = width + below
       if (.not. symmetric) call dlaswp(1, x, width, 1, width, exchange, 1)
-      if (width > merge(narrow, few, symmetric)) then
+      if (merge(.not. is_inline(width, below), width > few, symmetric)) then
          call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, x, 1)
       else
          do c = 1, width, 3
@@ -198,7 +207,7 @@ contains
             x(c) = x(c)/front(c, c)
             x(:c - 1) = x(:c - 1) - front(:c - 1, c)*x(c)
          end do
-      else if (width > narrow) then
+      else if (.not. is_inline(width, below)) then
          if (below > 0) call dgemv("T", below, width, -1.0_wp, front(width + 1, 1), height, &
             & known, 1, 1.0_wp, x, 1)
          call dtrsv("L", "T", "N", width, front, height, x, 1)
