@@ -139,9 +139,10 @@ contains
 
    !> Product of the rows below the diagonal that elimination takes from other panels, with its
    !> sign; of a symmetric panel the lower triangle
-   pure subroutine multiply_front(symmetric, width, below, front, share)
+   pure subroutine multiply_front(symmetric, width, below, omitted, front, share)
       logical, intent(in) :: symmetric
       integer, intent(in) :: width, below
+      integer, intent(in) :: omitted  !! First columns of the product that are not needed
       real(wp), intent(in) :: front(width + below, *)
       real(wp), intent(inout) :: share(below, *)  !! The product: (below, below)
       real(wp) :: factor(narrow)
@@ -155,7 +156,7 @@ contains
          call dsyrk("L", "N", below, width, -1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
             & below)
       else
-         do k = 1, below
+         do k = omitted + 1, below
             do c = 1, width
                factor(c) = front(width + k, c)*front(c, c)
             end do

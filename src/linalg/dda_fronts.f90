@@ -73,7 +73,7 @@ contains
       !> True if all pivots of a symmetric matrix are positive, those of another one not zero
       logical, intent(out) :: usable
       real(wp), allocatable :: share(:)
-      integer :: below, info, p, width
+      integer :: below, info, omitted, p, width
 
       usable = .false.
       allocate (share((plan%n_dof*plan%most_rows)**2), source=0.0_wp)
@@ -85,27 +85,29 @@ contains
                & exchange(plan%n_dof*(plan%first(p) - 1) + 1), info)
             if (info /= 0) return
          end if
-         if (below == 0) cycle
          associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))
-            if (.not. any(fresh(plan%panel(row)))) cycle
+            ! rows of a panel couple: those behind a row of a panel to be factored are of such, too
+            omitted = count(.not. fresh(plan%panel(row)))
+            if (omitted == size(row)) cycle
          end associate
-         call multiply_front(plan%symmetric, width, below, number(plan%start(p)), share)
-         call spread_share(plan, p, fresh, below, share, number)
+         call multiply_front(plan%symmetric, width, below, plan%n_dof*omitted, &
+            & number(plan%start(p)), share)
+         call spread_share(plan, p, omitted, below, share, number)
       end do
       usable = .true.
    end subroutine eliminate_fronts
 
    !> Add the products of one panel to those that have its rows
-   pure subroutine spread_share(plan, p, fresh, below, share, number)
+   pure subroutine spread_share(plan, p, omitted, below, share, number)
       type(elimination_plan_t), intent(in) :: plan
       integer, intent(in) :: p, below  !! The panel, and its rows below the diagonal
-      logical, intent(in) :: fresh(:)
+      integer, intent(in) :: omitted   !! Its first rows, as blocks, of panels that keep their factor
       real(wp), intent(in) :: share(below, *)  !! The products: (below, below)
       real(wp), intent(inout) :: number(*)
       integer :: at(plan%first_row(p + 1) - plan%first_row(p)), height, i, k, n, nd, t, width
 
       nd = plan%n_dof
-      n = 0
+      n = omitted
       do while (n < size(at))
          t = plan%panel(plan%row(plan%first_row(p) + n))
          width = plan%first(t + 1) - plan%first(t)
@@ -114,7 +116,6 @@ contains
          call find_rows(plan, t, plan%row(plan%first_row(p) + n:plan%first_row(p + 1) - 1), &
             & at(k:), n)
          n = k - 1 + n
-         if (.not. fresh(t)) cycle
          i = nd*(k - 1) + 1
          call add_share(nd, at(k:), at(k:n), plan%symmetric, below, share(i, i), nd*height, &
             & number(plan%start(t)))
