@@ -16,8 +16,7 @@ module dda_block_factor
    implicit none
    private
 
-   public :: block_factor_t, factorise, plan_factor, substitute
-   public :: factored_condition
+   public :: block_factor_t, factored_condition, factorise, plan_factor, substitute
 
    !> Factor of a block matrix
    type :: block_factor_t

@@ -1,10 +1,9 @@
-!> A dense panel: factors, products and substitutions, of narrow panels inline, of wide ones by
-!> LAPACK
+!> Factors, products and substitutions of dense panels: of small ones inline, else by LAPACK
 !>
 !> The panel has w columns with w rows on the diagonal and m rows below it. A symmetric one is
-!> factored into L D L' if it is narrow, D on the diagonal of L, whose own is ones, and into L L' if
-!> it is wide; another one into L U. Blocks that nothing holds move as their load over their mass to
-!> the last bit, which the roots of L L' would spoil.
+!> factored into L D L' if it is small, D on the diagonal of L, whose own is ones, otherwise into
+!> L L'; another one into L U. Blocks that nothing holds move as their load over their mass to the
+!> last bit, which the roots of L L' would spoil.
 module dda_front
    use dda_kinds, only : wp
    use dda_lapack, only : dgemm, dgemv, dlaswp, dpotrf, dsyrk, dtrsm, dtrsv
@@ -16,18 +15,9 @@ module dda_front
    !> Columns, and rows below the diagonal, up to which inline elimination of symmetric panels is
    !> faster than LAPACK
    integer, parameter :: narrow = 36, most_below = 60
-   !> Columns that are eliminated inline at a time where a panel is not symmetric
-   integer, parameter :: few = 12
+   integer, parameter :: few = 12  !! Columns eliminated at a time where a panel is not symmetric
 
 contains
-
-   !> True if a symmetric panel is eliminated inline
-   pure logical function is_inline(width, below)
-      integer, intent(in) :: width  !! Columns of the panel
-      integer, intent(in) :: below  !! Rows below its diagonal
-
-      is_inline = width <= narrow .and. below <= most_below
-   end function is_inline
 
    !> Factor a panel
    pure subroutine factor_front(symmetric, width, below, front, exchange, info)
@@ -42,7 +32,7 @@ contains
       height = width + below
       if (.not. symmetric) then
          call factor_pair(width, height, below, front, front(1, width + 1), exchange, info)
-      else if (is_inline(width, below)) then
+      else if (width <= narrow .and. below <= most_below) then
          call factor_narrow(width, height, front, info)
       else
          call dpotrf("L", width, front, height, info)
@@ -152,7 +142,7 @@ contains
       if (.not. symmetric) then
          call dgemm("N", "N", below, below, width, -1.0_wp, front(width + 1, 1), height, &
             & front(1, width + 1), width, 0.0_wp, share, below)
-      else if (.not. is_inline(width, below)) then
+      else if (width > narrow .or. below > most_below) then
          call dsyrk("L", "N", below, width, -1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
             & below)
       else
@@ -179,7 +169,7 @@ contains
 
       height = width + below
       if (.not. symmetric) call dlaswp(1, x, width, 1, width, exchange, 1)
-      if (merge(.not. is_inline(width, below), width > few, symmetric)) then
+      if (merge(width > narrow .or. below > most_below, width > few, symmetric)) then
          call dtrsv("L", "N", merge("N", "U", symmetric), width, front, height, x, 1)
       else
          do c = 1, width, 3
@@ -208,7 +198,7 @@ contains
             x(c) = x(c)/front(c, c)
             x(:c - 1) = x(:c - 1) - front(:c - 1, c)*x(c)
          end do
-      else if (.not. is_inline(width, below)) then
+      else if (width > narrow .or. below > most_below) then
          if (below > 0) call dgemv("T", below, width, -1.0_wp, front(width + 1, 1), height, &
             & known, 1, 1.0_wp, x, 1)
          call dtrsv("L", "T", "N", width, front, height, x, 1)

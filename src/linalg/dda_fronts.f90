@@ -101,7 +101,7 @@ contains
    pure subroutine spread_share(plan, p, omitted, below, share, number)
       type(elimination_plan_t), intent(in) :: plan
       integer, intent(in) :: p, below  !! The panel, and its rows below the diagonal
-      integer, intent(in) :: omitted   !! Its first rows, as blocks, of panels that keep their factor
+      integer, intent(in) :: omitted   !! First rows, as blocks, of panels that keep their factor
       real(wp), intent(in) :: share(below, *)  !! The products: (below, below)
       real(wp), intent(inout) :: number(*)
       integer :: at(plan%first_row(p + 1) - plan%first_row(p)), height, i, k, n, nd, t, width
