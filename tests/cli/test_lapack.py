@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import os
 import platform
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -59,6 +61,15 @@ def other_kernels() -> list[str]:
     """OpenBLAS kernels that this processor can run and that differ in the length of their vectors."""
     flags = Path("/proc/cpuinfo").read_text()
     return ["Prescott"] + ["Haswell"] * (" avx2 " in flags) + ["SkylakeX"] * (" avx512vl " in flags)
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="kernels of other processors")
+@pytest.mark.skipif("VOUSSOIR_BUILD" not in os.environ, reason="needs the program blas_threads of the build")
+def test_factorisations_in_two_threads_change_no_bit_with_any_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
+    for kernel in other_kernels():
+        monkeypatch.setenv("OPENBLAS_CORETYPE", kernel)
+        subprocess.run([Path(os.environ["VOUSSOIR_BUILD"], "tests/bin/blas_threads")], check=True)
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="kernels of other processors")
