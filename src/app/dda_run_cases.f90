@@ -36,9 +36,10 @@ contains
    !> Compute cases until none is left or writing fails
    module procedure run_cases
       type(case_t), allocatable :: batch(:)
+      type(case_t) :: empty
       integer :: number(max_batch), i, most, n
 
-      allocate (batch(max_batch), source=case_t())
+      allocate (batch(max_batch), source=empty)
       n = 0
       most = 1
       do
