@@ -59,7 +59,7 @@ module dda_load_jump
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> Maximum number of events without progress
    integer, parameter :: max_standstill = 60
-   !> Maximum number of steps of a jump, and per joint
+   !> Maximum number of steps of a jump, and per joint, while its motion does not grow by half
    integer, parameter :: least_patience = 6000, patience = 10
    !> Factor of damping after a step without event, and its inverse without rates
    real(wp), parameter :: calmer = 0.1_wp
@@ -212,7 +212,7 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: far, firm, viscosity
+      real(wp) :: far, firm, viscosity, way
       real(wp) :: rest(3, size(state%load, 2))
       integer :: i, most, standstill
       logical :: calm, found, pushed, whole
@@ -225,7 +225,11 @@ contains
       whole = .false.
       far = jump%far
       most = least_patience + patience*size(state%slip)
-      do i = 1, most
+      way = 0.0_wp
+      i = 0
+      do while (i < most)
+         i = i + 1
+         call renew_patience(maxval(abs(state%motion - start)), most, way, i)
          call imbalance(joints, state%load, state%force, rest)
          if (i > most/brief) far = driven*jump%far
          call see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
@@ -257,6 +261,19 @@ contains
          call move_on(joints, rates, event, state)
       end do
    end subroutine jump_to_balance
+
+   !> Give a motion that has grown by half the steps again that may bring it to its end
+   pure subroutine renew_patience(moved, most, way, step)
+      real(wp), intent(in) :: moved    !! The motion
+      integer, intent(in) :: most      !! Maximum number of steps
+      real(wp), intent(inout) :: way   !! Motion that had grown by half last
+      integer, intent(inout) :: step   !! Number of the step
+      real(wp), parameter :: grown = 1.5_wp
+
+      if (moved <= grown*way) return
+      way = moved
+      step = min(step, most/brief)
+   end subroutine renew_patience
 
    !> The next event of a step that would bring balance, or of as many as its rates lead
    pure type(event_t) function next_turn(joints, state, rest, rates) result(event)

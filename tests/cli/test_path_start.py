@@ -146,6 +146,14 @@ def test_what_holds_only_as_sliding_opens_joints_falls(tmp_path: Path) -> None:
     assert int(row["factorisations"]) < 2000
 
 
+def test_a_slow_fall_between_sliding_joints_is_followed_to_its_end(tmp_path: Path) -> None:
+    """A slope that falls while two joints stick and slide in turn: it falls below the limit of HiGHS, 0.255267937."""
+    search = "&search parameter = 'horizontal_coefficient', high = 1e4 /"
+    (row,) = rows(tmp_path, block_text(*make_pushed(7469)), search)
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) < 0.255267937
+
+
 def test_a_fall_of_very_rough_piers_takes_few_factorisations(tmp_path: Path) -> None:
     """Friction of 89.9 degrees beside 47: from the limit of HiGHS on, 0.0778216766, everything falls."""
     loads = ", ".join(repr(0.0778216766 * share) for share in (0.99, 1.01, 1.1, 1.5, 5.0))
