@@ -119,18 +119,19 @@ contains
    end subroutine settle_group
 
    !> Reduce contact forces that bring in energy until they bring in none: the law of contact brings
-   !> in none, and no gap that is against it may be pushed out. Bars keep their forces
+   !> in none, but where it pushes out a depth that the step begins with. Bars keep their forces
    pure subroutine hold_work(p, force, residual)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
-      real(wp), dimension(3, size(p%joint)) :: contact, without
+      real(wp), dimension(3, size(p%joint)) :: contact, gap, without
       real(wp) :: by_contacts, by_loads
 
       without = merge(force, 0.0_wp, p%soft > 0.0_wp)
       contact = force - without
-      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%gap))
-      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%gap)) - by_loads
+      gap = max(0.0_wp, p%gap)
+      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - gap))
+      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - gap)) - by_loads
       if (by_loads + by_contacts <= 0.0_wp) return
       force = without + max(0.0_wp, -by_loads/by_contacts)*contact
       residual = residual_of(p, force, move_blocks(p, force))

@@ -144,8 +144,8 @@ contains
    end function foresee_event
 
    !> True if a solved step ends at its first impact or slip reversal, or has none; if not, the time
-   !> of that. A step that comes no nearer to an impact, as where strain closes a gap at once, has it
-   !> somewhere
+   !> of that. A step that comes no nearer to an impact has it somewhere, as where strain closes the
+   !> gap at once
    pure type(step_outcome_t) function check_event(run) result(outcome)
       type(run_t), intent(in) :: run
       logical :: meets(2, size(run%contacts%joint))
