@@ -39,6 +39,8 @@ module dda_contact_solver
    real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
    !> Sweeps before the first factorisation, and after it
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
+   !> Least factor by which residual gaps reduce forces; less is due to depths that are pushed out
+   real(wp), parameter :: least_factor = 0.999_wp
    !> Relative distance from its bound at which a shear force counts as sliding
    real(wp), parameter :: bound_tolerance = 1.0e-9_wp
    !> Residual at which faces may start, and tolerance of the convex problem, over the fastest
@@ -119,21 +121,23 @@ contains
    end subroutine settle_group
 
    !> Reduce contact forces that bring in energy until they bring in none: the law of contact brings
-   !> in none, but where it pushes out a depth that the step begins with. Bars keep their forces
+   !> in none, but where it pushes out a depth that the step begins with. Residual gaps change forces
+   !> by little. Bars keep their forces
    pure subroutine hold_work(p, force, residual)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
-      real(wp), dimension(3, size(p%joint)) :: contact, gap, without
-      real(wp) :: by_contacts, by_loads
+      real(wp), dimension(3, size(p%joint)) :: contact, without
+      real(wp) :: by_contacts, by_loads, factor
 
       without = merge(force, 0.0_wp, p%soft > 0.0_wp)
       contact = force - without
-      gap = max(0.0_wp, p%gap)
-      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - gap))
-      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - gap)) - by_loads
+      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%gap))
+      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%gap)) - by_loads
       if (by_loads + by_contacts <= 0.0_wp) return
-      force = without + max(0.0_wp, -by_loads/by_contacts)*contact
+      factor = -by_loads/by_contacts
+      if (factor < least_factor) return
+      force = without + factor*contact
       residual = residual_of(p, force, move_blocks(p, force))
    end subroutine hold_work
 

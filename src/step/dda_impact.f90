@@ -16,14 +16,14 @@ module dda_impact
    implicit none
    private
 
-   public :: check_event, closed_contacts, foresee_event, masked_force
+   public :: check_impact, closed_contacts, foresee_event, masked_force
    public :: meeting_contacts, meets_at_end, parting_acceleration
 
    !> Least and largest energy of an impact that ends a step, over that of motion and of a fall of
    !> the longest step, per squared number of blocks
    real(wp), parameter :: min_event_energy = 1.0e-6_wp, max_event_energy = 1.0e-2_wp
 
-   !> Speed and energy of a slip reversal over those of the slowest impact
+   !> Slip of a reversal over the slowest impact
    real(wp), parameter :: at_once = 1.0e-3_wp
 
 contains
@@ -131,7 +131,7 @@ contains
    !> the last step; if not, the time of that
    pure type(step_outcome_t) function foresee_event(run) result(outcome)
       type(run_t), intent(in) :: run
-      real(wp) :: acceleration(3, size(run%contacts%joint))
+      real(wp) :: acceleration(3, size(run%contacts%joint)), turn
 
       outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
       if (run%march%spare_cuts == 0) return
@@ -140,13 +140,17 @@ contains
       outcome = earliest_impact(run, run%step%end_gap + run%step%dt**2/2.0_wp*acceleration, &
          & may_meet(run))
       outcome%overshoot = run%step%overshoot
-      call end_at_reversal(run, run%contacts%force, outcome)
+      if (run%step%ends_at_event) return
+      turn = earliest_reversal(run, acceleration)
+      if (turn >= outcome%dt) return
+      outcome%accepted = .false.
+      outcome%ends_at_event = .true.
+      outcome%dt = turn
    end function foresee_event
 
-   !> True if a solved step ends at its first impact or slip reversal, or has none; if not, the time
-   !> of that. A step that comes no nearer to an impact has it somewhere, as where strain closes the
-   !> gap at once
-   pure type(step_outcome_t) function check_event(run) result(outcome)
+   !> True if a solved step ends at an impact, or has none; if not, the time of that. A step that
+   !> comes no nearer to an impact, as where strain closes a gap at once, has it somewhere
+   pure type(step_outcome_t) function check_impact(run) result(outcome)
       type(run_t), intent(in) :: run
       logical :: meets(2, size(run%contacts%joint))
 
@@ -156,23 +160,7 @@ contains
       outcome = earliest_impact(run, free_gaps(run, meets), meets)
       if (outcome%overshoot > run%step%overshoot/2.0_wp) &
          & outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
-      call end_at_reversal(run, run%step%state%force - masked_force(run, meets), outcome)
-   end function check_event
-
-   !> Cut a step that has not been cut to end at an event to its first slip reversal
-   pure subroutine end_at_reversal(run, force, outcome)
-      type(run_t), intent(in) :: run
-      real(wp), intent(in) :: force(:, :)  !! Forces of closed contacts: (3, n_joint) [N/m]
-      type(step_outcome_t), intent(inout) :: outcome
-      real(wp) :: reversal
-
-      if (run%step%ends_at_event) return
-      reversal = earliest_reversal(run, force)
-      if (reversal >= outcome%dt) return
-      outcome%accepted = .false.
-      outcome%ends_at_event = .true.
-      outcome%dt = reversal
-   end subroutine end_at_reversal
+   end function check_impact
 
    !> Gaps at the end of a solved step if contacts that meet in it had borne no force
    pure function free_gaps(run, meets) result(gap)
@@ -200,30 +188,24 @@ contains
       end do
    end function meets_at_end
 
-   !> Time in a step at which the first joint that slides begins to slide back, for friction
-   !> turns with it: its slip comes to rest under friction against it, and the load on it then
-   !> exceeds friction the other way. Blocks that turn change the slip without a force
-   pure real(wp) function earliest_reversal(run, force) result(earliest)
+   !> Time at which the first joint that slides begins to slide back, for friction turns with it:
+   !> its slip comes to rest under the forces of the last step, and the load on it then exceeds
+   !> friction the other way
+   pure real(wp) function earliest_reversal(run, acceleration) result(earliest)
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: force(:, :)  !! Forces of closed contacts: (3, n_joint) [N/m]
-      real(wp), dimension(3, size(force, 2)) :: acceleration, half_way
-      real(wp) :: back, forth, least
+      real(wp), intent(in) :: acceleration(:, :)  !! Of gaps and slips: (3, n_joint) [m/s2]
+      real(wp) :: back, least
       integer :: j
 
       earliest = huge(earliest)
       least = event_energy(run)
-      acceleration = parting_acceleration(run%equations, run%contacts%springs, &
-         & run%equations%outer, force)
-      half_way = relative_displacement(run%contacts%springs, packed_velocity(run%system, &
-         & size(run%step%state%motion, 1)))
-      do j = 1, size(force, 2)
-         associate (slip => run%step%speed(3, j), dt => run%step%dt, friction => abs(force(3, j)))
-            if (friction*abs(slip)*dt <= at_once*least) cycle
-            forth = acceleration(3, j) + 2.0_wp*(half_way(3, j) - slip)/dt &
-               & - ease_of(run, 3, j)*(force(3, j) + sign(friction, slip))
-            if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(forth)*dt)) cycle
-            back = forth + 2.0_wp*ease_of(run, 3, j)*sign(friction, slip)
-            if (slip*forth < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/forth)
+      do j = 1, size(run%contacts%joint)
+         associate (slip => run%step%speed(3, j), now => acceleration(3, j))
+            if (.not. abs(run%contacts%force(3, j)) > 0.0_wp) cycle
+            if (abs(run%contacts%force(3, j)*slip)*run%step%dt < 2.0_wp*least) cycle
+            if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(now)*run%step%dt)) cycle
+            back = now - 2.0_wp*ease_of(run, 3, j)*run%contacts%force(3, j)
+            if (slip*now < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/now)
          end associate
       end do
    end function earliest_reversal

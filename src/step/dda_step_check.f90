@@ -4,7 +4,7 @@ module dda_step_check
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : contacts_t
-   use dda_impact, only : check_event
+   use dda_impact, only : check_impact
    use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
    use dda_step_context, only : in_time, may_shorten, run_t, step_outcome_t
@@ -34,7 +34,7 @@ contains
       outcome = check_length(run)
       if (outcome%accepted .and. searched) outcome = check_margins(run)
       if (.not. in_time(run)) return
-      if (outcome%accepted) outcome = check_event(run)
+      if (outcome%accepted) outcome = check_impact(run)
       if (outcome%accepted .and. searched) outcome = check_axes(run)
    end function check_motion
 
