@@ -12,7 +12,7 @@ submodule (dda_compute_case:dda_worst_position) dda_worst_path
    implicit none
 
    !> Initial number of positions along a road
-   integer, parameter :: first_trials = 96
+   integer, parameter :: first_trials = 48
    !> End of a path over the least factor
    real(wp), parameter :: reach = 1.1_wp
    !> Relative difference of a smaller factor
@@ -178,7 +178,6 @@ contains
 
       call put_vehicle(place, this%family%deck)
       search = this%search
-      search%path_alone = .true.
       if (least%factor < no_limit .and. reach*least%factor > search%low) &
          & search%high = min(search%high, reach*least%factor)
       search%start = min(search%start, search%high)

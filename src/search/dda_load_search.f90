@@ -149,8 +149,7 @@ contains
 
       side%value = last
       if (.not. outward*(last - origin) > 0.0_wp) return
-      if (.not. search%path_alone) call find_associated(family%load, scene, graph, origin, &
-         & last - origin, search, side, limit)
+      call find_associated(family%load, scene, graph, origin, last - origin, search, side, limit)
       side%falls_dead = limit%state == limit_state%no_dead_equilibrium
       far = last
       if (side%limit%known .and. abs(side%limit%value(1)) < abs(last)) far = side%limit%value(1)
@@ -167,8 +166,7 @@ contains
          settings = with_coefficient(scene%settings, family%load, far)
          stations = load_stations(settings, .true.)
          call follow_from_rest(family, search%high, settings, stations, &
-            & search%path_alone .or. side%limit%known .or. limit%state == limit_state%unbounded, &
-            & scene, graph, proof)
+            & side%limit%known .or. limit%state == limit_state%unbounded, scene, graph, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%falls_dead = proof%no_start
          side%stands_upright = .not. proof%no_start

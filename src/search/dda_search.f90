@@ -27,9 +27,6 @@ module dda_search
       !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
       logical :: in_time = .false.  !! True if its runs are dynamic
-      !> True to follow the loading path alone, without its associated limit; dead loads that stand
-      !> are a condition
-      logical :: path_alone = .false.
       !> True if the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
