@@ -121,8 +121,8 @@ contains
    end subroutine settle_group
 
    !> Reduce contact forces that bring in energy until they bring in none: the law of contact brings
-   !> in none, but where it pushes out a depth that the step begins with. Residual gaps change forces
-   !> by little. Bars keep their forces
+   !> in none, but where it pushes out a depth that the step begins with. Residual gaps change
+   !> forces by little. Bars keep their forces
    pure subroutine hold_work(p, force, residual)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
