@@ -3,15 +3,14 @@
 !> Blocks that no contact joins are independent: each group is a problem of its own. The
 !> forces of the last step are checked; sweeps, faces, and an interior point whose offset moves
 !> along follow, each from the best forces so far, until openings are against the law by no more
-!> than the tolerance. Where none comes so far, the best forces count, and where these are far from
-!> the law, those of the convex problem, which exist always. Forces of a motion that bring in energy
-!> are reduced until they bring in none. Whatever counts lies within its bounds, and momentum is
-!> exact.
+!> than the tolerance. Where none comes so far, the best forces count; where these bring in energy,
+!> those of the convex problem, which exist always. Whatever counts lies within its bounds, and
+!> momentum is exact.
 !>
 !> Equation (M5) of docs/method.md
 module dda_contact_solver
    use dda_contact_faces, only : settle_faces
-   use dda_contact_interior, only : solve_interior
+   use dda_contact_interior, only : solve_convex, solve_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & pose_contacts, residual_of, residual_t, speed_of
    use dda_contact_sweeps, only : sweep_joints
@@ -25,7 +24,7 @@ module dda_contact_solver
    implicit none
    private
 
-   public :: group_joints, settle_contacts
+   public :: group_joints, max_energy_gain, settle_contacts
 
    !> Gap tolerance over the free fall of the longest step
    real(wp), parameter :: gap_tolerance = 1.0e-7_wp
@@ -39,10 +38,10 @@ module dda_contact_solver
    real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
    !> Sweeps before the first factorisation, and after it
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
-   !> Least factor by which residual gaps reduce forces; less is due to depths that are pushed out
-   real(wp), parameter :: least_factor = 0.999_wp
    !> Relative distance from its bound at which a shear force counts as sliding
    real(wp), parameter :: bound_tolerance = 1.0e-9_wp
+   !> Energy that contact forces may add, over that of motion and loads
+   real(wp), parameter :: max_energy_gain = 1.0e-6_wp
    !> Residual at which faces may start, and tolerance of the convex problem, over the fastest
    !> motion of the group
    real(wp), parameter :: near_solution = 1.0e-2_wp, convex_tolerance = 1.0e-3_wp
@@ -78,7 +77,6 @@ contains
          force = admissible(p, state%force(:, p%joint))
          passes = 0
          call settle_group(p, state%fineness, state%fall, force, residual, passes)
-         if (.not. state%rates) call hold_work(p, force, residual)
          ! groups are independent: their passes are side by side
          most = max(most, passes)
          state%force(:, p%joint) = force
@@ -110,36 +108,24 @@ contains
       call sweep_joints(p, exact, first_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
-      if (residual%opening > enough) &
-         & call solve_interior(p, enough, .false., force, residual, passes)
+      if (residual%opening > enough) call solve_interior(p, enough, force, residual, passes)
       if (residual%opening > near_solution*speed) &
-         & call solve_interior(p, convex_tolerance*speed, .true., force, residual, passes)
+         & call solve_convex(p, convex_tolerance*speed, force, residual, passes)
       if (residual%opening > tolerance) &
          & call sweep_joints(p, tolerance, last_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
+      if (work_of(p, force) > max_energy_gain*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
+         & call solve_convex(p, enough, force, residual, passes)
    end subroutine settle_group
 
-   !> Reduce contact forces that bring in energy until they bring in none: the law of contact brings
-   !> in none, but where it pushes out a depth that the step begins with. Residual gaps change
-   !> forces by little. Bars keep their forces
-   pure subroutine hold_work(p, force, residual)
+   !> Work of contact forces on openings and slip: negative under Coulomb's law [J/m]
+   pure real(wp) function work_of(p, force)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! Residual of the forces
-      real(wp), dimension(3, size(p%joint)) :: contact, without
-      real(wp) :: by_contacts, by_loads, factor
+      real(wp), intent(in) :: force(:, :)  !! The forces: (3, n_joint) [N/m]
 
-      without = merge(force, 0.0_wp, p%soft > 0.0_wp)
-      contact = force - without
-      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%gap))
-      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%gap)) - by_loads
-      if (by_loads + by_contacts <= 0.0_wp) return
-      factor = -by_loads/by_contacts
-      if (factor < least_factor) return
-      force = without + factor*contact
-      residual = residual_of(p, force, move_blocks(p, force))
-   end subroutine hold_work
+      work_of = sum(force*openings(p, force, move_blocks(p, force)))
+   end function work_of
 
    !> Joints that have rows: in the search for velocities open ones have none
    pure function has_rows(springs) result(acts)

