@@ -111,7 +111,7 @@ contains
       call turn_to_case(deck, number, turned, problem)
       if (allocated(vertex)) call move_alloc(vertex, turned%plan%vertex)
       call prepare_case(turned, this)
-      this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
+      this%writes_tables = any(tables%at([table%joints, table%blocks])%wanted)
       this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare
 

@@ -24,7 +24,7 @@ module dda_case
    type :: case_t
       type(scene_plan_t) :: plan  !! Plan of its scene
       !> True to search a critical value; to write tables of joints or blocks
-      logical :: searches = .false., tells_tables = .true.
+      logical :: searches = .false., writes_tables = .true.
       logical :: proves = .true.     !! True if its verdict is proven
       logical :: limerick = .false.  !! True if Shi's scheme decides
       type(deck_family_t) :: family  !! The scenes of the search

@@ -21,9 +21,9 @@ contains
       type(decision_t) :: proof
       type(scene_t) :: begun
       real(wp) :: last
-      logical :: decided, told
+      logical :: decided, complete
 
-      told = .false.
+      complete = .false.
       decided = this%family%chains &
          & .and. .not. this%family%chain_settings%collapse_displacement > 0.0_wp
       associate (critical => this%critical)
@@ -34,17 +34,17 @@ contains
             & this%decision, decided, critical%deficit)
       end associate
       if (decided) then
-         ! tables have displacements, which a chain that stands does not keep. Loads that grow have
-         ! the mechanism of the first one at which the chain collapses
-         told = this%decision%outcome%verdict /= verdict%collapsed
-         if (.not. told .and. this%plan%halved) call show_first_motion( &
-            & this%critical%link%chain, this%critical%deficit, this%decision, told)
-         if (told .and. this%family%decides_chains .and. .not. this%tells_tables) return
+         ! a collapse is complete with its first motion, unless a growing load determines it.
+         ! A chain that stands has no displacements, which tables need
+         complete = this%decision%outcome%verdict /= verdict%collapsed
+         if (.not. complete .and. this%plan%halved) call show_first_motion( &
+            & this%critical%link%chain, this%critical%deficit, this%decision, complete)
+         if (complete .and. this%family%decides_chains .and. .not. this%writes_tables) return
          proof = this%decision
          call unfold(proof)
       end if
       call deck_scene(this%family%deck, this%scene)
-      if (told .and. proof%outcome%verdict == verdict%collapsed) then
+      if (complete .and. proof%outcome%verdict == verdict%collapsed) then
          this%decision%system = this%scene%system
          return
       end if

@@ -202,7 +202,7 @@ contains
             & remark = joined(remark, change_remark(critical))
          if (allocated(critical%fallen)) &
             & call tell_mechanism(critical%fallen, this%scene%joint_angle_deg, row)
-         if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
+         if (this%writes_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations

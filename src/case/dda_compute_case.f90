@@ -171,7 +171,7 @@ contains
       if (this%family%decides_chains) this%scene%joint_angle_deg = &
          & joint_angles_deg(this%family%deck)
       collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = merge(this%tells_tables .or. nint(this%family%deck%value(output_frames)%number) &
+      wanted = merge(this%writes_tables .or. nint(this%family%deck%value(output_frames)%number) &
          & > 0, this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
