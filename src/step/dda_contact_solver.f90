@@ -38,6 +38,8 @@ module dda_contact_solver
    real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
    !> Sweeps before the first factorisation, and after it
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
+   !> Least factor by which residual gaps reduce forces; less is due to depths that are pushed out
+   real(wp), parameter :: least_factor = 1.0_wp - 1.0e-6_wp
    !> Relative distance from its bound at which a shear force counts as sliding
    real(wp), parameter :: bound_tolerance = 1.0e-9_wp
    !> Energy that contact forces may add, over that of motion and loads
@@ -77,6 +79,7 @@ contains
          force = admissible(p, state%force(:, p%joint))
          passes = 0
          call settle_group(p, state%fineness, state%fall, force, residual, passes)
+         if (.not. state%rates) call hold_work(p, force, residual)
          ! groups are independent: their passes are side by side
          most = max(most, passes)
          state%force(:, p%joint) = force
@@ -126,6 +129,27 @@ contains
 
       work_of = sum(force*openings(p, force, move_blocks(p, force)))
    end function work_of
+
+   !> Reduce contact forces that bring in energy until they bring in none: the law of contact brings
+   !> in none, but where it pushes out a depth that the step begins with. Residual gaps change
+   !> forces by little. Bars keep their forces
+   pure subroutine hold_work(p, force, residual)
+      type(contact_problem_t), intent(in) :: p
+      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
+      type(residual_t), intent(inout) :: residual  !! Residual of the forces
+      real(wp), dimension(3, size(p%joint)) :: contact, without
+      real(wp) :: by_contacts, by_loads, factor
+
+      without = merge(force, 0.0_wp, p%soft > 0.0_wp)
+      contact = force - without
+      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%gap))
+      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%gap)) - by_loads
+      if (by_loads + by_contacts <= 0.0_wp) return
+      factor = -by_loads/by_contacts
+      if (factor < least_factor) return
+      force = without + factor*contact
+      residual = residual_of(p, force, move_blocks(p, force))
+   end subroutine hold_work
 
    !> Joints that have rows: in the search for velocities open ones have none
    pure function has_rows(springs) result(acts)
