@@ -54,7 +54,7 @@ module dda_restart
 
    !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
    !> whether it is open; direction of sliding
-   integer, parameter :: n_joint_whole = 10
+   integer, parameter :: n_joint_whole = 12
 
    !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
    !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts

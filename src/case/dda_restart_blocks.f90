@@ -121,7 +121,8 @@ contains
       do j = 1, size(contacts%joint)
          associate (joint => contacts%joint(j), face => contacts%face(j))
             whole(:, j) = [joint%n_contact, joint%contact%edge_side, &
-               & joint%contact%vertex, joint%contact%edge, merge(1, 0, face%open), face%slip]
+               & joint%contact%vertex, joint%contact%edge, merge(1, 0, face%open), face%slip, &
+               & merge(1, 0, face%idle)]
             number(:, j) = [joint%length, joint%contact%length, joint%contact%share, &
                & joint%contact%lock, joint%contact%closed_at, contacts%past_slip(j), &
                & contacts%trial(:, j), contacts%force(:, j), contacts%gap(:, j), &
@@ -138,7 +139,8 @@ contains
       real(wp) :: gap(3)
       integer :: j
 
-      sound = all(whole(8:9, :) == 0 .or. whole(8:9, :) == 1) .and. all(abs(whole(10, :)) <= 1) &
+      sound = all(abs(whole([8, 9, 11, 12], :) - 0.5_wp) <= 0.5_wp) &
+         & .and. all(abs(whole(10, :)) <= 1) &
          & .and. all(number(23:24, :) >= 0.0_wp .and. number(23:24, :) <= 1.0_wp)
       if (.not. sound) return
       if (contacts%searched .and. settings%current) then
@@ -161,6 +163,7 @@ contains
       do j = 1, size(whole, 2)
          contacts%face(j)%open = whole(8:9, j) == 1
          contacts%face(j)%slip = whole(10, j)
+         contacts%face(j)%idle = whole(11:12, j) == 1
          contacts%past_slip(j) = number(10, j)
          contacts%trial(:, j) = number(11:13, j)
          contacts%force(:, j) = number(14:16, j)

@@ -281,6 +281,7 @@ contains
             contacts%force(k, j) = old%force(1)
             contacts%force(3, j) = contacts%force(3, j) + old%force(2)
             contacts%intact(k, j) = before%intact(old%place, old%joint)
+            contacts%face(j)%idle(k) = before%face(old%joint)%idle(old%place)
             if (before%face(old%joint)%slip /= 0) &
                & contacts%face(j)%slip = before%face(old%joint)%slip
          end associate

@@ -21,6 +21,8 @@ module dda_friction_cone
       logical :: open(2) = .false.  !! Corners that are open: (2)
       !> Direction of the shear force at the Coulomb limit: -1 or 1; 0 while the joint is stuck
       integer :: slip = 0
+      !> Corners whose force in a motion the velocities did without: (2)
+      logical :: idle(2) = .false.
    end type joint_face_t
 
    !> Kinds of friction cones

@@ -14,6 +14,9 @@ module dda_block_update
 
    public :: carry_over, displace_blocks, update_blocks, update_contacts
 
+   !> Force of velocities that is a residual, over that of the motion
+   real(wp), parameter :: residual_force = 1.0e-6_wp
+
 contains
 
    !> Contacts, blocks and bars at the end of a step
@@ -121,6 +124,10 @@ contains
       if (allocated(step%curve)) contacts%gap = contacts%gap + step%curve
       if (settings%current .and. settings%dynamic) then
          contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
+         do j = 1, size(contacts%joint)
+            contacts%face(j)%idle = abs(step%mean_force(1:2, j)) &
+               & <= residual_force*abs(contacts%force(1:2, j))
+         end do
       else if (settings%current .and. contacts%springs%give) then
          where (contacts%face%slip /= 0) contacts%past_slip = contacts%past_slip &
             & + contacts%gap(3, :) + contacts%force(3, :)/contacts%springs%stiffness

@@ -162,6 +162,7 @@ contains
             step%after = run%system
             call displace_blocks(run%settings, step%state%motion, step%after)
             step%velocity = 0.0_wp
+            step%mean_force = step%state%force
             step%curve = 0.0_wp
             call carry_over(run)
             call stands_still(run, still)

@@ -322,8 +322,9 @@ contains
       do j = 1, size(run%contacts%joint)
          call keep_closed(impact%closed(:, j), j, springs, state)
          part = [restitution*impact%part(:, j), 0.0_wp]
-         ! strain pushes no contacts apart that bore nothing before the step
-         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp
+         ! strain pushes no contacts apart that bore nothing before the step, or a force of its own
+         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp &
+            & .and. .not. run%contacts%face(j)%idle
          where ([bears, any(bears)]) part = part - impact%strain_opening(:, j)
          state%gap(:, j) = -run%step%dt*part
       end do
