@@ -32,7 +32,7 @@ contains
       arch = source_of(deck) == "arch"
       call turn_to_case(deck, 1, first, error)
       plan = plan_scene(first)
-      if (deck%value(scene_kind)%text /= "blocks") call deck_scene(first, scene)
+      if (.not. allocated(scene%contacts%joint)) call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       do s = 1, size(deck%sweeps)

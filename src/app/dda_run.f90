@@ -67,11 +67,13 @@ submodule (dda_verbs) dda_run
       !> Compute cases until none is left or writing fails; runs in each thread. Finished cases are
       !> written in the same critical section in which the next ones are prepared, so that threads
       !> wait once
-      module subroutine run_cases(command, name, deck, chosen, next, tables, shown, count, error)
+      module subroutine run_cases(command, name, deck, scene, chosen, next, tables, shown, count, &
+         & error)
          type(command_t), intent(in) :: command
          character(len=*), intent(in) :: name  !! Name of the deck
          !> The deck; of a single case the corners of the blocks are moved out of it
          type(deck_t), intent(inout) :: deck
+         type(scene_t), intent(inout) :: scene  !! Scene of a single case, if a check has made it
          logical, intent(in) :: chosen(:)    !! Cases to be computed
          integer, intent(inout) :: next      !! Last case taken by any thread
          type(result_tables_t), intent(inout) :: tables
@@ -91,15 +93,16 @@ contains
    !> Run all decks of the command line; an invalid deck does not stop the others
    module procedure run_decks
       type(deck_t), allocatable :: deck(:)
+      type(scene_t), allocatable :: scene(:)
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
       logical :: good(size(command%name))
       integer :: i, deck_status
 
-      allocate (deck(size(command%name)))
+      allocate (deck(size(command%name)), scene(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
-         call read_and_check(command, i, deck(i), error)
+         call read_and_check(command, i, deck(i), scene(i), error)
          if (.not. allocated(error)) call check_lines(deck(i), error)
          if (.not. command%quiet) call print_warnings(deck(i)%warnings)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
@@ -113,16 +116,17 @@ contains
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
-         call run_deck(command, command%name(i)%text, deck(i), deck_status)
+         call run_deck(command, command%name(i)%text, deck(i), scene(i), deck_status)
          status = worst_status(status, deck_status)
       end do
    end procedure run_decks
 
    !> Run all cases of one deck
-   subroutine run_deck(command, name, deck, status)
+   subroutine run_deck(command, name, deck, scene, status)
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
       type(deck_t), intent(inout) :: deck
+      type(scene_t), intent(inout) :: scene
       integer, intent(out) :: status  !! Exit status of this deck
       type(result_tables_t) :: tables
       type(finished_t) :: finished
@@ -142,8 +146,8 @@ contains
       call new_case_table(command%screen, deck, chosen, shown)
       next = 0
       !$omp parallel num_threads(min(command%jobs, total, max_jobs)) default(none) &
-      !$omp shared(deck, name, command, tables, shown, count, error, chosen, next)
-      call run_cases(command, name, deck, chosen, next, tables, shown, count, error)
+      !$omp shared(deck, scene, name, command, tables, shown, count, error, chosen, next)
+      call run_cases(command, name, deck, scene, chosen, next, tables, shown, count, error)
       !$omp end parallel
       call end_case_table(shown)
       call close_tables(tables, error)
@@ -195,12 +199,12 @@ contains
    end subroutine begin_tables
 
    !> Read a deck, and check that its scene can be run
-   subroutine read_and_check(command, number, deck, error)
+   subroutine read_and_check(command, number, deck, scene, error)
       type(command_t), intent(in) :: command
       integer, intent(in) :: number  !! Number of the deck
       type(deck_t), intent(out) :: deck
+      type(scene_t), intent(out) :: scene
       type(error_t), allocatable, intent(out) :: error
-      type(scene_t) :: scene
       type(terminal_watch_t) :: watch
 
       watch%shown = error_is_terminal() .and. .not. command%quiet

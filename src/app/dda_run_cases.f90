@@ -10,6 +10,7 @@ submodule (dda_verbs:dda_run) dda_run_cases
    use dda_force_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : swept_fields, table, write_case, write_waiting
+   use dda_scene, only : move_scene
    use dda_table_file, only : append_line
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    implicit none
@@ -54,7 +55,7 @@ contains
             call take_cases(chosen, min(most, 1 + (size(chosen) - next)/(4*command%jobs)), next, &
                & number, n)
             do i = 1, n
-               call prepare(deck, number(i), tables, batch(i))
+               call prepare(deck, scene, number(i), tables, batch(i))
             end do
          end if
          !$omp end critical (texts)
@@ -94,8 +95,10 @@ contains
    end subroutine take_cases
 
    !> Prepare one case for its computation
-   subroutine prepare(deck, number, tables, this)
+   subroutine prepare(deck, scene, number, tables, this)
       type(deck_t), intent(inout) :: deck
+      !> Scene of a single case, if a check has made it; moved into the case
+      type(scene_t), intent(inout) :: scene
       integer, intent(in) :: number
       type(result_tables_t), intent(in) :: tables
       !> An earlier case of the deck, if any: only the swept values of its deck change
@@ -111,6 +114,7 @@ contains
       call turn_to_case(deck, number, turned, problem)
       if (allocated(vertex)) call move_alloc(vertex, turned%plan%vertex)
       call prepare_case(turned, this)
+      if (n_cases(deck) == 1) call move_scene(scene, this%scene)
       this%writes_tables = any(tables%at([table%joints, table%blocks])%wanted)
       this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare

@@ -31,7 +31,9 @@ module dda_case
       type(search_t) :: search       !! The search
       type(critical_t) :: critical   !! Result of the search
       type(decision_t) :: decision   !! Decision of a case that searches nothing
-      type(scene_t) :: scene         !! Scene of the collapse, or of the decision
+      !> Scene of the collapse, or of the decision; before the computation that of the deck, if a
+      !> check has made it
+      type(scene_t) :: scene
       !> Scene nearest to critical that stands, where it was asked for
       type(scene_t) :: standing
       type(march_t) :: onward  !! Where a dynamic run goes on, and where it ended

@@ -43,7 +43,8 @@ contains
          proof = this%decision
          call unfold(proof)
       end if
-      call deck_scene(this%family%deck, this%scene)
+      if (.not. allocated(this%scene%contacts%joint)) &
+         & call deck_scene(this%family%deck, this%scene)
       if (complete .and. proof%outcome%verdict == verdict%collapsed) then
          this%decision%system = this%scene%system
          return

@@ -110,6 +110,11 @@ contains
       if (this%exact_known) call exact_thickness(this%family%deck, this%exact, this%exact_known)
       call system_clock(start, rate)
       call plan_album(this)
+      if (this%searches) then
+         ! the scene of one value is none of another
+         allocate (this%critical%scene)
+         call move_scene(this%scene, this%critical%scene)
+      end if
       if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
       if (this%searches .and. this%limerick) then
          call search_limerick(this)

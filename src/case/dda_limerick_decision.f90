@@ -27,7 +27,8 @@ contains
 
    !> Decide the scene under Shi's scheme
    module procedure decide_limerick
-      call deck_scene(this%family%deck, this%scene)
+      if (.not. allocated(this%scene%contacts%joint)) &
+         & call deck_scene(this%family%deck, this%scene)
       call run_scheme(this%family%deck, this%scene, this%decision, this%album)
    end procedure decide_limerick
 

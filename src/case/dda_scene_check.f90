@@ -33,15 +33,18 @@ module dda_scene_check
 
       !> Check the file that a run goes on from: a single case must be able to, of many each finds
       !> out
-      module subroutine check_start(deck, error)
+      module subroutine check_start(deck, scene, error)
          type(deck_t), intent(in) :: deck
+         type(scene_t), intent(inout) :: scene  !! Scene of a single case, made here
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_start
 
       !> Check that live loads act on blocks that move, and that the load factor has loads
-      pure module subroutine check_live_cases(deck, chosen, error)
+      pure module subroutine check_live_cases(deck, chosen, scene, error)
          type(deck_t), intent(in) :: deck
          logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
+         !> Scene of a single case, made here if it is not there and needed; else of any case
+         type(scene_t), intent(inout) :: scene
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_live_cases
 
@@ -53,7 +56,8 @@ contains
    !> a file; warn of blocks that will fall, and of units that are no metres
    subroutine check_scene(deck, scene, error, watch, cases)
       type(deck_t), intent(inout) :: deck
-      !> The scene of the first case, if its blocks are from a file
+      !> Scene of the first case, if its blocks are from a file or if it is the only one and a
+      !> check needs it; without blocks otherwise
       type(scene_t), intent(out) :: scene
       !> Fault of the scene, or a missing file
       type(error_t), allocatable, intent(out) :: error
@@ -69,9 +73,10 @@ contains
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
       call cut_lines(deck, error)
       if (.not. allocated(error) .and. deck%value(analysis_restart)%given) &
-         & call check_start(deck, error)
+         & call check_start(deck, scene, error)
       if (.not. allocated(error)) call check_shapes(deck, chosen, error)
-      if (.not. allocated(error)) call check_live_cases(deck, chosen, error)
+      if (.not. allocated(error)) call check_live_cases(deck, chosen, scene, error)
+      if (size(chosen) > 1 .and. allocated(scene%contacts%joint)) deallocate (scene%contacts%joint)
       if (allocated(error) .or. deck%value(scene_kind)%text /= "blocks") return
       call check_modes(deck, scene, error)
    end subroutine check_scene
@@ -88,7 +93,7 @@ contains
    !> Check the first case of each mode
    pure subroutine check_modes(deck, scene, error)
       type(deck_t), intent(inout) :: deck
-      type(scene_t), intent(out) :: scene
+      type(scene_t), intent(inout) :: scene  !! Scene of the first case, made if not there
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
       integer :: number, mode
@@ -101,8 +106,8 @@ contains
          mode = findloc(["static  ", "dynamic ", "limerick"] == &
             & work%value(analysis_mode)%text, .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (number == 1 .and. work%value(scene_kind)%text == "blocks") &
-            & call deck_scene(work, scene)
+         if (work%value(scene_kind)%text == "blocks" &
+            & .and. .not. allocated(scene%contacts%joint)) call deck_scene(work, scene)
          if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
          if (allocated(error) .or. all(seen) .or. .not. any( &

@@ -15,7 +15,7 @@ contains
    !> Check the file that a run goes on from
    module procedure check_start
       character(len=:), allocatable :: name
-      type(scene_t) :: scene
+      type(scene_t) :: begun
       type(march_t) :: march
       logical :: exists
 
@@ -26,8 +26,9 @@ contains
             & analysis_restart)
       else if (n_cases(deck) == 1) then
          call deck_scene(deck, scene)
-         call load_restart(file_beside(deck, name), scene%settings, scene%system, &
-            & scene%contacts, march, error)
+         begun = scene
+         call load_restart(file_beside(deck, name), begun%settings, begun%system, &
+            & begun%contacts, march, error)
       else
          call check_restart(file_beside(deck, name), error)
       end if
@@ -37,8 +38,7 @@ contains
    module procedure check_live_cases
       type(deck_place_t) :: place
       type(deck_t) :: work
-      type(scene_t) :: scene
-      logical :: built, points, reshaped
+      logical :: points, reshaped
       integer :: number
 
       place = factor_place(deck, load_displacement_factor)
@@ -51,7 +51,6 @@ contains
       if (place%line == 0 .and. .not. points) return
       reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
          & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
-      built = .false.
       do number = 1, size(chosen)
          if (.not. chosen(number)) cycle
          call turn_to_case(deck, number, work, error)
@@ -60,8 +59,7 @@ contains
             call deck_error(error, "load%load_factor needs a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
          else if (points) then
-            if (reshaped .or. .not. built) call deck_scene(work, scene)
-            built = .true.
+            if (reshaped .or. .not. allocated(scene%contacts%joint)) call deck_scene(work, scene)
             call check_live_points(work, scene, error)
          end if
          if (allocated(error)) return

@@ -79,7 +79,8 @@ contains
       before = this%family%deck%value(vehicle_position)%number
       this%jump_note = ""
       associate (deck => this%family%deck)
-         call deck_scene(deck, scene)
+         call move_scene(this%critical%scene, scene)
+         if (.not. allocated(scene%contacts%joint)) call deck_scene(deck, scene)
          if (.not. has_limit_analysis(scene%settings, scene%contacts)) return
          call take_bridge(deck, scene, bridge)
          ways = merge(2, 1, deck%value(vehicle_both_directions)%flag .and. .not. is_symmetric(deck))

@@ -48,7 +48,8 @@ contains
    pure subroutine find_critical(family, search, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical
+      !> Without results in, perhaps with the scene of a value; results out
+      type(critical_t), intent(inout) :: critical
       type(critical_t) :: between
       type(search_t) :: part
       real(wp) :: value

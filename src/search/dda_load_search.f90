@@ -48,8 +48,9 @@ contains
       integer :: n
       logical :: rest
 
-      allocate (scene)
-      call family%build(search%low, scene, error)
+      call move_alloc(critical%scene, scene)
+      if (.not. allocated(scene)) allocate (scene)
+      call family%turn(search%low, scene, error)
       if (.not. allocated(error)) low = coefficient(family%load, scene%settings)
       if (.not. allocated(error)) call family%turn(search%high, scene, error)
       done = .not. allocated(error)
