@@ -5,12 +5,17 @@ module dda_force_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
    use dda_contacts, only : contacts_t, joint_place
+   use dda_deformation, only : moved_point
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
-   use dda_reactions, only : forces_of_blocks, supports_of
+   use dda_outer_loads, only : outer_loads
+   use dda_reactions, only : force_on, forces_of_blocks, supports_of
    use dda_search, only : proof_t
-   use dda_settings, only : settings_t, verdict
+   use dda_settings, only : load_direction, settings_t, verdict
+   use dda_small_systems, only : least_squares
+   use dda_submatrices, only : body_load
    use dda_text, only : add_line, fields, growing_text_t, lines_of, to_text
+   use dda_vector, only : cross
    use dda_write_results, only : reaction_lines
    implicit none
    private
@@ -27,22 +32,8 @@ module dda_force_rows
    !> Names of the columns of proof_motion.csv
    character(len=*), parameter :: proof_motion_header = "case,value,block,x,y,u,v,spin"
 
-   interface
-
-      !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
-      !> least forces
-      pure module subroutine share_among_points(settings, system, contacts, time, support, block, &
-         & reaction)
-         type(settings_t), intent(in) :: settings
-         type(block_system_t), intent(in) :: system
-         type(contacts_t), intent(in) :: contacts
-         real(wp), intent(in) :: time               !! The time [s]
-         integer, intent(in) :: support(:, :)       !! The supports: (2, n)
-         integer, intent(in) :: block               !! The block
-         real(wp), intent(inout) :: reaction(:, :)  !! Receives the reactions: (3, n)
-      end subroutine share_among_points
-
-   end interface
+   !> Remainder below which a column is dependent, over the largest
+   real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains
 
@@ -267,4 +258,105 @@ contains
       end do
       lines = lines_of(rows)
    end function proof_motion_lines
+
+   !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
+   !> least forces
+   pure subroutine share_among_points(settings, system, contacts, time, support, block, &
+      & reaction)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      real(wp), intent(in) :: time               !! The time [s]
+      integer, intent(in) :: support(:, :)       !! The supports: (2, n)
+      integer, intent(in) :: block               !! The block
+      real(wp), intent(inout) :: reaction(:, :)  !! Receives the reactions: (3, n)
+      real(wp) :: wanted(3), place(2), size_of
+      real(wp), allocatable :: column(:, :), force(:)
+      integer, allocatable :: owner(:)
+      integer :: axis, i, n, side
+
+      wanted = -outer_force(settings, system, time, block)
+      do i = 1, size(contacts%joint)
+         associate (joint => contacts%joint(i))
+            do side = 1, 2
+               if (joint%block(side) == block) wanted = wanted &
+                  & - force_on(joint_place(system, contacts, i), contacts%force(:, i), side)
+            end do
+         end associate
+      end do
+      allocate (column(3, 2*size(support, 2)), owner(2*size(support, 2)))
+      n = 0
+      do i = 1, size(support, 2)
+         if (support(1, i) /= block .or. support(2, i) == 0) cycle
+         associate (held => settings%boundary%held(support(2, i)))
+            place = held%point
+            if (settings%current) place = moved_point(held%point, system%centroid(:, block), &
+               & system%motion(:, block))
+            do axis = 1, 2
+               if (.not. held%along(axis)) cycle
+               n = n + 1
+               owner(n) = i
+               column(:, n) = merge([1.0_wp, 0.0_wp, -place(2)], [0.0_wp, 1.0_wp, place(1)], &
+                  & axis == 1)
+            end do
+         end associate
+      end do
+      ! moments are about the block, in units of its size: the least forces do not depend on the
+      ! origin
+      place = system%centroid(:, block)
+      size_of = sqrt(system%area(block))
+      do i = 1, n
+         column(:, i) = moved(column(:, i), place, size_of)
+      end do
+      force = least_forces(column(:, :n), moved(wanted, place, size_of))
+      do i = 1, n
+         column(3, i) = size_of*column(3, i) + place(1)*column(2, i) - place(2)*column(1, i)
+         reaction(:, owner(i)) = reaction(:, owner(i)) + force(i)*column(:, i)
+      end do
+   end subroutine share_among_points
+
+   !> A force with its moment about another point, in units of a length
+   pure function moved(wrench, place, length) result(seen)
+      real(wp), intent(in) :: wrench(3)  !! Force, and moment about the origin: (3)
+      real(wp), intent(in) :: place(2)   !! The point: (2) [m]
+      real(wp), intent(in) :: length     !! The length [m]
+      real(wp) :: seen(3)                !! The same with the other moment: (3)
+
+      seen = [wrench(1:2), (wrench(3) - cross(place, wrench(1:2)))/length]
+   end function moved
+
+   !> The least forces with a given sum: x = A' y with A A' y = b
+   pure function least_forces(a, b) result(x)
+      real(wp), intent(in) :: a(:, :)  !! Force and moment of each on the block: (3, n)
+      real(wp), intent(in) :: b(3)     !! The sum: (3)
+      real(wp) :: x(size(a, 2))        !! The forces: (n)
+
+      x = matmul(least_squares(matmul(a, transpose(a)), b, negligible), a)
+      ! once more, for what rounding has left
+      x = x + matmul(least_squares(matmul(a, transpose(a)), b - matmul(a, x), negligible), a)
+   end function least_forces
+
+   !> Sum of all loads on a block, and their moment about the origin of coordinates
+   pure function outer_force(settings, system, time, block) result(wrench)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      real(wp), intent(in) :: time
+      integer, intent(in) :: block  !! The block, which can move
+      real(wp) :: wrench(3)         !! Force and moment: (3) [N/m, N/m, N]
+      real(wp) :: weight(3, maxval(system%equation)), of_block(6)
+      real(wp), dimension(3, maxval(system%equation)) :: load, felt
+      real(wp) :: place(2)
+      integer :: b
+
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         of_block = body_load(system%unit_weight(b)*load_direction(settings), system%area(b))
+         weight(:, system%equation(b)) = of_block(:3)
+      end do
+      call outer_loads(system, settings, time, 1.0_wp, weight, load, felt)
+      wrench = load(:, system%equation(block))
+      place = system%centroid(:, block)
+      if (settings%current) place = place + system%motion(1:2, block)
+      wrench(3) = wrench(3) + cross(place, wrench(1:2))
+   end function outer_force
 end module dda_force_rows

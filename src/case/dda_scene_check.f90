@@ -1,24 +1,32 @@
 !> Checks of a deck that require its scene: modes, stages, widths, supports, units
 module dda_scene_check
    use dda_block_scene, only : floating_block
+   use dda_boundary, only : boundary_t
    use dda_contact_types, only : near_miss_t
    use dda_contacts, only : joint_search_t
-   use dda_deck, only : deck_t, has_group, keeps_velocities
+   use dda_deck, only : deck_error, deck_t, file_beside, has_group, keeps_velocities, key_error, &
+      & place_of, source_of
    use dda_deck_check_case, only : check_model
+   use dda_deck_keys, only : deck_key
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : choose_cases, n_cases, turn_to_case
    use dda_error, only : add_warning, error_t, fatal_error, warnings_t
    use dda_key_names, only : analysis_flow, analysis_geometry, analysis_mode, analysis_restart, &
-      & limerick_dynamic, material_compressive_strength, output_energy, output_reactions, &
-      & scene_kind, search_group
+      & limerick_dynamic, live_group, load_displacement_factor, load_load_factor, &
+      & material_compressive_strength, output_energy, output_reactions, scene_kind, search_group, &
+      & search_parameter, support_left_dx, support_right_rotation_deg, vehicle_group
+   use dda_key_value, only : deck_place_t
    use dda_kinds, only : wp
    use dda_limerick_scene, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
+   use dda_live_loads, only : bears_live, check_live_points
    use dda_near_miss, only : find_near_misses
    use dda_outline, only : outline_of
    use dda_read_deck, only : geometry_file
+   use dda_restart, only : check_restart, load_restart
    use dda_scene, only : scene_t
    use dda_shape_check, only : check_shapes
+   use dda_step_context, only : march_t
    use dda_text, only : place_text, raised_text, short_text, to_text
    use dda_watch, only : watch_t
    implicit none
@@ -28,27 +36,6 @@ module dda_scene_check
 
    !> Strain under self-weight that causes a warning
    real(wp), parameter :: doubtful_strain = 1.0e-3_wp
-
-   interface
-
-      !> Check the file that a run goes on from: a single case must be able to, of many each finds
-      !> out
-      module subroutine check_start(deck, scene, error)
-         type(deck_t), intent(in) :: deck
-         type(scene_t), intent(inout) :: scene  !! Scene of a single case, made here
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_start
-
-      !> Check that live loads act on blocks that move, and that the load factor has loads
-      pure module subroutine check_live_cases(deck, chosen, scene, error)
-         type(deck_t), intent(in) :: deck
-         logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
-         !> Scene of a single case, made here if it is not there and needed; else of any case
-         type(scene_t), intent(inout) :: scene
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine check_live_cases
-
-   end interface
 
 contains
 
@@ -160,7 +147,6 @@ contains
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      integer :: i
 
       if (any(scene%system%unit_weight > 0.0_wp)) return
       if (allocated(scene%system%initial_stress)) then
@@ -171,12 +157,7 @@ contains
          if (allocated(boundary%loaded)) then
             if (size(boundary%loaded) > 0) return
          end if
-         if (allocated(boundary%held)) then
-            do i = 1, size(boundary%held)
-               if (.not. allocated(boundary%held(i)%path%value)) cycle
-               if (any(abs(boundary%held(i)%path%value) > 0.0_wp)) return
-            end do
-         end if
+         if (leads_points(boundary)) return
       end associate
       call fatal_error(error, "expected a load, got none: load%gravity is 0, no material has a "// &
          & "unit_weight, and no point has a load or a prescribed displacement; add one", &
@@ -323,4 +304,97 @@ contains
          & trim(adjustl(figure))//": lengths, weights or young in other units than m, N, Pa?", &
          & geometry_file(deck), 1)
    end subroutine doubt_units
+
+   !> Check the file that a run goes on from: a single case must be able to, of many each finds
+   !> out
+   subroutine check_start(deck, scene, error)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(inout) :: scene  !! Scene of a single case, made here
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: name
+      type(scene_t) :: begun
+      type(march_t) :: march
+      logical :: exists
+
+      name = deck%value(analysis_restart)%text
+      inquire (file=file_beside(deck, name), exist=exists)
+      if (.not. exists) then
+         call key_error(error, "there is no restart file '"//name//"'; check the name", deck, &
+            & analysis_restart)
+      else if (n_cases(deck) == 1) then
+         call deck_scene(deck, scene)
+         begun = scene
+         call load_restart(file_beside(deck, name), begun%settings, begun%system, &
+            & begun%contacts, march, error)
+      else
+         call check_restart(file_beside(deck, name), error)
+      end if
+   end subroutine check_start
+
+   !> Check that live loads act on blocks that move, and that the load factor has loads
+   pure subroutine check_live_cases(deck, chosen, scene, error)
+      type(deck_t), intent(in) :: deck
+      logical, intent(in) :: chosen(:)  !! Cases that will be computed: (n)
+      !> Scene of a single case, made here if it is not there and needed; else of any case
+      type(scene_t), intent(inout) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_place_t) :: place
+      type(deck_t) :: work
+      logical :: points, reshaped
+      integer :: number
+
+      place = factor_place(deck, load_displacement_factor)
+      if (place%line > 0 .and. .not. (leads_points(deck%plan%boundary) &
+         & .or. source_of(deck) == "shape" &
+         & .and. any(deck%value(support_left_dx:support_right_rotation_deg)%given))) &
+         & call deck_error(error, "load%displacement_factor needs a prescribed displacement, got " &
+         & //"none; add &support or a displacement line of a file of blocks", deck, place)
+      if (allocated(error)) return
+      place = factor_place(deck, load_load_factor)
+      points = has_group(deck, live_group) .or. has_group(deck, vehicle_group)
+      if (place%line == 0 .and. .not. points) return
+      reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
+         & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
+      do number = 1, size(chosen)
+         if (.not. chosen(number)) cycle
+         call turn_to_case(deck, number, work, error)
+         if (allocated(error)) return
+         if (place%line > 0 .and. .not. bears_live(work)) then
+            call deck_error(error, "load%load_factor needs a live load, got none; add "// &
+               & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
+         else if (points) then
+            if (reshaped .or. .not. allocated(scene%contacts%joint)) call deck_scene(work, scene)
+            call check_live_points(work, scene, error)
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine check_live_cases
+
+   !> True if displacements are prescribed
+   pure logical function leads_points(boundary)
+      type(boundary_t), intent(in) :: boundary
+      integer :: i
+
+      leads_points = .false.
+      if (.not. allocated(boundary%held)) return
+      do i = 1, size(boundary%held)
+         associate (path => boundary%held(i)%path)
+            if (allocated(path%value)) leads_points = leads_points &
+               & .or. any(abs(path%value) > 0.0_wp)
+         end associate
+      end do
+   end function leads_points
+
+   !> Where a factor is given, swept or searched
+   pure type(deck_place_t) function factor_place(deck, key) result(place)
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: key  !! Place of its key in the registry
+      integer :: s
+
+      if (deck%value(key)%given) place = deck%value(key)%place
+      do s = 1, size(deck%sweeps)
+         if (deck%sweeps(s)%parameter%key == key) place = deck%sweeps(s)%place
+      end do
+      if (deck%searched%key == key) place = place_of(deck, search_parameter)
+   end function factor_place
 end module dda_scene_check

@@ -3,27 +3,44 @@
 !> A static run follows the loading path from stage to stage. The forces of a removed block act on
 !> its neighbours at first and then go to nothing; a new block fits its place, without force, and
 !> then gets its weight. A dynamic run goes on with the velocities of the blocks that stay.
-submodule (dda_decision) dda_stages
-   use dda_block_system, only : begin_motion
+module dda_stages
+   use dda_block_system, only : begin_motion, block_system_t
    use dda_boundary, only : present_at, stage_times
-   use dda_contacts, only : begin_forces, edge_pairs_t, keep_contacts
+   use dda_contacts, only : begin_forces, contacts_t, edge_pairs_t, keep_contacts
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, unloaded_state
+   use dda_decision, only : decide, record_collapse, record_rest, run_in_time
+   use dda_frames, only : album_t
    use dda_graph_decision, only : decide_graph
    use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_kinds, only : wp
    use dda_path_event, only : path_end
-   use dda_scene_graph, only : has_limit_analysis, scene_graph
-   use dda_settings, only : verdict
+   use dda_scene, only : scene_t
+   use dda_scene_graph, only : graph_verdict_t, has_limit_analysis, scene_graph
+   use dda_search, only : decision_t
+   use dda_settings, only : settings_t, verdict
+   use dda_step_context, only : march_t
    use dda_verdict, only : outcome_t
    implicit none
+   private
+
+   public :: decide_in_stages, enter_stage
 
    !> Least slip over the largest motion, and least force over the largest, of a joint that slid
    real(wp), parameter :: slip_share = 1.0e-9_wp
 
 contains
 
-   !> Decide a scene stage by stage
-   module procedure decide_in_stages
+   !> Decide a scene stage by stage, or at once where no block is built or removed
+   pure subroutine decide_in_stages(scene, decision, album, onward, last)
+      !> The scene at its beginning, or where an earlier run has left it
+      type(scene_t), intent(in) :: scene
+      !> The decision of the last stage; its counts are those of all
+      type(decision_t), intent(out) :: decision
+      type(album_t), intent(inout) :: album
+      !> Where a dynamic run goes on and where it ended
+      type(march_t), intent(inout) :: onward
+      real(wp), intent(out) :: last  !! Time at which the last stage began [s]
       real(wp), allocatable :: time(:)
 
       last = 0.0_wp
@@ -47,7 +64,7 @@ contains
          call begin_motion(decision%system)
          call begin_forces(decision%contacts)
       end associate
-   end procedure decide_in_stages
+   end subroutine decide_in_stages
 
    !> Move from stage to stage
    pure subroutine move_through(settings, time, decision, album, onward, last)
@@ -189,7 +206,12 @@ contains
    end function has_slid
 
    !> Set the blocks and contacts that exist from a time on
-   module procedure enter_stage
+   pure subroutine enter_stage(settings, time, system, contacts)
+      type(settings_t), intent(in) :: settings
+      real(wp), intent(in) :: time  !! The time [s]
+      type(block_system_t), intent(inout) :: system
+      !> Their contacts, those of the stage before or of all blocks
+      type(contacts_t), intent(inout) :: contacts
       logical :: present(size(system%area)), kept(size(contacts%joint))
       integer :: b, j, n
 
@@ -207,7 +229,7 @@ contains
          kept(j) = all(present(contacts%joint(j)%block))
       end do
       call keep_contacts(kept, contacts)
-   end procedure enter_stage
+   end subroutine enter_stage
 
    !> The state that the next stage begins with: joints of blocks that stay keep what they carry;
    !> what the others carried is a load on those that stay
@@ -281,4 +303,4 @@ contains
       end if
       label = [label, [(n + i, i=1, size(graph%kind) - size(label))]]
    end function labels
-end submodule dda_stages
+end module dda_stages

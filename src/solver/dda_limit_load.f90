@@ -4,20 +4,25 @@
 !> trust in the method that found them. The dead load is decided first.
 !>
 !> Equation (M6) of docs/method.md
+!>
+!> The thrust is the horizontal force in the joint, positive where it presses. A block without
+!> weight is put between the joint and one of its blocks, tied to that block upright and against
+!> turning alone: what goes through horizontally is a pair of forces on the two, a load factor, and
+!> limit analysis finds its ends.
 module dda_limit_load
+   use, intrinsic :: iso_fortran_env, only : int8
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, load_path_t, &
       & no_limit, set_path, size_of_load
-   use dda_joint_graph, only : crushes, joint_graph_t, unit_of_length
+   use dda_joint_graph, only : crushes, joint_graph_t, joint_kind, unit_of_length
    use dda_joint_rays, only : bound_rays, forces_of_rays, scale_load
    use dda_joint_strips, only : add_strips, never_crush
    use dda_kinds, only : wp
-   use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
-      & crushing_power, flow_margin, stopping_factor
+   use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, crushing_power, &
+      & flow_margin, stopping_factor
    use dda_limit_decision, only : drives, go_to_load, keep_velocities, load_state, state_at_end, &
       & unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
-   use, intrinsic :: iso_fortran_env, only : int8
    implicit none
    private
 
@@ -78,23 +83,7 @@ module dda_limit_load
    !> Largest difference of both factors of crushing joints
    real(wp), parameter :: widest = 1.0e-8_wp
 
-
    interface
-
-      !> The range of thrust of a joint
-      pure module subroutine find_thrust_range(graph, load, force, joint, thrust, known)
-         type(joint_graph_t), intent(in) :: graph
-         !> Loads: (3, n_block) [N/m, N/m, N]
-         real(wp), intent(in) :: load(:, :)
-         !> N1, N2, T of each joint that carry it: (3, n_joint) [N/m]
-         real(wp), intent(in) :: force(:, :)
-         !> Number of the joint
-         integer, intent(in) :: joint
-         !> Least and greatest thrust: (2) [N/m]
-         real(wp), intent(out) :: thrust(2)
-         !> True for those of the two that exist: one may have no bound
-         logical, intent(out) :: known(2)
-      end subroutine find_thrust_range
 
       !> Begin with an assembly
       pure module subroutine begin_walk(graph, load, walk)
@@ -114,6 +103,11 @@ module dda_limit_load
       end subroutine walk_to
 
    end interface
+
+   !> Relative gap of the bounds of either end
+   real(wp), parameter :: tolerance = 1.0e-10_wp
+   !> Least horizontal component of a joint normal with a thrust
+   real(wp), parameter :: least_normal = 1.0e-6_wp
 
 contains
 
@@ -306,4 +300,71 @@ contains
          limit%upper = max(limit%upper + rounding, 0.0_wp)
       end select
    end subroutine certify
+
+   !> The range of thrust of a joint
+   pure subroutine find_thrust_range(graph, load, force, joint, thrust, known)
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> N1, N2, T of each joint that carry it: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Least and greatest thrust: (2) [N/m]
+      real(wp), intent(out) :: thrust(2)
+      !> True for those of the two that exist: one may have no bound
+      logical, intent(out) :: known(2)
+      type(joint_graph_t) :: split
+      type(limit_load_t) :: limit
+      real(wp) :: dead(3, graph%n_block + 1), live(3, graph%n_block + 1), share(3), way, middle
+      integer :: k, side
+
+      known = .false.
+      thrust = 0.0_wp
+      side = merge(1, 2, graph%block(1, joint) > 0)
+      share = graph%row(1, :, side, joint)
+      if (.not. abs(share(1)) > least_normal) return
+      way = sign(1.0_wp, share(1))
+      middle = way*dot_product(share, force(:, joint))
+      call split_graph(graph, joint, side, split)
+      dead = 0.0_wp
+      dead(:, :graph%n_block) = load
+      live = 0.0_wp
+      live(1, graph%n_block + 1) = -way
+      live(1, graph%block(side, joint)) = way
+      dead = dead + middle*live
+      do k = 1, 2
+         call find_limit(split, dead, merge(-1.0_wp, 1.0_wp, k == 1)*live, tolerance, limit, &
+            & stands=.true.)
+         known(k) = limit%state == limit_state%found
+         if (known(k)) thrust(k) = middle &
+            & + merge(-0.5_wp, 0.5_wp, k == 1)*(limit%lower + limit%upper)
+      end do
+   end subroutine find_thrust_range
+
+   !> The same joints, with a block without weight between one of them and one of its blocks
+   pure subroutine split_graph(graph, joint, side, split)
+      type(joint_graph_t), intent(in) :: graph
+      integer, intent(in) :: joint
+      integer, intent(in) :: side  !! Its block, 1 or 2, from which it is separated
+      type(joint_graph_t), intent(out) :: split
+      integer :: n
+
+      n = size(graph%kind)
+      split%n_block = graph%n_block + 1
+      allocate (split%block(2, n + 1), split%kind(n + 1))
+      allocate (split%row(3, 3, 2, n + 1), split%friction(n + 1), split%length(n + 1), &
+         & source=0.0_wp)
+      split%block(:, :n) = graph%block
+      split%kind(:n) = graph%kind
+      split%row(:, :, :, :n) = graph%row
+      split%friction(:n) = graph%friction
+      split%length(:n) = graph%length
+      if (allocated(graph%crush)) split%crush = [graph%crush, huge(1.0_wp)]
+      split%block(side, joint) = split%n_block
+      split%kind(n + 1) = joint_kind%pin
+      split%block(:, n + 1) = [graph%block(side, joint), split%n_block]
+      split%row(2, 1, :, n + 1) = [-1.0_wp, 1.0_wp]
+      split%row(3, 3, :, n + 1) = [-1.0_wp, 1.0_wp]
+   end subroutine split_graph
 end module dda_limit_load
