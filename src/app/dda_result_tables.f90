@@ -1,30 +1,36 @@
 !> Result tables of one deck: start, rows per case, end
+!>
+!> A row passed to the system survives the end of the program, but not a power failure. Therefore
+!> the tables are synced at intervals, results.csv last. Its length is recorded together with the
+!> boot identifier of the system. While this identifier is the same, all rows are valid; after a
+!> restart, those up to the recorded length.
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : is_link, sync_binary
    use dda_check_sum, only : add_sums, line_sum
-   use dda_deck_sweep, only : few_cases, n_cases, swept_texts
-   use dda_force_rows, only : bars_header, proof_forces_header, proof_motion_header
    use dda_deck, only : deck_t, has_group
-   use dda_disk_record, only : write_disk_record
-   use dda_fill_loads, only : fill_yields
+   use dda_deck_sweep, only : few_cases, n_cases, swept_texts
    use dda_error, only : error_t, fatal_error
+   use dda_fill_loads, only : fill_yields
+   use dda_force_rows, only : bars_header, proof_forces_header, proof_motion_header
    use dda_key_names, only : output_blocks, output_condition, output_energy, output_frames, &
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
    use dda_table_file, only : append_line, close_table, field_number, first_line, open_table, &
-      & remove_file, table_file_t, without_field
+      & part_name, remove_file, rename_part, table_file_t, without_field
    use dda_text, only : add_line, bytes_of, fields, growing_text_t, lines_of, to_text
+   use dda_text_file, only : read_text_file
+   use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
       & told_blocks_t
-   use dda_write_frames, only : frame_joints_header, frames_header, points_header
    implicit none
    private
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, check_origin, open_tables, close_tables, write_case, write_waiting
    public :: swept_fields, left_out, common_total, sync_tables
+   public :: trusted_length
 
    !> Numbers of the tables in result_tables_t
    type :: table_enum
@@ -87,6 +93,9 @@ module dda_result_tables
    !> Columns of results.csv that are also swept parameters
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
+
+   !> Linux: file with an identifier that changes at each start
+   character(len=*), parameter :: start_file = "/proc/sys/kernel/random/boot_id"
 
 contains
 
@@ -343,4 +352,46 @@ contains
       call system_clock(now)
       if (now >= tables%due) call sync_tables(tables, error)
    end subroutine write_waiting
+
+   !> Record the length that is on the disk
+   subroutine write_disk_record(file, length, error)
+      character(len=*), intent(in) :: file  !! Name of the record
+      integer(int64), intent(in) :: length  !! Length of results.csv on the disk [bytes]
+      type(error_t), allocatable, intent(inout) :: error
+      type(table_file_t) :: record
+
+      if (allocated(error)) return
+      call open_table(part_name(file), to_text(real(length, wp))//" "//start_name(), record, error)
+      call close_table(record, error)
+      if (.not. allocated(error)) call rename_part(file, error)
+   end subroutine write_disk_record
+
+   !> Length of valid rows in results.csv [bytes]; the whole file in a folder without a record
+   integer(int64) function trusted_length(file)
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable :: text
+      type(error_t), allocatable :: error
+      logical :: there
+      integer :: stat
+
+      trusted_length = huge(trusted_length)
+      inquire (file=file, exist=there)
+      if (.not. there) return
+      call read_text_file(file, text, error)
+      if (index(text, " "//start_name()//new_line("a")) > 0) return
+      read (text, *, iostat=stat) trusted_length
+      if (stat /= 0) trusted_length = 0
+   end function trusted_length
+
+   !> Boot identifier of the system; a dash if there is none
+   function start_name() result(name)
+      character(len=36) :: name
+      integer :: unit, stat
+
+      name = "-"
+      open (newunit=unit, file=start_file, status="old", action="read", iostat=stat)
+      if (stat /= 0) return
+      read (unit, "(a)", iostat=stat) name
+      close (unit)
+   end function start_name
 end module dda_result_tables

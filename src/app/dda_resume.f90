@@ -7,9 +7,8 @@ submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : sync_binary
    use dda_check_sum, only : add_sums, line_sum
-   use dda_disk_record, only : trusted_length
    use dda_kinds, only : wp
-   use dda_result_tables, only : common_total, result_table_t, sync_tables, table
+   use dda_result_tables, only : common_total, result_table_t, sync_tables, table, trusted_length
    use dda_table_file, only : close_lines, field, field_number, keep_line, next_line, open_lines, &
       & open_table, part_name, rename_part, table_lines_t, without_field
    use dda_text, only : read_integer, read_number

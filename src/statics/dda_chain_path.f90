@@ -9,10 +9,9 @@
 !> Equation (M4) of docs/method.md
 module dda_chain_path
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : add_reaction, influence, sum_loads
+   use dda_chain_balance, only : add_reaction, hold_upright, influence, solve_3, sum_loads
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
-   use dda_three_unknowns, only : hold_upright, solve_3
    implicit none
    private
 
