@@ -5,7 +5,7 @@ module dda_limerick_model
    use dda_boundary, only : boundary_t, records_before, value_at
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
-   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_material, only : friction_coefficient, joint_law_t, material_t, no_slip_deg
    use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
@@ -14,9 +14,6 @@ module dda_limerick_model
    public :: contact_law, finite_law, force_at, half_size, loads_end, next_record
    public :: limerick_blocks_t, limerick_march_t, limerick_state, limerick_state_enum
    public :: new_blocks, new_march, measure_blocks
-
-   !> Friction angle of a joint without slip [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> Material and initial state of a block
    type, extends(material_t) :: limerick_material_t

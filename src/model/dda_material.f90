@@ -5,7 +5,10 @@ module dda_material
    private
 
    public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
-   public :: breaks_at_once, friction_left, loses_strength, weakens
+   public :: breaks_at_once, friction_left, loses_strength, no_slip_deg, set_friction, weakens
+
+   !> Friction angle from which a closed joint does not slide [deg]
+   real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> Material properties of a block
    type :: material_t
@@ -83,6 +86,16 @@ contains
 
       friction_left = law%friction - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
    end function friction_left
+
+   !> Set the friction of a joint from its angle
+   elemental subroutine set_friction(friction_deg, law)
+      real(wp), intent(in) :: friction_deg  !! Angle of friction [deg]
+      type(joint_law_t), intent(inout) :: law
+
+      law%no_slip = friction_deg >= no_slip_deg
+      law%friction = 0.0_wp
+      if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
+   end subroutine set_friction
 
    !> Coefficient of friction from the friction angle
    elemental function friction_coefficient(friction_deg) result(coefficient)

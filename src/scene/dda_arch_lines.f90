@@ -9,6 +9,7 @@ module dda_arch_lines
       & load_gravity_direction_deg, load_horizontal_coefficient, material_density, &
       & material_plane, material_poisson, material_young, vehicle_group
    use dda_kinds, only : wp
+   use dda_material, only : no_slip_deg
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
       & limerick_joint_t, analysis_material_t
    use dda_limerick_scene, only : abutment_depth, set_constants, widen
@@ -26,8 +27,6 @@ module dda_arch_lines
    real(wp), parameter :: inset = 0.15_wp
    !> Largest edge-node distance ratio
    real(wp), parameter :: largest_ratio = 0.01_wp
-   !> Friction angle of joints without slip [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
 
 contains
 

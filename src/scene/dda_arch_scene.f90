@@ -17,7 +17,7 @@ module dda_arch_scene
       & material_poisson, material_unit_weight, material_young, output_condition, search_group, &
       & search_tolerance, vehicle_group
    use dda_kinds, only : degree, pi, wp
-   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_material, only : friction_coefficient, joint_law_t, material_t, no_slip_deg, set_friction
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : flow_rule, overturned, settings_t
@@ -27,9 +27,6 @@ module dda_arch_scene
    public :: arch_scene, arch_numbers, joint_angles_deg, half_joints_deg, exact_thickness
    public :: search_start, arch_resolution
    public :: joint_law, material_of, set_loads, settings_of, unit_weight
-
-   !> Friction angle from which no joint slides [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> Default number of steps per step of full length
    real(wp), parameter :: cut_steps = 20.0_wp
@@ -101,11 +98,8 @@ contains
    !> Law of the joints
    pure type(joint_law_t) function joint_law(deck) result(law)
       type(deck_t), intent(in) :: deck
-      real(wp) :: friction_deg
 
-      friction_deg = deck%value(joint_friction_deg)%number
-      law%no_slip = friction_deg >= no_slip_deg
-      if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
+      call set_friction(deck%value(joint_friction_deg)%number, law)
       law%cohesion = deck%value(joint_cohesion)%number
       law%tension = deck%value(joint_tension)%number
       if (deck%value(joint_residual_deg)%given) law%residual = friction_coefficient( &

@@ -7,7 +7,7 @@ module dda_block_scene
    use dda_contact_search, only : new_joint_search
    use dda_contact_transfer, only : search_contacts
    use dda_kinds, only : wp
-   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_material, only : friction_coefficient, joint_law_t, material_t, no_slip_deg
    use dda_outline, only : outline_t
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
@@ -35,9 +35,6 @@ module dda_block_scene
       real(wp) :: law(5) = [50.0_wp, 0.0_wp, 0.0_wp, 90.0_wp, 0.0_wp]
       real(wp) :: water_rise = 0.0_wp  !! Rise of all piezometric lines [m]
    end type base_t
-
-   !> Largest friction angle; an open joint must not carry unlimited friction [deg]
-   real(wp), parameter :: most_friction_deg = 89.9_wp
 
 contains
 
@@ -372,7 +369,8 @@ contains
       !> strength is lost: (5) [deg, Pa, Pa, deg, m]
       real(wp), intent(in) :: value(5)
 
-      law%friction = friction_coefficient(min(value(1), most_friction_deg))
+      ! an open joint must not carry unlimited friction
+      law%friction = friction_coefficient(min(value(1), no_slip_deg))
       law%cohesion = value(2)
       law%tension = value(3)
       if (value(4) < value(1)) law%residual = friction_coefficient(value(4))

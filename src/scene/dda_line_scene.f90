@@ -15,16 +15,13 @@ module dda_line_scene
    use dda_kinds, only : pi, wp
    use dda_limerick_analysis, only : limerick_joint_t
    use dda_line_model, only : entity_role
-   use dda_material, only : friction_coefficient, joint_law_t
+   use dda_material, only : joint_law_t, set_friction
    use dda_scene, only : scene_t
    implicit none
    private
 
    public :: line_scene, check_line_scene, cut_lines, held_blocks, law_of_joint, line_system
    public :: points_of_lines
-
-   !> Friction angle from which a joint does not slide [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> Cohesion and tensile strength of bonds between pieces of a block [Pa]
    real(wp), parameter :: bond_strength = 1.0e15_wp
@@ -224,11 +221,7 @@ contains
       law = joint_law(deck)
       if (.not. allocated(deck%file_analysis)) return
       listed = deck%file_analysis%joint(number)
-      if (.not. deck%value(joint_friction_deg)%given) then
-         law%no_slip = listed%friction_deg >= no_slip_deg
-         law%friction = 0.0_wp
-         if (.not. law%no_slip) law%friction = friction_coefficient(listed%friction_deg)
-      end if
+      if (.not. deck%value(joint_friction_deg)%given) call set_friction(listed%friction_deg, law)
       if (.not. deck%value(joint_cohesion)%given) law%cohesion = listed%cohesion
       if (.not. deck%value(joint_tension)%given) law%tension = listed%tension
    end function law_of_joint
