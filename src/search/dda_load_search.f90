@@ -5,7 +5,7 @@ submodule (dda_critical) dda_load_search
    use dda_decision, only : record_collapse, record_rest
    use dda_graph_decision, only : see_fall, slide_along
    use dda_joint_graph, only : breaks, joint_graph_t
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_limit_load, only : find_limit, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
       & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
@@ -144,21 +144,20 @@ contains
       type(search_t), intent(in) :: search
       type(side_t), intent(out) :: side
       type(load_stations_t) :: stations
-      type(limit_load_t) :: limit
       type(settings_t) :: settings
       real(wp) :: far
 
       side%value = last
       if (.not. outward*(last - origin) > 0.0_wp) return
-      call find_associated(family%load, scene, graph, origin, last - origin, search, side, limit)
-      side%falls_dead = limit%state == limit_state%no_dead_equilibrium
+      call find_associated(family%load, scene, graph, origin, last - origin, search, side)
+      side%falls_dead = side%limit%state == limit_state%no_dead_equilibrium
       far = last
       if (side%limit%known .and. abs(side%limit%value(1)) < abs(last)) far = side%limit%value(1)
       associate (proof => side%proof)
-         proof%n_factorisation = limit%n_factorisation
+         proof%n_factorisation = side%limit%n_factorisation
          side%stands_upright = knows_no_order(scene%settings, graph)
          if (side%stands_upright .or. side%falls_dead) then
-            call take_associated(last - origin, search, limit, side)
+            call take_associated(last - origin, search, side)
             side%value = origin + side%value
             side%limit%value = origin + side%limit%value
             return
@@ -167,8 +166,8 @@ contains
          settings = with_coefficient(scene%settings, family%load, far)
          stations = load_stations(settings, .true.)
          call follow_from_rest(family, search%high, settings, stations, &
-            & side%limit%known .or. limit%state == limit_state%unbounded, scene, graph, proof)
-         proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
+            & side%limit%known .or. side%limit%state == limit_state%unbounded, scene, graph, proof)
+         proof%n_factorisation = proof%n_factorisation + side%limit%n_factorisation
          side%falls_dead = proof%no_start
          side%stands_upright = .not. proof%no_start
          side%end = proof%end
@@ -184,7 +183,7 @@ contains
             proof%flow = flow_rule%associated
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
-         if (is_at_limit(side)) call take_associated(last, search, limit, side)
+         if (is_at_limit(side)) call take_associated(last, search, side)
       end associate
    end subroutine follow_side
 
@@ -202,14 +201,13 @@ contains
    end function is_at_limit
 
    !> The associated limit of what is searched, where it is linear in the load
-   pure subroutine find_associated(load, scene, graph, origin, last, search, side, limit)
+   pure subroutine find_associated(load, scene, graph, origin, last, search, side)
       integer, intent(in) :: load  !! One of searched_load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: origin, last  !! Where it begins, and from there the end of the range
       type(search_t), intent(in) :: search
       type(side_t), intent(inout) :: side
-      type(limit_load_t), intent(out) :: limit  !! The limit, whose proofs the side has
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), tolerance
 
       if (breaks(graph) .or. load == searched_load%tilt .and. .not. &
@@ -218,14 +216,12 @@ contains
       ! gravity and a push across it are gravity that tilts
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
-      call find_limit(graph, dead, live, tolerance, limit)
-      call move_alloc(limit%force, side%limit%force)
-      call move_alloc(limit%velocity, side%limit%velocity)
-      side%limit%known = limit%state == limit_state%found
-      if (limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
+      call find_limit(graph, dead, live, tolerance, side%limit%limit_load_t)
+      side%limit%known = side%limit%state == limit_state%found
+      if (side%limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
       if (.not. side%limit%known) return
-      side%beyond = dead + (1.0_wp + nudge)*limit%upper*live
-      side%limit%value = sign(1.0_wp, last)*[limit%lower, limit%upper]
+      side%beyond = dead + (1.0_wp + nudge)*side%limit%upper*live
+      side%limit%value = sign(1.0_wp, last)*[side%limit%lower, side%limit%upper]
       side%limit%live = live
       if (load /= searched_load%tilt) return
       ! gravity that tilts is as large as before
@@ -235,27 +231,26 @@ contains
    end subroutine find_associated
 
    !> Take the associated limit as the answer
-   pure subroutine take_associated(last, search, limit, side)
+   pure subroutine take_associated(last, search, side)
       real(wp), intent(in) :: last  !! End of the range, from where the limit is counted
       type(search_t), intent(in) :: search
-      type(limit_load_t), intent(in) :: limit
       type(side_t), intent(inout) :: side
 
-      associate (proof => side%proof)
+      associate (proof => side%proof, limit => side%limit)
          proof%flow = flow_rule%associated
          side%end = path_end%collapsed
-         side%value = 0.5_wp*sum(side%limit%value)
-         side%half = max(0.5_wp*abs(side%limit%value(2) - side%limit%value(1)), &
+         side%value = 0.5_wp*sum(limit%value)
+         side%half = max(0.5_wp*abs(limit%value(2) - limit%value(1)), &
             & 4.0_wp*epsilon(1.0_wp)*abs(side%value), &
             & 0.5_wp*min(search%tolerance, path_resolution)*abs(side%value))
          ! a limit that may be nothing is nothing
-         if (product(side%limit%value) <= 0.0_wp) then
+         if (product(limit%value) <= 0.0_wp) then
             side%value = 0.0_wp
-            side%half = maxval(abs(side%limit%value))
+            side%half = maxval(abs(limit%value))
          end if
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
-            proof%mechanism = side%limit%velocity
+            proof%mechanism = limit%velocity
             proof%is_told = limit%state == limit_state%found
          case (limit_state%unbounded)
             side%end = path_end%reached
@@ -267,7 +262,7 @@ contains
             & side%end = path_end%reached
          if (side%end == path_end%reached) side%value = last
          proof%end = side%end
-         proof%force = side%limit%force
+         proof%force = limit%force
          ! the path has left this state before the limit
          if (allocated(proof%state)) deallocate (proof%state)
       end associate

@@ -7,6 +7,7 @@ module dda_search
    use dda_contacts, only : contacts_t, place_all_joints
    use dda_kinds, only : wp
    use dda_limit_decision, only : load_decision_t
+   use dda_limit_load, only : limit_load_t
    use dda_scene, only : link_t, scene_t
    use dda_settings, only : verdict
    use dda_verdict, only : outcome_t
@@ -32,14 +33,10 @@ module dda_search
       logical :: check_far_end = .true.
    end type search_t
 
-   !> An associated limit with its proofs
-   type :: limit_t
+   !> An associated limit with its proofs, whose forces carry the load at the first of its values
+   type, extends(limit_load_t) :: limit_t
       logical :: known = .false.     !! True if it is known
       real(wp) :: value(2) = 0.0_wp  !! The limit from below and from above
-      !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Velocities of the mechanism that does not let pass the second: (3, n_block)
-      real(wp), allocatable :: velocity(:, :)
       !> Load added per unit of the coefficient: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: live(:, :)
    end type limit_t
