@@ -10,6 +10,7 @@ module dda_read_blocks
    use dda_error, only : error_t, fatal_error, place_error, warnings_t
    use dda_growth, only : make_room
    use dda_kinds, only : wp
+   use dda_read_record, only : find_line
    use dda_text, only : place_text, read_integer, read_number, short_text, to_text
    use dda_watch, only : watch_t
    use dda_word_list, only : largest_coordinate
@@ -110,7 +111,7 @@ contains
       type(reading_t) :: reading
       type(site_t) :: site
       type(line_t) :: line
-      integer :: number, start, finish
+      integer :: number, start, first, last
 
       reading%file = file
       call new_plan(reading%plan)
@@ -120,12 +121,10 @@ contains
       start = 1
       number = 0
       do while (start <= len(text) .and. .not. allocated(error))
-         finish = line_end(text, start)
-         number = number + 1
-         call split_line(text(start:finish), number, line, error)
+         call find_line(text, start, first, last, number)
+         call split_line(text(first:last), number, line, error)
          if (.not. allocated(error) .and. line%n > 0) call take_line(line, reading, warnings, error)
          call place_error(error, number)
-         start = finish + 2
          if (present(watch) .and. modulo(number, report_lines) == 0) &
             & call watch%tell("reading blocks", real(start, wp)/real(len(text), wp))
       end do
@@ -140,17 +139,6 @@ contains
       if (.not. allocated(error)) return
       if (.not. allocated(error%file)) error%file = file
    end subroutine parse_blocks
-
-   !> Last character of a line
-   pure integer function line_end(text, start)
-      character(len=*), intent(in) :: text
-      integer, intent(in) :: start  !! First character of the line
-
-      do line_end = start - 1, len(text) - 1
-         if (text(line_end + 1:line_end + 1) == achar(10)) return
-      end do
-      line_end = len(text)
-   end function line_end
 
    !> Read a line: the first one of an entry, or a row of the entry
    pure subroutine take_line(line, reading, warnings, error)

@@ -10,7 +10,8 @@ module dda_read_record
    implicit none
    private
 
-   public :: read_record, parse_record, column_size, separator_of, field_of, find_line, n_columns
+   public :: read_record, parse_record, column_of, column_size, separator_of, field_of, find_line
+   public :: n_columns
 
    !> Maximum length of a column name [characters]
    integer, parameter :: column_size = 80
@@ -191,7 +192,7 @@ contains
       integer, intent(out) :: place(3)        !! Numbers of the columns, 0 for none: (3)
       type(error_t), allocatable, intent(out) :: error
       character :: separator
-      integer :: i, k
+      integer :: i
       logical :: ok
 
       separator = separator_of(header)
@@ -201,17 +202,25 @@ contains
          call read_integer(trim(column(i)), place(i), ok)
          if (ok) ok = place(i) >= merge(1, 0, i == 1) .and. place(i) <= most_columns
          if (ok) cycle
-         do k = n_columns(header, separator), 1, -1
-            if (lower_case(field_of(header, k, separator)) == lower_case(column(i))) exit
-         end do
-         place(i) = k
-         if (k > 0) cycle
+         place(i) = column_of(header, column(i), separator)
+         if (place(i) > 0) cycle
          call fatal_error(error, "expected column '"//shown(trim(column(i)))//"', a number from " &
             & //"1 to "//to_text(most_columns)//" or a name in the header, got none; " &
             & //"name another")
          return
       end do
    end subroutine find_columns
+
+   !> Number of a column; 0 if there is none
+   pure integer function column_of(header, name, separator) result(column)
+      character(len=*), intent(in) :: header
+      character(len=*), intent(in) :: name    !! Name of the column, in any case
+      character, intent(in) :: separator
+
+      do column = n_columns(header, separator), 1, -1
+         if (lower_case(field_of(header, column, separator)) == lower_case(name)) return
+      end do
+   end function column_of
 
    !> Number of fields of a line
    pure integer function n_columns(line, separator)

@@ -12,8 +12,8 @@ module dda_vehicle_list
       & vehicle_track_width, vehicle_wheel_width
    use dda_key_value, only : deck_place_t
    use dda_kinds, only : wp
-   use dda_read_record, only : field_of, find_line, n_columns, separator_of
-   use dda_text, only : lower_case, read_number, short_text, to_text
+   use dda_read_record, only : column_of, field_of, find_line, n_columns, separator_of
+   use dda_text, only : read_number, short_text, to_text
    use dda_text_file, only : read_text_file, text_mark
    implicit none
    private
@@ -167,7 +167,7 @@ contains
       integer :: i
 
       do i = 1, size(needed)
-         if (column_of(header, trim(needed(i))) == 0) then
+         if (column_of(header, needed(i), separator_of(header)) == 0) then
             call fatal_error(error, "expected the columns name, axles_kN, spacings_m, got none "// &
                & "named "//trim(needed(i)), file, number)
             return
@@ -242,21 +242,9 @@ contains
       integer :: column
 
       text = ""
-      column = column_of(header, name)
+      column = column_of(header, name, separator_of(header))
       if (column > 0) text = field_of(line, column, separator_of(header))
    end function cell
-
-   !> Number of a column; 0 if there is none
-   pure integer function column_of(header, name) result(column)
-      character(len=*), intent(in) :: header
-      character(len=*), intent(in) :: name
-      character :: separator
-
-      separator = separator_of(header)
-      do column = n_columns(header, separator), 1, -1
-         if (lower_case(field_of(header, column, separator)) == lower_case(name)) return
-      end do
-   end function column_of
 
    !> The vehicle of a deck in words, with three digits; empty where it has no effective width
    pure function vehicle_words(deck) result(words)
