@@ -42,7 +42,7 @@ contains
 
       call plan_panels(matrix, factor%plan)
       allocate (factor%number(factor%plan%start(size(factor%plan%start)) - 1))
-      allocate (factor%exchange(merge(1, size(matrix%diagonal(1, :, :)), matrix%symmetric)))
+      allocate (factor%exchange(size(matrix%diagonal(1, :, :))))
    end subroutine plan_factor
 
    !> Factor a matrix; one that is not positive definite, or not symmetric and singular, gives a
@@ -69,16 +69,36 @@ contains
       end associate
    end subroutine factorise
 
-   !> Solve for one right-hand side
+   !> Solve for one right-hand side, panel by panel
    pure subroutine substitute(factor, x)
-      !> Usable factor
-      type(block_factor_t), intent(in) :: factor
-      real(wp), intent(inout) :: x(:, :)  !! Right-hand side in, solution out: (n_dof, n_block)
-      real(wp) :: y(size(x, 1), size(x, 2))
+      type(block_factor_t), intent(in) :: factor  !! Usable factor
+      real(wp), intent(inout), contiguous :: x(:, :)  !! Load in, solution out: (n_dof, n_block)
+      real(wp) :: rest(size(x, 1)*factor%plan%most_rows), y(size(x, 1), size(x, 2))
+      integer :: below, n, p, step, width
 
-      y = x(:, factor%plan%block)
-      call substitute_fronts(factor%plan, factor%number, factor%exchange, y)
-      x(:, factor%plan%block) = y
+      n = size(factor%plan%first) - 1
+      call take_blocks(size(x, 1), factor%plan%block, x, y)
+      do step = 1, 2*n
+         p = min(step, 2*n + 1 - step)
+         associate (plan => factor%plan, nd => size(x, 1), first => factor%plan%first(p), &
+            & row => factor%plan%row(factor%plan%first_row(p):factor%plan%first_row(p + 1) - 1))
+            width = nd*(plan%first(p + 1) - first)
+            below = nd*size(row)
+            if (step > n) then
+               call take_blocks(nd, row, y, rest)
+               call substitute_up(plan%symmetric, width, below, factor%number(plan%start(p)), &
+                  & rest, y(1, first))
+            else if (any(abs(y(:, first:plan%first(p + 1) - 1)) > 0.0_wp)) then
+               ! the load of a single joint concerns few panels
+               rest(:below) = 0.0_wp
+               call substitute_down(plan%symmetric, width, below, factor%number(plan%start(p)), &
+                  & factor%exchange(nd*(first - 1) + 1), y(1, first), rest)
+               call add_blocks(nd, row, rest, y)
+            end if
+         end associate
+      end do
+      x = 0.0_wp
+      call add_blocks(size(x, 1), factor%plan%block, y, x)
    end subroutine substitute
 
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the
@@ -276,38 +296,31 @@ contains
       end do
    end subroutine add_share
 
-   !> Solve with the panels
-   pure subroutine substitute_fronts(plan, number, exchange, x)
-      type(elimination_plan_t), intent(in) :: plan
-      real(wp), intent(in) :: number(*)
-      integer, intent(in) :: exchange(*)
-      !> Right-hand side in, solution out: (n_dof, n_block)
-      real(wp), intent(inout) :: x(plan%n_dof, *)
-      real(wp) :: rest(plan%n_dof, plan%most_rows)
-      integer :: below, i, n, p, step, width
+   !> Unknowns of some blocks; three at a time, since calls of the library for each would cost more
+   pure subroutine take_blocks(nd, block, x, some)
+      integer, intent(in) :: nd, block(:)     !! 3 or 6 unknowns of a block; numbers of blocks
+      real(wp), intent(in) :: x(nd, *)        !! Unknowns of all blocks
+      real(wp), intent(inout) :: some(nd, *)  !! Those of the blocks
+      integer :: c, i
 
-      n = size(plan%first) - 1
-      do step = 1, 2*n
-         p = min(step, 2*n + 1 - step)
-         width = plan%n_dof*(plan%first(p + 1) - plan%first(p))
-         below = plan%first_row(p + 1) - plan%first_row(p)
-         associate (row => plan%row(plan%first_row(p):plan%first_row(p + 1) - 1))
-            if (step <= n) then
-               rest(:, :below) = 0.0_wp
-               call substitute_down(plan%symmetric, width, plan%n_dof*below, &
-                  & number(plan%start(p)), exchange(plan%n_dof*(plan%first(p) - 1) + 1), &
-                  & x(1, plan%first(p)), rest)
-               do i = 1, below
-                  x(:, row(i)) = x(:, row(i)) + rest(:, i)
-               end do
-            else
-               do i = 1, below
-                  rest(:, i) = x(:, row(i))
-               end do
-               call substitute_up(plan%symmetric, width, plan%n_dof*below, number(plan%start(p)), &
-                  & rest, x(1, plan%first(p)))
-            end if
-         end associate
+      do i = 1, size(block)
+         do c = 1, nd, 3
+            some(c:c + 2, i) = x(c:c + 2, block(i))
+         end do
       end do
-   end subroutine substitute_fronts
+   end subroutine take_blocks
+
+   !> Add to the unknowns of some blocks
+   pure subroutine add_blocks(nd, block, some, x)
+      integer, intent(in) :: nd, block(:)   !! 3 or 6 unknowns of a block; numbers of blocks
+      real(wp), intent(in) :: some(nd, *)   !! What is added to theirs
+      real(wp), intent(inout) :: x(nd, *)   !! Unknowns of all blocks
+      integer :: c, i
+
+      do i = 1, size(block)
+         do c = 1, nd, 3
+            x(c:c + 2, block(i)) = x(c:c + 2, block(i)) + some(c:c + 2, i)
+         end do
+      end do
+   end subroutine add_blocks
 end module dda_block_factor
