@@ -300,7 +300,7 @@ contains
    pure subroutine take_blocks(nd, block, x, some)
       integer, intent(in) :: nd, block(:)     !! 3 or 6 unknowns of a block; numbers of blocks
       real(wp), intent(in) :: x(nd, *)        !! Unknowns of all blocks
-      real(wp), intent(inout) :: some(nd, *)  !! Those of the blocks
+      real(wp), intent(inout) :: some(nd, *)  !! Unknowns of those blocks
       integer :: c, i
 
       do i = 1, size(block)
@@ -313,7 +313,7 @@ contains
    !> Add to the unknowns of some blocks
    pure subroutine add_blocks(nd, block, some, x)
       integer, intent(in) :: nd, block(:)   !! 3 or 6 unknowns of a block; numbers of blocks
-      real(wp), intent(in) :: some(nd, *)   !! What is added to theirs
+      real(wp), intent(in) :: some(nd, *)   !! Addends of those blocks
       real(wp), intent(inout) :: x(nd, *)   !! Unknowns of all blocks
       integer :: c, i
 
