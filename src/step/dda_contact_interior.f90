@@ -21,7 +21,7 @@ module dda_contact_interior
    implicit none
    private
 
-   public :: solve_convex, solve_interior
+   public :: solve_interior
 
    !> Compliance of the regularisation over that of the blocks
    real(wp), parameter :: compliance = 1.0e-6_wp
@@ -37,6 +37,8 @@ module dda_contact_interior
    real(wp), parameter :: convex_lift = 0.3_wp
    !> Largest initial distance for known solutions
    real(wp), parameter :: highest = 1.0e-1_wp
+   !> Least reduction of the residual that counts as progress
+   real(wp), parameter :: falling = 0.9_wp
    !> Step below which the iteration is blocked by a bound
    real(wp), parameter :: stuck = 0.2_wp
    !> Step over the distance to the first bound
@@ -44,10 +46,12 @@ module dda_contact_interior
 
 contains
 
-   !> Find forces from those at hand; better ones are kept
-   pure subroutine solve_interior(p, tolerance, force, residual, passes)
+   !> Find forces from those at hand. Of Coulomb's law those of smallest residual count. Those of
+   !> the convex problem replace them, however far they are from the law: they add no energy
+   pure subroutine solve_interior(p, tolerance, is_convex, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
+      real(wp), intent(in) :: tolerance       !! Permitted residual, as an opening [m]
+      logical, intent(in) :: is_convex        !! True for the convex problem
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
@@ -55,28 +59,33 @@ contains
       type(joint_matrix_t) :: matrix
       type(coulomb_lack_t) :: lack
       type(coulomb_iterate_t) :: x
-      real(wp) :: least, left, length
+      type(residual_t) :: found
+      real(wp) :: least, left, length, trial(3, size(p%joint))
       integer :: turn, waited
-      logical :: has_restarted
+      logical :: is_better, may_restart
 
-      q = interior_problem(p, force)
+      q = interior_problem(p, is_convex, force)
       call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .false., matrix%matrix, &
          & matrix%factor, matrix%entry)
-      call begin(p, q, force, near, x)
+      call begin(p, q, force, merge(convex_lift, near, is_convex), x)
       least = huge(least)
+      length = 1.0_wp
       waited = 0
-      length = 0.0_wp
-      has_restarted = .false.
-      do turn = 1, max_iterations
+      may_restart = .not. is_convex
+      do turn = 1, merge(max_convex_iterations, max_iterations, is_convex)
          call find_lack(q, x, lack)
          left = most_of(q, x, lack)
-         call keep_better(p, admissible(p, x%force), force, residual)
-         waited = merge(0, waited + 1, left < 0.9_wp*least)
+         trial = admissible(p, x%force)
+         found = residual_of(p, trial, move_blocks(p, trial))
+         is_better = merge(left <= tolerance, found%energy < residual%energy, is_convex)
+         if (is_better) force = trial
+         if (is_better) residual = found
+         waited = merge(0, waited + 1, left < falling*least)
          least = min(least, left)
-         if (residual%opening <= tolerance .or. waited == patience &
+         if (merge(is_better, residual%opening <= tolerance .or. waited == patience, is_convex) &
             & .or. .not. left <= huge(left)) return
-         if (turn > 1 .and. turn <= patience .and. length < stuck .and. .not. has_restarted) then
-            has_restarted = .true.
+         if (may_restart .and. turn <= patience .and. length < stuck) then
+            may_restart = .false.
             call begin(p, q, force, afar, x)
             call find_lack(q, x, lack)
             least = huge(least)
@@ -87,60 +96,13 @@ contains
       end do
    end subroutine solve_interior
 
-   !> Solve the convex problem whose offset follows from the slip of the given forces, and replace
-   !> these. Its forces add no energy, however far they are from Coulomb's law
-   pure subroutine solve_convex(p, tolerance, force, residual, passes)
+   !> The problem with bounds, units and regularisation about given forces. The offset of the convex
+   !> one follows from their slip
+   pure type(coulomb_problem_t) function interior_problem(p, is_convex, force) result(q)
       type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: tolerance       !! Permitted residual, as an opening [m]
-      real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! Residual of the forces
-      integer, intent(inout) :: passes        !! Factorisations so far
-      type(coulomb_problem_t) :: q
-      type(joint_matrix_t) :: matrix
-      type(coulomb_lack_t) :: lack
-      type(coulomb_iterate_t) :: x
-      real(wp) :: left, length, offset(size(p%joint)), opening(3, size(p%joint))
-      integer :: turn
-
-      q = interior_problem(p, force)
-      call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .false., matrix%matrix, &
-         & matrix%factor, matrix%entry)
-      opening = openings(p, force, move_blocks(p, force))
-      offset = merge(p%friction*abs(opening(3, :)), 0.0_wp, q%bounded(3, :))
-      q%gap(1:2, :) = q%gap(1:2, :) + spread(offset, 1, 2)
-      q%dilatancy = 1.0_wp
-      call begin(p, q, force, convex_lift, x)
-      do turn = 1, max_convex_iterations
-         call find_lack(q, x, lack)
-         left = most_of(q, x, lack)
-         if (left <= tolerance .or. .not. left <= huge(left)) exit
-         call improve(q, lack, share, matrix, x, length)
-         passes = passes + 1
-         if (.not. matrix%factor%usable) return
-      end do
-      if (.not. left <= tolerance) return
-      force = admissible(p, x%force)
-      residual = residual_of(p, force, move_blocks(p, force))
-   end subroutine solve_convex
-
-   !> Keep the forces with the smaller residual
-   pure subroutine keep_better(p, trial, force, residual)
-      type(contact_problem_t), intent(in) :: p
-      real(wp), intent(in) :: trial(:, :)          !! Other forces: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)       !! The best so far: (3, n_joint) [N/m]
-      type(residual_t), intent(inout) :: residual  !! Residual of these
-      type(residual_t) :: left
-
-      left = residual_of(p, trial, move_blocks(p, trial))
-      if (.not. left%energy < residual%energy) return
-      force = trial
-      residual = left
-   end subroutine keep_better
-
-   !> The problem with bounds, units and regularisation about given forces
-   pure type(coulomb_problem_t) function interior_problem(p, force) result(q)
-      type(contact_problem_t), intent(in) :: p
+      logical, intent(in) :: is_convex
       real(wp), intent(in) :: force(:, :)
+      real(wp) :: opening(3, size(p%joint))
       integer :: k, n
 
       q = p%coulomb_problem_t
@@ -159,6 +121,12 @@ contains
       end do
       q%bounded(3, :) = p%give(3, 3, :) > 0.0_wp .and. p%cone%kind /= cone_kind%no_slip
       q%bounded(4, :) = q%bounded(3, :)
+      if (.not. is_convex) return
+      opening = openings(p, force, move_blocks(p, force))
+      do k = 1, 2
+         where (q%bounded(3, :)) q%gap(k, :) = q%gap(k, :) + p%friction*abs(opening(3, :))
+      end do
+      q%dilatancy = 1.0_wp
    end function interior_problem
 
    !> Where the search begins: forces and their motion, with distances and flows lifted off zero by

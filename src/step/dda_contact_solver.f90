@@ -10,7 +10,7 @@
 !> Equation (M5) of docs/method.md
 module dda_contact_solver
    use dda_contact_faces, only : settle_faces
-   use dda_contact_interior, only : solve_convex, solve_interior
+   use dda_contact_interior, only : solve_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & pose_contacts, residual_of, residual_t, speed_of
    use dda_contact_sweeps, only : sweep_joints
@@ -111,15 +111,16 @@ contains
       call sweep_joints(p, exact, first_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
-      if (residual%opening > enough) call solve_interior(p, enough, force, residual, passes)
+      if (residual%opening > enough) &
+         & call solve_interior(p, enough, .false., force, residual, passes)
       if (residual%opening > near_solution*speed) &
-         & call solve_convex(p, convex_tolerance*speed, force, residual, passes)
+         & call solve_interior(p, convex_tolerance*speed, .true., force, residual, passes)
       if (residual%opening > tolerance) &
          & call sweep_joints(p, tolerance, last_sweeps, force, residual)
       if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
          & call settle_faces(p, exact, force, residual, passes)
       if (work_of(p, force) > max_energy_gain*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
-         & call solve_convex(p, enough, force, residual, passes)
+         & call solve_interior(p, enough, .true., force, residual, passes)
    end subroutine settle_group
 
    !> Work of contact forces on openings and slip: negative under Coulomb's law [J/m]
