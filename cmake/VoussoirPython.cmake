@@ -60,22 +60,24 @@ function(voussoir_find_python)
   set(VOUSSOIR_PYTHON "${chosen}" PARENT_SCOPE)
 endfunction()
 
-# Symlinks of the files of all packages of post/ in <build>/python, where the extension is put as well. Those
-# beside voussoir, which test the program and repeat the paper, are not installed.
+# Symlinks of the files of all packages of post/ and of tests/voussoir_benches in <build>/python, where the extension
+# is put as well. Those beside voussoir, which test the program and repeat the paper, are not installed.
 function(voussoir_link_packages folder)
-  set(post "${VOUSSOIR_SOURCE_ROOT}/post")
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${post}" "${post}/*")
-  list(FILTER files EXCLUDE REGEX "(^|/)__pycache__/|\\.pyc$")
-  file(GLOB_RECURSE links "${folder}/*.py")
+  file(GLOB_RECURSE links "${folder}/*.py" "${folder}/*.json")
   foreach(link IN LISTS links)  # of files that have moved: a module must not hide a package
     if(IS_SYMLINK "${link}" AND NOT EXISTS "${link}")
       file(REMOVE "${link}")
     endif()
   endforeach()
-  foreach(file IN LISTS files)
-    get_filename_component(subfolder "${folder}/${file}" DIRECTORY)
-    file(MAKE_DIRECTORY "${subfolder}")
-    file(CREATE_LINK "${post}/${file}" "${folder}/${file}" COPY_ON_ERROR SYMBOLIC)
+  foreach(package IN ITEMS post/voussoir post/voussoir_paper tests/voussoir_benches)
+    get_filename_component(root "${VOUSSOIR_SOURCE_ROOT}/${package}" DIRECTORY)
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${root}" "${VOUSSOIR_SOURCE_ROOT}/${package}/*")
+    list(FILTER files EXCLUDE REGEX "(^|/)__pycache__/|\\.pyc$")
+    foreach(file IN LISTS files)
+      get_filename_component(subfolder "${folder}/${file}" DIRECTORY)
+      file(MAKE_DIRECTORY "${subfolder}")
+      file(CREATE_LINK "${root}/${file}" "${folder}/${file}" COPY_ON_ERROR SYMBOLIC)
+    endforeach()
   endforeach()
 endfunction()
 

@@ -18,17 +18,15 @@ from voussoir.command.main import main  # noqa: E402
 from voussoir.dda_program import find_input  # noqa: E402
 from voussoir_benches import validation_page  # noqa: E402
 from voussoir_benches.checks import Check  # noqa: E402
+from voussoir_benches.exact import (  # noqa: E402
+    ONSETS, chain_frequency, foot_acceleration, next_amplitude, quarter_period, roof_wedge, snap_load, stick_slip,
+)
 from voussoir_benches.expectations import Measured  # noqa: E402
 from voussoir_benches.scene import Scene  # noqa: E402
 from voussoir_benches.validation import titles_of  # noqa: E402
-from voussoir_benches.validation_assemblies import roof_wedge, snap_load  # noqa: E402
-from voussoir_benches.validation_impact import next_amplitude, quarter_period  # noqa: E402
-from voussoir_benches.validation_motion import stick_slip  # noqa: E402
 from voussoir_benches.validation_plot import diagonal, has_diagonal, has_history, history  # noqa: E402
-from voussoir_benches.validation_rest import ONSETS, foot_acceleration  # noqa: E402
 from voussoir_benches.validation_run import Line, all_scenes, run_scene  # noqa: E402
 from voussoir_benches.validation_sketch import Shape, sketch  # noqa: E402
-from voussoir_benches.validation_strain import chain_frequency  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DECKS = REPOSITORY / "input" / "benchmarks"

@@ -12,13 +12,12 @@ import numpy as np
 
 from voussoir.dda_program import DdaError
 from voussoir.files import read_text
-from voussoir_benches import (
-    validation_arches, validation_assemblies, validation_impact, validation_motion, validation_rest, validation_strain,
-)
-from voussoir_benches.checks import Check, Outcome
+from voussoir_benches import exact, measures
+from voussoir_benches.checks import Check, Outcome, critical, verdict
 from voussoir_benches.deck_runs import run_deck
 from voussoir_benches.expectations import Measured
-from voussoir_benches.scene import Scene
+from voussoir_benches.scene import MOVED, Scene, benchmark, in_current
+from voussoir_benches.tables import rows
 from voussoir_benches.validation_plot import track_of
 from voussoir_benches.validation_sketch import Shape, shapes_of
 
@@ -42,7 +41,7 @@ class Line:
 
     @property
     def accepted(self) -> bool:
-        """Whether the error is accepted; one that is not a number is not."""
+        """Return true if the error is accepted; one that is not a number is not."""
         return self.errors[0] <= self.check.accept
 
     @property
@@ -55,14 +54,19 @@ class Line:
 
 
 def all_scenes() -> tuple[Scene, ...]:
-    """Every scene, those of one section together."""
-    scenes = (
-        *validation_motion.SCENES, *validation_rest.SCENES, *validation_impact.SCENES, *validation_strain.SCENES,
-        *validation_assemblies.SCENES, *validation_arches.SCENES)
-    sections = (
-        validation_motion.FLIGHT, validation_motion.SLIDING, validation_rest.TOPPLING, validation_impact.ROCKING,
-        validation_impact.IMPACT, validation_strain.STRAIN, validation_assemblies.ASSEMBLIES, validation_arches.ARCHES)
-    return tuple(sorted(scenes, key=lambda scene: sections.index(scene.group)))
+    """Every scene of validation.json, those of one section together.
+
+    `both` adds the scene in current geometry, where errors may be `moved`.
+    """
+    names = {**vars(exact), **vars(measures), "Check": Check, "critical": critical, "verdict": verdict, "MOVED": MOVED}
+    scenes = []
+    for row in rows("validation.json", names):
+        both, moved = row.pop("both", False), row.pop("moved", None)
+        found = [benchmark(*(row.pop(key) for key in ("group", "deck", "source")), *row.pop("checks"), **row)]
+        if both:
+            found.append(in_current(found[0], moved))
+        scenes += found
+    return tuple(scenes)
 
 
 def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:

@@ -33,7 +33,7 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """What the program found."""
+        """Verdict of the program."""
         return self.rows("results")[0]["verdict"]
 
     @property
@@ -102,11 +102,6 @@ class Check:
         if isinstance(self.exact, str):
             return 0.0 if computed == self.exact else math.inf
         return abs(float(computed) - self.exact) / abs(self.exact if self.scale is None else self.scale)
-
-
-def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:
-    """Measure of a displacement at the end [m]."""
-    return lambda outcome: float(outcome.end(point)[axis])
 
 
 def verdict(exact: str, what: str, case: int = 1) -> Check:

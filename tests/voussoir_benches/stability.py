@@ -93,7 +93,7 @@ def _line(scene: Scene, finished: Finished) -> Line:
 
 
 def _seen_guard(rows: list[Row]) -> str:
-    """What can be seen to have guarded an answer."""
+    """Visible guards of an answer."""
     if len(rows) != 1 or rows[0]["verdict"] != "found":
         return ""
     (row,) = rows

@@ -1,4 +1,4 @@
-"""What a scene must answer, and the judgement of what it did answer."""
+"""Expected answers of scenes, and the judgement of those found."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Judgement:
 
 
 class Expectation(Protocol):
-    """What a scene must answer."""
+    """Expected answer of a scene."""
 
     def expected(self) -> str:
         """The answer in words."""

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from voussoir_benches.checks import DENSITY, GRAVITY, Check, end
+from voussoir_benches.checks import DENSITY, GRAVITY, Check
 from voussoir_benches.expectations import Critical, Verdict
+from voussoir_benches.measures import end
 from voussoir_benches.scene import GEOMETRIES, Scene, block_scene, rectangle, written_block, written_blocks
-from voussoir_benches.stability_blocks import BASE, at_rest, wall
-from voussoir_benches.stability_motion import moving
+from voussoir_benches.stability_blocks import BASE, at_rest, moving, wall
 
 
 def random_blocks(count: int, seed: int) -> Iterator[Scene]:
@@ -129,7 +129,7 @@ def _lump(number: int, chance: np.random.Generator) -> Scene:
 
 
 def _is_convex(corner: np.ndarray) -> bool:
-    """Whether a polygon turns to the left at every corner, by a sine of 0.05 at least."""
+    """Return true if a polygon turns to the left at every corner, by a sine of 0.05 at least."""
     side = np.roll(corner, -1, axis=0) - corner
     side /= np.maximum(np.hypot(*side.T), 1e-9)[:, None]
     after = np.roll(side, -1, axis=0)
@@ -155,12 +155,13 @@ def _slide(number: int, chance: np.random.Generator) -> Scene:
     pulled = GRAVITY * (math.sin(angle) - math.cos(angle) * math.tan(math.radians(friction)))
     text = BASE.replace("10.0", "30.0") + written_block(rectangle(0.0, 0.0, 3.0, 0.5))
     step = float(10.0 ** chance.uniform(-3.0, -1.0))
+    deck = {
+        "joint": {"friction_deg": friction}, "load": {"gravity_direction_deg": slope - 90.0},
+        "analysis": {"max_displacement_ratio": 1.0}}
     return moving(
-        f"{number}: slide down {slope:g} deg, friction {friction:g}, steps of {step:.1e} s", "",
+        "random blocks", f"{number}: slide down {slope:g} deg, friction {friction:g}, steps of {step:.1e} s", "",
         text + "measure 1.5 0.25\n", (Check("way in a second [m]", pulled / 2.0, end(0), 1e-3),), step, 1.0,
-        group="random blocks", joint={"friction_deg": friction}, load={"gravity_direction_deg": slope - 90.0},
-        analysis={"max_displacement_ratio": 1.0}
-    )
+        deck)
 
 
 def _flight(number: int, chance: np.random.Generator) -> Scene:
@@ -179,8 +180,8 @@ def _flight(number: int, chance: np.random.Generator) -> Scene:
         Check("v after a second [m]", vy - GRAVITY / 2.0, end(1), 1e-8, scale=1.0),
     )
     return moving(
-        f"{number}: flight of {corners} corners, spin {spin:g} rad/s, steps of {step:.1e} s", "", text, checks, step,
-        1.0, group="random blocks", analysis={"max_displacement_ratio": 1.0})
+        "random blocks", f"{number}: flight of {corners} corners, spin {spin:g} rad/s, steps of {step:.1e} s", "", text,
+        checks, step, 1.0, {"analysis": {"max_displacement_ratio": 1.0}})
 
 
 def _centre(corner: np.ndarray) -> tuple[float, float]:

@@ -37,7 +37,7 @@ def moments(block: Block) -> tuple[float, np.ndarray]:
 
 
 def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = None) -> Assembly:
-    """What a run of one case says of its blocks and joints; weights are areas.
+    """Blocks and joints of a run of one case; weights are areas.
 
     `push` is the block, point and force of a live load over the weight per area; without it the weights act towards +x,
     too.
@@ -116,7 +116,7 @@ def solve(
 
 
 def _balance(assembly: Assembly) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """What the forces of the joints do to the blocks: entries, and their rows and columns."""
+    """Effect of the joint forces on the blocks: entries, and their rows and columns."""
     along = assembly.ends[:, 1] - assembly.ends[:, 0]
     along /= np.linalg.norm(along, axis=1)[:, None]
     normal = np.column_stack((-along[:, 1], along[:, 0]))

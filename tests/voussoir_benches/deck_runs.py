@@ -28,7 +28,7 @@ _NOT_A_NUMBER = re.compile(r"(?:^|,)[-+]?(?:nan|inf|infinity)(?:,|$)", re.IGNORE
 
 @dataclass(frozen=True)
 class Finished:
-    """What a run of one deck left."""
+    """Results of a run of one deck."""
 
     status: int | None  #: Exit status; negative if a signal ended it, None if it took too long
     rows: list[Row] = field(default_factory=list)  #: Rows of results.csv.
@@ -85,7 +85,7 @@ def _remarks(file: Path) -> dict[str, str]:
 
 
 def _holds_no_number(file: Path) -> bool:
-    """Whether a table holds NaN or Inf."""
+    """Return true if a table holds NaN or Inf."""
     with file.open(encoding="utf-8") as lines:
         return any(_NOT_A_NUMBER.search(line) for line in lines)
 

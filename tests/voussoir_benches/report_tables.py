@@ -1,4 +1,4 @@
-"""What the three reports share: tables as CSV and as Markdown, points in groups."""
+"""Parts of the three reports: tables as CSV and as Markdown, points in groups."""
 
 from __future__ import annotations
 

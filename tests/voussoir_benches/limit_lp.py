@@ -29,7 +29,7 @@ def scipy_version() -> str | None:
 def stands_by_general(
     half_angle: float, voussoirs: int, ratio: float, friction: float, method: str = "highs", tolerance: float = 1e-7
 ) -> bool:
-    """Whether admissible joint forces balance the weights of an arch: half angle [rad], thickness over radius.
+    """Return true if admissible joint forces balance the weights of an arch: half angle [rad], thickness over radius.
 
     By "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses; rows may be violated by the
     tolerance.
@@ -45,7 +45,7 @@ def stands_by_general(
 
 
 def stands_by_compact(half_angle: float, voussoirs: int, ratio: float, friction: float) -> bool:
-    """Whether some thrust at some height of the crown leads through all joints of an even number of voussoirs."""
+    """Return true if a thrust at some height of the crown leads through all joints of an even number of voussoirs."""
     from scipy.optimize import linprog
 
     if voussoirs % 2:

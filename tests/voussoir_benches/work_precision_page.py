@@ -124,7 +124,7 @@ def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
 
 
 def answer_words(method: str, own: Sequence[Point]) -> str:
-    """What a method reaches, and when: a line of a legend."""
+    """Least error of a method and its time: a line of a legend."""
     best = front(list(own))
     if not best:
         return f"{method}: no answer"

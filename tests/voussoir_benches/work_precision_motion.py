@@ -14,9 +14,8 @@ import numpy as np
 from voussoir.deck.text import Groups, deck_text, merged
 from voussoir_benches.checks import GRAVITY, Outcome
 from voussoir_benches.deck_runs import Finished, run_deck, timed
+from voussoir_benches.exact import next_amplitude, quarter_period, slide
 from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block
-from voussoir_benches.validation_impact import next_amplitude, quarter_period
-from voussoir_benches.validation_motion import slide
 from voussoir_benches.work_precision_scenes import ELASTIC, ORIGINAL, RIGID
 
 #: Length of a step over that of the longest
@@ -85,7 +84,7 @@ class Motion:
         return run_deck(deck, folder / "motion", files={BLOCKS: self.blocks})
 
     def outcome(self, finished: Finished) -> Outcome:
-        """What a run has left of its first case."""
+        """Results of the first case of a run."""
         return Outcome(finished.folder, 1)
 
     def steps(self) -> list[float]:

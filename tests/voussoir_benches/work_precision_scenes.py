@@ -51,7 +51,7 @@ def _with(settings: Settings, **analysis: Any) -> Settings:
 
 
 def _searched(kind: Mapping[str, Any], parameter: str, friction: float) -> dict[str, Any]:
-    """What decks with a search share."""
+    """Groups of decks with a search."""
     return {
         **kind, "joint": {"friction_deg": friction}, "output": {"joints": False, "blocks": False, "proof": False},
         "search": {"parameter": parameter}}

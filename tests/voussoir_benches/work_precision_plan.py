@@ -1,4 +1,4 @@
-"""What the parts of the scene plan cost where they are forced in: time, memory, and the answer."""
+"""Costs of parts of the scene plan where they are forced in: time, memory, and the answer."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ MOST_MOVING = 100
 
 @dataclass(frozen=True)
 class Cost:
-    """What one part costs."""
+    """Costs of one part."""
 
     voussoirs: int  #: Their number
     part: str  #: What was forced in
@@ -148,7 +148,7 @@ def _cells(cost: Cost | None, plan: Cost | None) -> list[str]:
 
 
 def _difference(found: dict[tuple[int, str, bool], Cost], count: int, part: str) -> str:
-    """How the answer differs from that of the plan."""
+    """Difference of the answer from that of the plan."""
     plan = PARTS[0][0]
     one, other = found.get((count, part, True)), found.get((count, plan, True))
     if one is None or other is None:

@@ -47,7 +47,7 @@ _SHOWN = ("scene", "result", "expected", "found", "error", "seconds")
 
 @dataclass(frozen=True)
 class Kind:
-    """What came of the scenes of one kind."""
+    """Results of the scenes of one kind."""
 
     name: str  #: The kind
     count: Counter[str]  #: Scenes by their result
@@ -71,7 +71,7 @@ _HEADS = ("kind", "scenes", "worst error", "undecided", "WRONG", "median time [m
 
 
 def kinds(lines: Sequence[Line]) -> list[Kind]:
-    """What came of each kind of scene, all of them last: in the order of the table."""
+    """Results of each kind of scene, all of them last, in the order of the table."""
     groups = {line.group: [other for other in lines if other.group == line.group] for line in lines}
     found = []
     for name, own in {**groups, "all": list(lines)}.items():
@@ -113,7 +113,7 @@ def write_markdown(lines: Sequence[Line], file: Path) -> None:
 
 
 def _is_number(text: str) -> bool:
-    """Whether a text is one number."""
+    """Return true if a text is one number."""
     try:
         float(text)
     except ValueError:
