@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 Point = tuple[float, float]
 
@@ -31,12 +30,6 @@ def on_slope(angle_deg: float, width: float = 1.0) -> str:
     """A block on a fixed slope that rises to the right."""
     base = turned([(-6.0, -3.0), (6.0, -3.0), (6.0, 0.0), (-6.0, 0.0)], angle_deg)
     return block(base, "fixed") + block(turned([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)], angle_deg))
-
-
-def rows_of(file: Path) -> list[dict[str, str]]:
-    """Rows of a table."""
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def run_blocks(folder: Path, blocks: str, deck: str) -> dict[str, str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import run_dda, run_deck
 
 SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
 
@@ -16,9 +16,8 @@ SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
 def run(folder: Path, blocks: str, keys: str) -> None:
     """Run a scene of blocks."""
     (folder / "scene.blocks").write_text(blocks)
-    (folder / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys)
-    done = run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys, "--out", "out", "--quiet", name="deck")
 
 
 def table(folder: Path, name: str) -> list[dict[str, float]]:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 DATA = Path(__file__).parent.parent / "data" / "arch_exact.csv"
 
 
 def exact_cases() -> list[dict[str, str]]:
     """Rows of the oracle's table."""
-    with DATA.open() as lines:
-        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return rows_of(DATA)
 
 
 def deck_of(case: dict[str, str]) -> str:
@@ -44,8 +42,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, str
     run_dda("run", *decks, "--out", folder / "out", "--quiet")
     rows = {}
     for deck in decks:
-        with (folder / "out" / deck.stem / "results.csv").open() as lines:
-            (rows[deck.stem],) = csv.DictReader(lines)
+        (rows[deck.stem],) = rows_of(folder / "out" / deck.stem / "results.csv")
     return rows
 
 
@@ -88,8 +85,7 @@ def test_nearly_flat_arches_lie_inside_their_brackets(tmp_path: Path, half_angle
         "&output joints = .false., blocks = .false. /\n"
     )
     run_dda("run", tmp_path / "flat.nml", "--out", tmp_path / "out", "--quiet")
-    with (tmp_path / "out" / "results.csv").open() as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(tmp_path / "out" / "results.csv")
     assert row["verdict"] == "found"
     assert float(row["critical_low"]) <= float(row["exact"]) <= float(row["critical_high"])
 
@@ -102,8 +98,7 @@ def search_on_steep_springings(folder: Path, friction_deg: float) -> dict[str, s
         f"&joint friction_deg = {friction_deg} /\n&output joints = .false. /\n"
     )
     run_dda("run", deck, "--out", folder / "out", "--quiet")
-    with (folder / "out" / "results.csv").open() as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(folder / "out" / "results.csv")
     return row
 
 

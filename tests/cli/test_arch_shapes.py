@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from test_live_loads import SEARCH, friction_of, rows, table
 
 DATA = Path(__file__).resolve().parents[1] / "data"
@@ -124,8 +123,7 @@ def test_an_undecided_search_says_its_bracket(tmp_path: Path) -> None:
     search = "&search parameter = 'thickness', low = 2e-7, high = 2 /\n"
     (tmp_path / "x.nml").write_text(deck + "&joint friction_deg = 60 /\n" + search)
     status = run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode
-    with (tmp_path / "x" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(tmp_path / "x" / "results.csv")
     told = (tmp_path / "x" / "log.txt").read_text()
     assert status == (3 if row["verdict"] == "undecided" else 0)
     values = re.findall(r"(?:collapsed|stable) at ([\d.e-]+)", told) or [row["critical"], row["critical"]]
@@ -205,9 +203,8 @@ def test_every_length_of_a_shape_is_searched(tmp_path: Path) -> None:
 
 
 def test_the_table_of_shapes_holds_every_curve() -> None:
-    with (DATA / "arch_shapes.csv").open(encoding="utf-8") as lines:
-        assert {row["shape"] for row in csv.DictReader(lines)} >= {
-            "segmental", "circular", "pointed", "elliptic", "parabolic", "catenary", "basket"}
+    assert {row["shape"] for row in rows_of(DATA / "arch_shapes.csv")} >= {
+        "segmental", "circular", "pointed", "elliptic", "parabolic", "catenary", "basket"}
 
 
 @pytest.mark.parametrize(("shape", "has_area"), [

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 
 
 def table(folder: Path, name: str = "results.csv") -> list[dict[str, str]]:
     """Rows of a result table."""
-    with (folder / name).open() as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(folder / name)
 
 
 def run(deck: str, folder: Path, *settings: str) -> Path:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 BASE = "block fixed\n-1 -1\n2 -1\n2 0\n-1 0\n"
 BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
@@ -19,12 +18,6 @@ def write(folder: Path, blocks: str, groups: str = "", name: str = "x") -> Path:
     deck = folder / f"{name}.nml"
     deck.write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
     return deck
-
-
-def table(path: Path) -> list[dict[str, str]]:
-    """Rows of a result table."""
-    with path.open() as lines:
-        return list(csv.DictReader(lines))
 
 
 def test_check_says_what_was_found(tmp_path: Path) -> None:
@@ -65,10 +58,10 @@ def test_a_load_on_a_joint_acts_on_the_block_that_is_named(tmp_path: Path, share
     groups = "&material unit_weight = 25000.0 /\n&joint friction_deg = 20 /"
     on_block = write(tmp_path, BASE + BLOCK + f"load block 2 0 0 {force!r} 0\n", groups)
     done = run_dda("run", on_block, "--out", tmp_path / "out")
-    assert done.stderr == "" and table(tmp_path / "out/results.csv")[0]["verdict"] == verdict
+    assert done.stderr == "" and rows_of(tmp_path / "out/results.csv")[0]["verdict"] == verdict
     on_base = write(tmp_path, BASE + BLOCK + f"load block 1 0 0\n0 {force!r} 0\n", groups)
     done = run_dda("run", on_base, "--out", tmp_path / "out")
-    assert done.stderr == "" and table(tmp_path / "out/results.csv")[0]["verdict"] == "stable"
+    assert done.stderr == "" and rows_of(tmp_path / "out/results.csv")[0]["verdict"] == "stable"
 
 
 @pytest.mark.parametrize(
@@ -118,7 +111,7 @@ def test_a_missing_file_is_bad_input(tmp_path: Path) -> None:
 def test_blocks_that_are_all_fixed_stand_where_they_are(tmp_path: Path) -> None:
     done = run_dda("run", write(tmp_path, BASE), "--out", tmp_path / "out", "--quiet")
     assert done.returncode == 0
-    assert table(tmp_path / "out" / "results.csv")[0]["verdict"] == "stable"
+    assert rows_of(tmp_path / "out" / "results.csv")[0]["verdict"] == "stable"
 
 
 def test_measured_point_sinks_by_the_strain_of_its_block(tmp_path: Path) -> None:
@@ -126,7 +119,7 @@ def test_measured_point_sinks_by_the_strain_of_its_block(tmp_path: Path) -> None
     groups = "&material unit_weight = 25000.0, poisson = 0.0 /\n&analysis geometry = 'current' /"
     deck = write(tmp_path, BASE + BLOCK + "measure 0.5 2\n", groups)
     assert run_dda("run", deck, "--out", tmp_path / "out", "--quiet").returncode == 0
-    last = table(tmp_path / "out" / "points.csv")[-1]
+    last = rows_of(tmp_path / "out" / "points.csv")[-1]
     sinks = 25000.0 * 2.0**2 / (2.0 * 5e9) + 50000.0 / (2.0 * 100.0 * 5e9 * 0.5)
     assert float(last["v"]) == pytest.approx(-sinks, rel=1e-5)
     assert float(last["u"]) == pytest.approx(0.0, abs=1e-12)
@@ -139,11 +132,11 @@ def test_pictures_show_joints_that_come_and_go(tmp_path: Path) -> None:
     deck = write(tmp_path, BASE + "block\n0 0\n1 0\n1 0.5\n0 0.5\n", groups)
     done = run_dda("run", deck, "--out", tmp_path / "out", "--quiet")
     assert done.returncode == 0, done.stderr
-    frames = table(tmp_path / "out" / "frames.csv")
+    frames = rows_of(tmp_path / "out" / "frames.csv")
     numbers = sorted({int(row["frame"]) for row in frames})
     assert len(numbers) >= 4
     assert len(list((tmp_path / "out" / "frames").glob("case_1_*_joints.vtu"))) == len(numbers)
-    joints = table(tmp_path / "out" / "frame_joints.csv")
+    joints = rows_of(tmp_path / "out" / "frame_joints.csv")
     assert {row["frame"] for row in joints} < {str(number) for number in numbers}
 
 
@@ -159,7 +152,7 @@ def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(tmp_path: Pat
         done = run_dda("run", deck, "--quiet", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
     assert (tmp_path / "whole/case_1.restart").read_bytes() == (tmp_path / "rest/case_1.restart").read_bytes()
-    assert table(tmp_path / "whole/points.csv")[30:] == table(tmp_path / "rest/points.csv")
+    assert rows_of(tmp_path / "whole/points.csv")[30:] == rows_of(tmp_path / "rest/points.csv")
 
 
 def test_a_restart_file_that_is_not_there_is_bad_input(tmp_path: Path) -> None:
@@ -177,7 +170,7 @@ def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:
     (tmp_path / "x.blocks").write_text(BASE + BLOCK.replace("2\n", "3\n"))
     changed = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
     assert "x.nml: nothing to resume" in changed.stdout
-    assert {row["y"] for row in table(tmp_path / "out/blocks.csv")} >= {"3"}
+    assert {row["y"] for row in rows_of(tmp_path / "out/blocks.csv")} >= {"3"}
 
 
 @pytest.mark.parametrize("name", ["", "nowhere.blocks", ".", "empty.blocks"])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 Point = tuple[float, float]
 Polygon = list[Point]
@@ -38,26 +38,22 @@ def run(folder: Path, blocks: str, deck: str, geometry: str) -> Path:
     """Run a deck on these blocks."""
     folder.mkdir()
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = '{geometry}' /\n{deck}"
-    )
-    done = run_dda("run", folder / "x.nml", "--out", folder / "out", "--quiet")
-    assert done.returncode == 0, done.stderr
+    run_deck(
+        folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = '{geometry}' /\n{deck}",
+        "--out", folder / "out", "--quiet")
     return folder / "out"
 
 
 def critical(folder: Path, blocks: str, deck: str, geometry: str) -> float:
     """The critical value."""
-    with (run(folder, blocks, deck, geometry) / "results.csv").open() as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(run(folder, blocks, deck, geometry) / "results.csv")
     assert row["verdict"] == "found"
     return float(row["critical"])
 
 
 def joints(folder: Path, blocks: str, deck: str, geometry: str) -> list[dict[str, str]]:
     """Rows of joints.csv."""
-    with (run(folder, blocks, deck, geometry) / "joints.csv").open() as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(run(folder, blocks, deck, geometry) / "joints.csv")
 
 
 def same(point: Point) -> Point:

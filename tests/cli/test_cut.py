@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from limerick_files import HAS_XML, HELD, INPUT, SQUARE
 
 
@@ -15,8 +14,7 @@ def blocks_of(path: Path, folder: Path) -> list[dict[str, str]]:
     done = run_dda("cut", path, "--out", folder / "blocks.csv", "--quiet")
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
-    with (folder / "blocks.csv").open() as table:
-        return list(csv.DictReader(table))
+    return rows_of(folder / "blocks.csv")
 
 
 def test_both_forms_of_a_model_make_the_same_blocks(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import random
 from collections import defaultdict
@@ -10,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 Point = tuple[Fraction, Fraction]
 Line = tuple[Point, Point]
@@ -101,8 +100,7 @@ def test_blocks_are_those_of_exact_arithmetic(tmp_path: Path, n: int, grid: int,
     (tmp_path / "a.geo").write_text(f"0\n{len(lines)} 0\n0\n0\n0\n0\n0\n0\n" + "".join(rows))
     done = run_dda("cut", "a.geo", "--out", "a.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    with (tmp_path / "a.csv").open() as table:
-        areas = sorted(float(row["area"]) for row in csv.DictReader(table))
+    areas = sorted(float(row["area"]) for row in rows_of(tmp_path / "a.csv"))
     assert sum(areas) == pytest.approx(grid**2, rel=1e-9)
     exact = [float(a) for a in exact_areas(lines)]
     if "islands" not in done.stdout:

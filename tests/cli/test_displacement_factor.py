@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
 from bridges import polygon, voussoirs
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from test_live_loads import BLOCK, GROUND, rows
 
 #: Semicircle of 16 voussoirs, t/R 0.15 and R 10 m, on a support that is fixed and one that is led
@@ -35,8 +34,7 @@ def test_the_crown_sinks_with_the_hinge_at_its_extrados(tmp_path: Path, spread: 
     """Each half turns rigidly between the hinges at the crown's extrados and the intrados at 56.25 degrees."""
     measured = SPREADS + "measure block 8 0 10.75\nmeasure block 8 0 9.25\n"
     rows(tmp_path, MOVING + f"&load displacement_factor = {spread} /\n", measured)
-    with (tmp_path / "x" / "points.csv").open(newline="") as lines:
-        extrados, intrados = [-float(row["v"]) for row in list(csv.DictReader(lines))[-2:]]
+    extrados, intrados = [-float(row["v"]) for row in rows_of(tmp_path / "x" / "points.csv")[-2:]]
     angle = math.radians(56.25)
     across, height = 9.25 * math.sin(angle), 10.75 - 9.25 * math.cos(angle)
     moved = math.hypot(across, height)**2 - (across + spread / 2.0)**2

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 BASE = "block fixed\n-10 -1\n10 -1\n10 0\n-10 0\n"
 
@@ -25,11 +24,8 @@ def rectangle(x: float, y: float, width: float, height: float) -> str:
 def run(folder: Path, blocks: str, groups: str, name: str = "results") -> list[dict[str, str]]:
     """Rows of a table of a run."""
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
-    done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    with (folder / "out" / f"{name}.csv").open() as lines:
-        return list(csv.DictReader(lines))
+    run_deck(folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n", "--out", folder / "out", "--quiet")
+    return rows_of(folder / "out" / f"{name}.csv")
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 1e-5, 1e-7])
@@ -119,8 +115,7 @@ def test_a_pendulum_keeps_its_period_and_gains_no_energy(tmp_path: Path, amplitu
         groups = f"&analysis {motion}, time_step = {step}, duration = 4.0, steps = 100000 /\n"
         groups += "&material young = 1e12 /\n&output energy = .true. /"
         points = run(tmp_path, blocks, groups, "points")
-        with (tmp_path / "out" / "energy.csv").open() as lines:
-            rows = list(csv.DictReader(lines))
+        rows = rows_of(tmp_path / "out" / "energy.csv")
         stored = [sum(float(row[n]) for n in ("kinetic", "elastic", "gravity")) for row in rows]
         assert max(stored) - stored[0] < 1e-3 * 2240.0 * width * height * 9.81 * height
         angle = [math.atan2(float(p["x"]), -float(p["y"])) for p in points]

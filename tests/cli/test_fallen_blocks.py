@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 Point = tuple[float, float]
 
@@ -31,10 +30,8 @@ def verdict(folder: Path, blocks: str, groups: str) -> tuple[str, float]:
     (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
     done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
     assert done.returncode in (0, 3), done.stderr
-    with (folder / "out" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
-    with (folder / "out" / "blocks.csv").open(newline="") as lines:
-        way = [math.hypot(float(corner["u"]), float(corner["v"])) for corner in csv.DictReader(lines)]
+    (row,) = rows_of(folder / "out" / "results.csv")
+    way = [math.hypot(float(corner["u"]), float(corner["v"])) for corner in rows_of(folder / "out" / "blocks.csv")]
     return row["verdict"], max(way)
 
 

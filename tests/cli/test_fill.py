@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from test_live_loads import SEARCH, rows
 
 #: Prestwood: kN/m at collapse, each exact for its model; about 60 were measured
@@ -95,13 +94,11 @@ def test_fill_yields_where_blocks_move_in_time(tmp_path: Path, coefficient: floa
                 + f"&analysis mode = 'dynamic', time_step = 2e-3, damping = 20, duration = {duration} /\n",
                 head="",
             )
-            with (tmp_path / "x/blocks.csv").open() as table:
-                moved = [max(abs(float(row["u"])), abs(float(row["v"]))) for row in csv.DictReader(table)]
+            moved = [max(abs(float(row["u"])), abs(float(row["v"]))) for row in rows_of(tmp_path / "x/blocks.csv")]
             farthest[share, duration] = max(moved)
     assert farthest[0.99, 2.0] == pytest.approx(farthest[0.99, 1.0], rel=0.02)
     assert farthest[1.01, 2.0] > 1.5 * farthest[1.01, 1.0]
-    with (tmp_path / "x/bars.csv").open() as table:
-        forces = [float(row["force"]) for row in csv.DictReader(table) if row["state"] == "yielding"]
+    forces = [float(row["force"]) for row in rows_of(tmp_path / "x/bars.csv") if row["state"] == "yielding"]
     bounds = pressures(tmp_path / "x/blocks.csv", coefficient)
     assert forces == pytest.approx(bounds[: len(forces)], rel=1e-9)
     assert len(forces) >= 15
@@ -109,12 +106,11 @@ def test_fill_yields_where_blocks_move_in_time(tmp_path: Path, coefficient: floa
 
 def pressures(path: Path, coefficient: float) -> list[float]:
     """Largest forces of the fill right of the crown, from the crown downwards: by the told corners alone."""
-    with path.open() as table:
-        corners = [
-            (int(row["block"]), float(row["x"]), float(row["y"]))
-            for row in csv.DictReader(table)
-            if row["state"] == "free"
-        ]
+    corners = [
+        (int(row["block"]), float(row["x"]), float(row["y"]))
+        for row in rows_of(path)
+        if row["state"] == "free"
+    ]
     radius = (0.25 * 6.55**2 + 1.428**2) / (2.0 * 1.428)
     found = []
     tops = {
@@ -145,10 +141,9 @@ def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
     above -= (outer - max(heights)) * (ends[-1] - ends[0])
     arch = 9 * math.sin(2 * half / 9) * (outer**2 - inner**2) / 2.0
     up = 0.0
-    with (tmp_path / "x" / "joints.csv").open(newline="") as table:
-        for joint in csv.DictReader(table):
-            if max(int(joint["block_1"]), int(joint["block_2"])) > 9:
-                up += abs(float(joint["force_y"]))
+    for joint in rows_of(tmp_path / "x" / "joints.csv"):
+        if max(int(joint["block_1"]), int(joint["block_2"])) > 9:
+            up += abs(float(joint["force_y"]))
     assert up == pytest.approx(20e3 * arch + 15e3 * above, rel=1e-9)
 
 

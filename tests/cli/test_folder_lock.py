@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import fcntl
 import os
 import shutil
@@ -14,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 LONG = """&search /
 &output joints = .true., blocks = .true. /
@@ -51,8 +50,7 @@ def write(folder: Path, cases: int = 600) -> None:
 
 def cases_of(table: Path) -> list[int]:
     """Cases of a table, in their order."""
-    with table.open(newline="") as lines:
-        return [int(row["case"]) for row in csv.DictReader(lines)]
+    return [int(row["case"]) for row in rows_of(table)]
 
 
 @pytest.mark.parametrize("words", [["long.nml"], ["long.nml", "--resume"], ["short.nml", "--jobs", "2"]], ids=" ".join)

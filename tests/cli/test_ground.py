@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 BLOCKS = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\nblock\n0 0\n1 0\n1 2\n0 2\nmeasure 0.5 1\n"
 RECORD = "Station 7, in g\ntime,\"East\",up\n0.0,0.2,0\n\n# later\n0.1, -0.5,0\n0.25, 0.3,0\n0.4,0.0,0\n"
@@ -17,8 +16,7 @@ FREE = "&load gravity = 0 /\n&analysis mode = 'dynamic', geometry = 'current', d
 
 def rows(folder: Path, table: str) -> list[dict[str, str]]:
     """Rows of a table."""
-    with (folder / "out" / f"{table}.csv").open(newline="") as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(folder / "out" / f"{table}.csv")
 
 
 def run(folder: Path, blocks: str, groups: str, *settings: str, command: str = "run") -> tuple[int, str]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 SUBCOMMANDS = ["run", "check", "cut", "export", "help"]
 LINES = Path(__file__).parents[2] / "input" / "limerick" / "terrace.geo"
@@ -73,8 +72,7 @@ def run_jobs(folder: Path) -> None:
     tables = []
     for jobs in "13":
         assert run_dda("run", "deck.nml", "--jobs", jobs, "--out", jobs, cwd=folder).returncode == 0
-        with (folder / jobs / "results.csv").open(newline="") as lines:
-            rows = [{**row, "seconds": ""} for row in csv.DictReader(lines)]
+        rows = [{**row, "seconds": ""} for row in rows_of(folder / jobs / "results.csv")]
         tables.append(sorted(map(str, rows)))
     assert tables[0] == tables[1]
     assert len(tables[0]) == 4

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 
@@ -30,8 +29,7 @@ Point = tuple[float, float]
 
 def rows(folder: Path, table: str) -> list[Row]:
     """Rows of a table."""
-    with (folder / "out" / f"{table}.csv").open(newline="") as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(folder / "out" / f"{table}.csv")
 
 
 def run(folder: Path, blocks: str, groups: str) -> Row:
@@ -98,8 +96,7 @@ def test_an_arch_led_apart_falls_at_one_spread_whatever_its_stiffness(tmp_path: 
     assert share * 1.4 == pytest.approx(led_way(tmp_path, "apart"), rel=1e-9)
 
 
-with (DATA / "led_supports.csv").open(newline="") as table:
-    LED = [tuple(row.values()) for row in csv.DictReader(table)]
+LED = [tuple(row.values()) for row in rows_of(DATA / "led_supports.csv")]
 
 
 @pytest.mark.parametrize(("count", "ratio", "half_angle", "way", "longest"), LED)

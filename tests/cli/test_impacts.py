@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from pathlib import Path
 
 import pytest
 from block_scene import Point, block, rows_of, run_blocks, turned
-from dda_command import run_dda
+from dda_command import run_deck
 
 FLOOR = block([(-9.0, -1.0), (12.0, -1.0), (12.0, 0.0), (-9.0, 0.0)], "fixed")
 #: What E = 5 GPa lets blocks of half a metre swing, over their speeds
@@ -176,12 +175,10 @@ def test_corners_that_hit_one_after_another_keep_the_energy(tmp_path: Path, tilt
     corners = [(x * math.cos(tilt) - y * math.sin(tilt) + 0.01234, x * math.sin(tilt) + y * math.cos(tilt))
                for x, y in across]
     (tmp_path / "x.blocks").write_text(block(box(-1.0, -2.0, 1.0, 4.0), "fixed") + block(corners, "velocity -1.3 0 0"))
-    (tmp_path / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material young = 1e12 /\n&load gravity = 0 /\n"
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material young = 1e12 /\n&load gravity = 0 /\n"
         "&joint friction_deg = 0 /\n&analysis mode = 'dynamic', geometry = 'current', time_step = 4e-3, "
-        f"duration = 0.1, steps = 9999, restitution = 1, unknowns = {unknowns} /\n&output energy = .true. /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "x" / "energy.csv").open() as table:
-        kinetic = [float(row["kinetic"]) for row in csv.DictReader(table)]
+        f"duration = 0.1, steps = 9999, restitution = 1, unknowns = {unknowns} /\n&output energy = .true. /\n",
+        "--quiet")
+    kinetic = [float(row["kinetic"]) for row in rows_of(tmp_path / "x" / "energy.csv")]
     assert kinetic[-1] == pytest.approx(kinetic[0], rel=1e-10)

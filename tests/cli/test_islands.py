@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import random
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 Ring = list[tuple[float, float]]
 
@@ -29,8 +28,7 @@ def areas_of(folder: Path, rings: list[Ring]) -> list[float]:
     """Areas of the blocks that rings are cut into."""
     done = run_dda("cut", file_of(folder, rings), "--out", "a.csv", cwd=folder)
     assert done.returncode == 0, done.stderr
-    with (folder / "a.csv").open() as table:
-        return [float(row["area"]) for row in csv.DictReader(table)]
+    return [float(row["area"]) for row in rows_of(folder / "a.csv")]
 
 
 def test_concentric_rings_keep_their_areas(tmp_path: Path) -> None:
@@ -79,8 +77,7 @@ def test_a_block_with_an_island_turns_about_its_foot_as_one(tmp_path: Path, mode
             "&material young = 1e8 /\n")
     done = run_dda("run", "a.nml", cwd=tmp_path)
     assert done.returncode in (0, 3), done.stderr
-    with (tmp_path / "a" / "results.csv").open() as table:
-        row = next(csv.DictReader(table))
+    row = rows_of(tmp_path / "a" / "results.csv")[0]
     if mode == "static":  # width over height: what lies inside goes with it
         assert float(row["critical"]) == pytest.approx(0.5, rel=1e-7)
     else:
@@ -95,12 +92,7 @@ def test_material_lines_and_holds_reach_all_pieces(tmp_path: Path) -> None:
         "0.5 3.5 0.5 3.5\n3.5 3.5 3.5 3.5\n")
     done = run_dda("cut", "a.geo", "--out", "a.csv", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    with (tmp_path / "a.csv").open() as table:
-        blocks = list(csv.DictReader(table))
+    blocks = rows_of(tmp_path / "a.csv")
     assert [row["material"] for row in blocks].count("2") == 2  # both pieces of the block around the island
-    (tmp_path / "a.nml").write_text(
-        "&scene kind = 'lines', geometry = 'a.geo' /\n&load horizontal_coefficient = 0.3 /\n")
-    done = run_dda("run", "a.nml", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "a" / "results.csv").open() as table:
-        assert next(csv.DictReader(table))["verdict"] == "stable"  # held: one point in each piece
+    run_deck(tmp_path, "&scene kind = 'lines', geometry = 'a.geo' /\n&load horizontal_coefficient = 0.3 /\n", name="a")
+    assert rows_of(tmp_path / "a" / "results.csv")[0]["verdict"] == "stable"  # held: one point in each piece

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import random
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 TUNNEL = """&lines seed=3 form='{form}' /
 &outline left=-20 right=20 bottom=-15 top=15 fixed='left','right','bottom' /
@@ -36,8 +35,7 @@ def blocks_of(lines: Path) -> list[dict[str, str]]:
     table = lines.with_suffix(".csv")
     done = run_dda("cut", lines, "--out", table)
     assert done.returncode == 0, done.stderr
-    with table.open() as stream:
-        return list(csv.DictReader(stream))
+    return rows_of(table)
 
 
 def test_two_regular_sets_cut_blocks_of_one_area(tmp_path: Path) -> None:
@@ -183,9 +181,8 @@ def test_blocks_along_held_sides_are_held_however_thin(tmp_path: Path, spacing: 
     (tmp_path / "deck.nml").write_text("&scene kind = 'lines', geometry = 'map.geo' /\n")
     assert run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=tmp_path).returncode == 0
     corners: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    with (tmp_path / "out" / "blocks.csv").open(newline="") as stream:
-        for row in csv.DictReader(stream):
-            corners.setdefault((row["block"], row["state"]), []).append((float(row["x"]), float(row["y"])))
+    for row in rows_of(tmp_path / "out" / "blocks.csv"):
+        corners.setdefault((row["block"], row["state"]), []).append((float(row["x"]), float(row["y"])))
     along = 0
     for (number, state), points in corners.items():
         for axis, side in ((0, -12.0), (0, 12.0), (1, -12.0)):
@@ -206,9 +203,8 @@ def test_log_names_the_blocks_that_fall_out_of_a_tunnel(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text("&scene kind='lines', geometry='map.geo' /\n&joint friction_deg=35 /\n")
     assert run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=tmp_path).returncode == 0
     way: dict[str, float] = {}
-    with (tmp_path / "out" / "blocks.csv").open(newline="") as stream:
-        for row in csv.DictReader(stream):
-            way[row["block"]] = max(way.get(row["block"], 0.0), math.hypot(float(row["u"]), float(row["v"])))
+    for row in rows_of(tmp_path / "out" / "blocks.csv"):
+        way[row["block"]] = max(way.get(row["block"], 0.0), math.hypot(float(row["u"]), float(row["v"])))
     fallen = {block for block, far in way.items() if far > 0.01}
     line = (tmp_path / "out" / "log.txt").read_text().splitlines()[-1]
     assert f"blocks {len(fallen)} move:" in line

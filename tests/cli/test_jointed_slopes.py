@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import sys
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
 from jointed_slope import geometry  # noqa: E402
@@ -16,11 +15,8 @@ from jointed_slope import geometry  # noqa: E402
 def decide(folder: Path, lines: str, groups: str) -> dict[str, str]:
     """The row of results of a slope."""
     (folder / "slope.geo").write_text(lines)
-    (folder / "slope.nml").write_text(f"&scene kind = 'lines', geometry = 'slope.geo' /\n{groups}\n")
-    done = run_dda("run", "slope.nml", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    with (folder / "slope" / "results.csv").open() as table:
-        return next(csv.DictReader(table))
+    run_deck(folder, f"&scene kind = 'lines', geometry = 'slope.geo' /\n{groups}\n", name="slope")
+    return rows_of(folder / "slope" / "results.csv")[0]
 
 
 @pytest.mark.parametrize("friction", [30, 20, 10])

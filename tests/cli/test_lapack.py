@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import platform
 import subprocess
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 #: Cases of walls
 CASES = {
@@ -37,8 +36,7 @@ def run(folder: Path, out: str, *options: str) -> dict[str, list[dict[str, str]]
     assert done.returncode == 0, done.stderr
     tables = {}
     for name in ("results", "joints"):
-        with (folder / out / f"{name}.csv").open(newline="") as table:
-            tables[name] = sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+        tables[name] = sorted(rows_of(folder / out / f"{name}.csv"), key=lambda row: int(row["case"]))
     for row in tables["results"]:
         del row["seconds"]
     return tables

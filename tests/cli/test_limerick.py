@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 import statistics
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 from limerick_files import HAS_XML, HELD
 
 ROOT = Path(__file__).parents[2]
@@ -30,16 +29,13 @@ MODE = "&analysis mode = 'limerick', steps = 20000, collapse_displacement = 0.5 
 
 def results_of(folder: Path, text: str, *options: str) -> list[dict[str, str]]:
     """Rows of results.csv of a deck, by case."""
-    (folder / "deck.nml").write_text(text)
-    done = run_dda("run", "deck.nml", "--out", "out", "--quiet", *options, cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(folder, text, "--out", "out", "--quiet", *options, name="deck")
     return read_rows(folder / "out" / "results.csv")
 
 
 def read_rows(file: Path) -> list[dict[str, str]]:
     """Rows of a table, comments left out, by case where there are cases."""
-    with file.open(newline="") as lines:
-        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    rows = rows_of(file)
     return sorted(rows, key=lambda row: int(row.get("case", 0)))
 
 
@@ -59,8 +55,7 @@ def test_twelve_voussoirs_fall_and_stand_where_they_do_in_the_original(tmp_path:
 
 def test_joints_of_the_standing_arch_carry_its_weight(tmp_path: Path) -> None:
     results_of(tmp_path, "&arch voussoirs = 12 /\n&material unit_weight = 22e3 /\n" + MODE)
-    with (tmp_path / "out" / "joints.csv").open(newline="") as lines:
-        joints = list(csv.DictReader(lines))
+    joints = rows_of(tmp_path / "out" / "joints.csv")
     # trapezoids: the area of the ring is that of the chords
     area = 12 * 0.5 * 0.2588190451025208 * (10.75**2 - 9.25**2)
     assert len(joints) == 13
@@ -203,8 +198,7 @@ def test_block_of_a_file_stands_on_a_slope_flatter_than_its_friction(
     (row,) = results_of(tmp_path, deck)
     assert row["verdict"] == verdict
     assert row["blocks"] == "1"
-    with (tmp_path / "out" / "joints.csv").open(newline="") as lines:
-        (joint,) = csv.DictReader(lines)
+    (joint,) = rows_of(tmp_path / "out" / "joints.csv")
     # 2 m2 of 20 kN/m3 on 20 degrees; where it slides, up to the last step's jitter
     assert float(joint["normal_force"]) == pytest.approx(
         40 * math.cos(math.radians(20)), rel=0.001 if verdict == "stable" else 0.1

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 Rows = list[dict[str, str]]
 
@@ -26,12 +25,6 @@ def run(folder: Path, *words: str) -> None:
     """Run the program without output."""
     done = run_dda(*words, "--quiet", cwd=folder)
     assert done.returncode == 0, done.stderr
-
-
-def rows_of(path: Path) -> Rows:
-    """Rows of a table."""
-    with path.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def exported(folder: Path, joint_map: str) -> str:

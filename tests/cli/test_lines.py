@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from limerick_files import HAS_XML, HELD, INPUT, SQUARE
 
 
@@ -16,8 +15,7 @@ def row_of(folder: Path, name: str, text: str) -> dict[str, str]:
     (folder / f"{name}.nml").write_text(text)
     done = run_dda("run", f"{name}.nml", cwd=folder)
     assert done.returncode == 0, done.stderr
-    with (folder / name / "results.csv").open() as table:
-        return next(csv.DictReader(table))
+    return rows_of(folder / name / "results.csv")[0]
 
 
 @pytest.mark.parametrize("geometry", ["reference", "current"])
@@ -81,8 +79,7 @@ def test_two_steps_and_a_parapet_stand(tmp_path: Path) -> None:
     row = row_of(tmp_path, "terrace", text)
     assert (row["verdict"], row["blocks"]) == ("stable", "7")
     # the blocks at the bottom are held: the joints on them carry the weight of all the others
-    with (tmp_path / "terrace" / "joints.csv").open() as table:
-        joints = list(csv.DictReader(table))
+    joints = rows_of(tmp_path / "terrace" / "joints.csv")
     base = [joint for joint in joints if joint["y_intrados"] == joint["y_extrados"] == "1"]
     assert len(base) == 3
     carried = sum(float(joint["normal_force"]) for joint in base)
@@ -262,8 +259,7 @@ def test_measured_points_of_a_file_are_reported(tmp_path: Path, x: float) -> Non
     row_of(tmp_path, "a", "&scene kind='lines', geometry='a.geo' /\n" + motion
            + "&analysis mode='dynamic', geometry='current', start='static',\n"
            "   duration=0.2, time_step=1e-3, steps=1000 /\n")
-    with (tmp_path / "a" / "points.csv").open(newline="") as table:
-        last = list(csv.DictReader(table))[-1]
+    last = rows_of(tmp_path / "a" / "points.csv")[-1]
     assert float(last["x"]) - x == pytest.approx(0.25 + float(last["u"]), abs=1e-9)
     slides = 0.5 * (4.5 - 9.81 * math.tan(math.radians(20.0))) * 0.2**2
     assert float(last["u"]) == pytest.approx(slides, rel=0.02)
@@ -281,12 +277,10 @@ def test_a_model_far_away_is_reported_where_it_is(tmp_path: Path, mode: str) -> 
     text = "\n".join(["0.01", f"{len(sides)} 0 0 0 2 0 0 0", *(row + " 1" for row in rows[:-2]), *rows[-2:]])
     (tmp_path / "a.geo").write_text(text + "\n")
     row_of(tmp_path, "far", f"&scene kind='lines', geometry='a.geo' /\n&analysis mode='{mode}' /\n")
-    with (tmp_path / "far" / "joints.csv").open() as table:
-        (joint,) = csv.DictReader(table)
+    (joint,) = rows_of(tmp_path / "far" / "joints.csv")
     assert {round(float(joint[f"x_{end}"]) - x, 2) for end in ("intrados", "extrados")} == {0, 1}
     assert float(joint["y_intrados"]) - y == pytest.approx(0, abs=0.01)
-    with (tmp_path / "far" / "blocks.csv").open() as table:
-        corners = {(float(line["x"]) - x, float(line["y"]) - y) for line in csv.DictReader(table)}
+    corners = {(float(line["x"]) - x, float(line["y"]) - y) for line in rows_of(tmp_path / "far" / "blocks.csv")}
     assert corners >= {*ground, *block}
 
 

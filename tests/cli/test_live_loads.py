@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
 from bridges import rings, spans
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 DATA = Path(__file__).parents[1] / "data"
 GROUND = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\n"
@@ -23,8 +22,7 @@ SEARCH = "&search parameter = 'load_factor' /\n"
 
 def table(file: str) -> list[dict[str, str]]:
     """Rows of a table of tests/data."""
-    with (DATA / file).open(newline="") as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(DATA / file)
 
 
 def rows(folder: Path, groups: str, blocks: str = PUSHED, head: str | None = None) -> list[dict[str, str]]:
@@ -32,11 +30,8 @@ def rows(folder: Path, groups: str, blocks: str = PUSHED, head: str | None = Non
     (folder / "x.blocks").write_text(blocks)
     if head is None:
         head = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
-    (folder / "x.nml").write_text(head + groups)
-    done = run_dda("run", "x.nml", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    with (folder / "x" / "results.csv").open(newline="") as lines:
-        return sorted(csv.DictReader(lines), key=lambda row: int(row["case"]))
+    run_deck(folder, head + groups, "--quiet")
+    return sorted(rows_of(folder / "x" / "results.csv"), key=lambda row: int(row["case"]))
 
 
 def friction_of(word: str) -> str:
@@ -144,8 +139,7 @@ def test_moving_blocks_feel_the_factor(tmp_path: Path, mode: str) -> None:
     for factor in (0.5, 1.5):
         (row,) = rows(tmp_path, f"&load load_factor = {factor} /\n" + deck)
         assert row["verdict"] in ("stable", "completed")
-        with (tmp_path / "x" / "joints.csv").open(newline="") as lines:
-            shear.append(sum(abs(float(joint["force_x"])) for joint in csv.DictReader(lines)))
+        shear.append(sum(abs(float(joint["force_x"])) for joint in rows_of(tmp_path / "x" / "joints.csv")))
     if mode == "static":
         assert shear == pytest.approx([500.0, 1500.0], rel=1e-6)
     else:

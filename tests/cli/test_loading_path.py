@@ -1,12 +1,11 @@
 """Static verdicts under Coulomb friction are those of the loading path: searches and decisions."""
 
-import csv
 import math
 import re
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 BLOCK = "block\n{0} {1}\n{2} {1}\n{2} {3}\n{0} {3}\n"
 
@@ -26,14 +25,10 @@ def wall(units: int, courses: int) -> str:
 def run_wall(folder: Path, units: int, courses: int, friction: float, more: str) -> list[dict]:
     """Rows of a deck of a wall with a coefficient of friction."""
     (folder / "wall.blocks").write_text(wall(units, courses))
-    (folder / "deck.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'wall.blocks' /\n"
-        f"&joint friction_deg = {math.degrees(math.atan(friction))!r} /\n{more}"
-    )
-    done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    with (folder / "deck" / "results.csv").open() as table:
-        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'wall.blocks' /\n"
+        f"&joint friction_deg = {math.degrees(math.atan(friction))!r} /\n{more}", "--quiet", name="deck")
+    return sorted(rows_of(folder / "deck" / "results.csv"), key=lambda row: int(row["case"]))
 
 
 @pytest.mark.parametrize(
@@ -85,8 +80,7 @@ def test_gravity_that_tilts_keeps_its_size(tmp_path: Path, flow: str) -> None:
         "&material density = 1000 /\n&load gravity = 10 /\n&joint friction_deg = 30 /\n"
         "&search parameter = 'gravity_direction_deg', low = -90, high = -45 /\n&output joints = .true. /\n")
     assert run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode == 0
-    with (tmp_path / "x" / "joints.csv").open(newline="") as table:
-        (joint,) = csv.DictReader(table)
+    (joint,) = rows_of(tmp_path / "x" / "joints.csv")
     assert float(joint["normal_force"]) == pytest.approx(2e4 * math.cos(math.radians(30)), rel=1e-7)
     assert abs(float(joint["shear_force"])) == pytest.approx(2e4 * math.sin(math.radians(30)), rel=1e-7)
 
@@ -157,13 +151,10 @@ def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_
     """Half the wall stands beside the ground: its bricks fall, by friction of 30 degrees or none."""
     text = wall(4, 8).replace("9.0 -1\n9.0 0", "3.0 -1\n3.0 0")
     (tmp_path / "half.blocks").write_text(text)
-    (tmp_path / "half.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'half.blocks' /\n&joint friction_deg = 30 /\n"
-    )
-    done = run_dda("run", "half.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "half" / "results.csv").open() as table:
-        (row,) = csv.DictReader(table)
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'half.blocks' /\n&joint friction_deg = 30 /\n",
+        "--quiet", name="half")
+    (row,) = rows_of(tmp_path / "half" / "results.csv")
     assert row["verdict"] == "collapsed"
     assert int(row["factorisations"]) <= 40
 
@@ -201,8 +192,7 @@ def test_tall_columns_tip_by_their_width_over_their_height(tmp_path: Path, block
     for name in ("search", "below", "beyond"):
         done = run_dda("run", f"{name}.nml", "--quiet", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
-        with (tmp_path / name / "results.csv").open() as table:
-            rows += csv.DictReader(table)
+        rows += rows_of(tmp_path / name / "results.csv")
     assert [row["verdict"] for row in rows] == ["found", "stable", "collapsed"]
     assert float(rows[0]["critical"]) == pytest.approx(1.0 / blocks, rel=1e-9)
 
@@ -220,21 +210,17 @@ def test_a_tall_column_that_was_pressed_first_tips_by_the_same_push(tmp_path: Pa
             "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&material density = 2400 /\n&load gravity = 9.81 /\n")
         done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
-        with (tmp_path / "deck" / "results.csv").open() as table:
-            assert [row["verdict"] for row in csv.DictReader(table)] == [verdict]
+        assert [row["verdict"] for row in rows_of(tmp_path / "deck" / "results.csv")] == [verdict]
 
 
 def test_a_tall_column_that_sticks_tips_before_it_parts(tmp_path: Path) -> None:
     """1000 cubes with a cohesion that no joint of them uses up tip by their width over their height."""
     text = BLOCK.replace("block", "block fixed").format(-1, -1, 2, 0)
     (tmp_path / "wall.blocks").write_text(text + "".join(BLOCK.format(0, k, 1, k + 1) for k in range(1000)))
-    (tmp_path / "deck.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&joint cohesion = 1e4 /\n"
-        "&search parameter = 'horizontal_coefficient' /\n")
-    done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "deck" / "results.csv").open() as table:
-        (row,) = csv.DictReader(table)
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&joint cohesion = 1e4 /\n"
+        "&search parameter = 'horizontal_coefficient' /\n", "--quiet", name="deck")
+    (row,) = rows_of(tmp_path / "deck" / "results.csv")
     assert float(row["critical"]) == pytest.approx(1.0e-3, rel=1e-6)
 
 
@@ -247,8 +233,7 @@ def test_a_portal_of_tall_columns_tips_as_each_of_them(tmp_path: Path) -> None:
         "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&search parameter = 'horizontal_coefficient' /\n")
     done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    with (tmp_path / "deck" / "results.csv").open() as table:
-        (row,) = csv.DictReader(table)
+    (row,) = rows_of(tmp_path / "deck" / "results.csv")
     assert float(row["critical"]) == pytest.approx(1.0 / 300.0, rel=1e-9)
 
 
@@ -276,13 +261,10 @@ def test_how_rings_fall_whose_joints_slide_here_and_there_needs_no_run(tmp_path:
     stuck = {(1, 13), (3, 4), (4, 16), (5, 6), (6, 18), (9, 10), (11, 12), (17, 18), (19, 20), (20, 21)}
     stuck |= {(21, 22), (22, 23), (0, 12)}
     (tmp_path / "rings.blocks").write_text(two_rings(12, stuck))
-    (tmp_path / "rings.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'rings.blocks' /\n&joint friction_deg = 36.653 /\n"
-    )
-    done = run_dda("run", "rings.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "rings" / "results.csv").open() as table:
-        (row,) = csv.DictReader(table)
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'rings.blocks' /\n&joint friction_deg = 36.653 /\n",
+        "--quiet", name="rings")
+    (row,) = rows_of(tmp_path / "rings" / "results.csv")
     assert row["verdict"] == "collapsed"
     # the joint graph tells how, not a run of steps
     assert int(row["steps"]) == 1
@@ -292,17 +274,13 @@ def test_arch_has_one_verdict_with_and_without_tables(tmp_path: Path) -> None:
     """Three voussoirs that fall on the way to tilted gravity and a push, though forces balance both at once."""
     verdicts = []
     for flag in (".true.", ".false."):
-        (tmp_path / "deck.nml").write_text(
-            "&scene kind = 'arch' /\n"
+        run_deck(
+            tmp_path, "&scene kind = 'arch' /\n"
             "&arch voussoirs = 3, half_angle_deg = 54.474975328928494, thickness_ratio = 0.011061216872680255 /\n"
             "&joint friction_deg = 45 /\n"
             "&load horizontal_coefficient = 0.5, gravity_direction_deg = -120 /\n"
-            f"&output joints = {flag}, blocks = .false. /\n"
-        )
-        done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-        with (tmp_path / "deck" / "results.csv").open() as rows:
-            verdicts += [row["verdict"] for row in csv.DictReader(rows)]
+            f"&output joints = {flag}, blocks = .false. /\n", "--quiet", name="deck")
+        verdicts += [row["verdict"] for row in rows_of(tmp_path / "deck" / "results.csv")]
     assert verdicts == ["collapsed", "collapsed"]
 
 

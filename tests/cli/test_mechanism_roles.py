@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 BASE = "block fixed\n-2 -1\n6 -1\n6 0\n-2 0\n"
 
@@ -46,16 +45,12 @@ def collapse_of(
 ) -> tuple[dict[str, str], list[dict[str, str]], dict[int, list[list[float]]]]:
     """Row, joints and corners of the blocks (x, y, u, v) of a search."""
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
-        f"&joint friction_deg = {friction!r} /\n&search parameter = {search} /\n"
-    )
-    done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+        f"&joint friction_deg = {friction!r} /\n&search parameter = {search} /\n", "--out", folder / "out", "--quiet")
     tables = []
     for name in ("results", "joints", "blocks"):
-        with (folder / "out" / f"{name}.csv").open(newline="") as lines:
-            tables.append(list(csv.DictReader(lines)))
+        tables.append(rows_of(folder / "out" / f"{name}.csv"))
     corners: dict[int, list[list[float]]] = {}
     for row in tables[2]:
         corners.setdefault(int(row["block"]), []).append([float(row[name]) for name in "xyuv"])

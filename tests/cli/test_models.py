@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import NamedTuple
 
 import pytest
 from bridges import spans
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 KINDS = ("arch", "lines", "blocks")
 MODES = ("static", "dynamic", "limerick")
@@ -59,12 +58,6 @@ def write_files(folder: Path) -> None:
         ("water", BLOCKS + "\nwater -100 -50 100 -50\n"),
     ):
         (folder / f"s.{name}").write_text(text)
-
-
-def table(file: Path) -> list[dict[str, str]]:
-    """Rows of a result table."""
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def markdown(text: str) -> list[dict[str, str]]:
@@ -128,10 +121,10 @@ def test_every_model_bears_the_weight_or_is_refused(tmp_path: Path, kind: str, m
         assert re.match(r"m\.nml:3: error: .*" + re.escape(row["why not"]), done.stderr)
         return
     assert done.returncode == 0, done.stderr
-    (result,) = table(tmp_path / "m" / "results.csv")
+    (result,) = rows_of(tmp_path / "m" / "results.csv")
     assert result["verdict"] == ("completed" if mode == "dynamic" else "stable")
     assert result["blocks"] == ("8" if kind == "arch" else "1")
-    joints = table(tmp_path / "m" / "joints.csv")
+    joints = rows_of(tmp_path / "m" / "joints.csv")
     # those of the arch that move or sink lean their springings by some 1e-4
     accuracy = 1e-2 if mode == "limerick" else 1e-4
     for joint in (joints[0], joints[-1]):
@@ -237,7 +230,7 @@ def of_the_arch(mode: str) -> dict[str, Answer]:
     live = pushed + "&load live_horizontal = T, horizontal_coefficient = 0.1 /\n"
     if mode == "static":
         # a span of tests/data/practice_multi_span.csv; a load of nothing is carried anywhere
-        one = table(DATA / "practice_multi_span.csv")[0]
+        one = rows_of(DATA / "practice_multi_span.csv")[0]
         weight, x, y = -float(spans(one).split()[-1]), *spans(one).split()[-4:-2]
         span = (f"&arch radius = 1, half_angle_deg = 60, voussoirs = 20 /\n&material unit_weight = 1 /\n"
                 f"&joint friction_deg = {math.degrees(math.atan(0.6))!r} /\n"
@@ -403,7 +396,7 @@ def test_everything_searched_is_right_or_refused(tmp_path: Path, kind: str, mode
     names = {key: re.sub(r"[^a-z]", "_", key) for key in known}
     done = run_dda("run", *(f"{name}.nml" for name in names.values()), "--out", "out", "--quiet", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    found = {key: table(tmp_path / "out" / name / "results.csv")[0] for key, name in names.items()}
+    found = {key: rows_of(tmp_path / "out" / name / "results.csv")[0] for key, name in names.items()}
     for key, answer in known.items():
         if answer.wanted in ("stable", "collapsed"):
             assert found[key]["verdict"] == answer.wanted, key
@@ -426,10 +419,10 @@ def test_strength_goes_with_weight_and_size(tmp_path: Path, key: str, low: float
     deck = "&arch thickness_ratio = 0.1 /\n&joint cohesion = 1e8{} /\n&search parameter = '{}', low = {}, high = {} /\n"
     (tmp_path / "a.nml").write_text(deck.format("", "tension", 0, 1e6))
     assert run_dda("run", "a.nml", "--quiet", cwd=tmp_path).returncode == 0
-    tension = table(tmp_path / "a" / "results.csv")[0]["critical"]
+    tension = rows_of(tmp_path / "a" / "results.csv")[0]["critical"]
     (tmp_path / "b.nml").write_text(deck.format(f", tension = {tension}", key, low, high))
     assert run_dda("run", "b.nml", "--quiet", cwd=tmp_path).returncode == 0
-    (row,) = table(tmp_path / "b" / "results.csv")
+    (row,) = rows_of(tmp_path / "b" / "results.csv")
     assert row["collapses_at"] == "high"
     assert float(row["critical"]) == pytest.approx(value, rel=1e-6)
 

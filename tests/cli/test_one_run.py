@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 BASE = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\n"
 BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
@@ -52,12 +52,6 @@ def run(folder: Path, blocks: str, groups: str, name: str = "out") -> Path:
     done = run_dda("run", "x.nml", "--out", folder / name, "--quiet", cwd=folder)
     assert done.returncode in (0, 3), done.stderr
     return folder / name
-
-
-def rows_of(path: Path) -> list[dict[str, str]]:
-    """Rows of a table."""
-    with path.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def last_points(folder: Path) -> list[tuple[float, float, float, float]]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 ROOT = Path(__file__).parents[2]
 DECKS = ROOT / "input" / "paper"
@@ -15,13 +14,7 @@ TABLES = ["table1", "table2", "table3", "table4"]
 Row = dict[str, str]
 
 
-def read_table(file: Path) -> list[Row]:
-    """Rows of a table, comments left out."""
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
-EXACT = read_table(ROOT / "tests" / "data" / "paper_exact.csv")
+EXACT = rows_of(ROOT / "tests" / "data" / "paper_exact.csv")
 
 
 Key = tuple[str, float, int, float]
@@ -49,7 +42,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[Key, Row
     assert done.returncode == 0, done.stderr
     rows: dict[str, dict[Key, Row]] = {"reference": {}, "current": {}}
     for table in TABLES:
-        for row in read_table(folder / table / "results.csv"):
+        for row in rows_of(folder / table / "results.csv"):
             rows[row["geometry"]][key_of(table, row)] = row
     return rows
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import sys
 from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 from assembly import area_and_centre, block_text  # noqa: E402
@@ -39,8 +38,7 @@ def rows(folder: Path, blocks: str, task: str) -> list[dict[str, str]]:
     (folder / "deck.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{task}\n")
     done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
     assert done.returncode == 0, done.stderr + done.stdout
-    with (folder / "deck" / "results.csv").open() as table:
-        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+    return sorted(rows_of(folder / "deck" / "results.csv"), key=lambda row: int(row["case"]))
 
 
 @pytest.mark.parametrize(("flow", "verdict"), [("coulomb", "collapsed"), ("associated", "stable")])
@@ -134,8 +132,7 @@ def test_a_corbel_without_a_start_is_no_collapse_where_its_push_has_a_history(tm
     rough = "&material unit_weight = 2e4 /\n&joint friction_deg = 88.7800220058748 /\n"
     (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + rough)
     run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
-    with (tmp_path / "deck" / "results.csv").open() as table:
-        (row,) = csv.DictReader(table)
+    (row,) = rows_of(tmp_path / "deck" / "results.csv")
     assert row["verdict"] in ("undecided", "stable")
 
 

@@ -6,13 +6,12 @@ to the last digit. A weight that hangs from a point above the centre adds its mo
 
 from __future__ import annotations
 
-import csv
 import math
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 Point = tuple[float, float]
 Tensor = tuple[float, float, float]
@@ -71,8 +70,7 @@ def hooke(stress: Tensor, plane: str) -> Tensor:
 
 def strain_of(folder: Path) -> Tensor:
     """Strain by the displacements of three corners of the only block."""
-    with (folder / "blocks.csv").open(newline="") as lines:
-        corners = [[float(row[name]) for name in "xyuv"] for row in csv.DictReader(lines)]
+    corners = [[float(row[name]) for name in "xyuv"] for row in rows_of(folder / "blocks.csv")]
     (x0, y0, u0, v0), (x1, y1, u1, v1), (x2, y2, u2, v2) = corners[:3]
     a, b, c, d = x1 - x0, y1 - y0, x2 - x0, y2 - y0
     area = a * d - b * c
@@ -98,8 +96,7 @@ def strain(
     )
     done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
     assert done.returncode == 0, done.stderr + done.stdout
-    with (folder / "out" / "results.csv").open(newline="") as table:
-        (row,) = csv.DictReader(table)
+    (row,) = rows_of(folder / "out" / "results.csv")
     assert row["verdict"] == "stable"
     return strain_of(folder / "out")
 

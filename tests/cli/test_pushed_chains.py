@@ -1,11 +1,10 @@
 """Arches that tilt or are pushed are decided as chains as the joint graph of their blocks decides them."""
 
-import csv
 import random
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 #: One deck for many arches at once: all sweeps advance together
 DECK = """&scene title = 'Random arches' /
@@ -36,19 +35,18 @@ def random_arches(voussoirs: int, seed: int, more: str) -> str:
     return DECK.format(voussoirs=voussoirs, more=more, **lists)
 
 
-def rows_of(folder: Path, name: str, text: str) -> list[dict[str, str]]:
+def cases_of(folder: Path, name: str, text: str) -> list[dict[str, str]]:
     """Rows of a deck, in the order of its cases."""
     (folder / f"{name}.nml").write_text(text)
     done = run_dda("run", f"{name}.nml", "--quiet", cwd=folder)
     assert done.returncode in (0, 3), done.stderr
-    with (folder / name / "results.csv").open() as table:
-        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+    return sorted(rows_of(folder / name / "results.csv"), key=lambda row: int(row["case"]))
 
 
 @pytest.mark.parametrize("voussoirs", [5, 18, 37])
 def test_arches_stand_and_fall_as_their_joint_graphs_do(tmp_path: Path, voussoirs: int) -> None:
-    chains = rows_of(tmp_path, "chain", random_arches(voussoirs, voussoirs, ""))
-    graphs = rows_of(tmp_path, "graph", random_arches(voussoirs, voussoirs, AS_GRAPH))
+    chains = cases_of(tmp_path, "chain", random_arches(voussoirs, voussoirs, ""))
+    graphs = cases_of(tmp_path, "graph", random_arches(voussoirs, voussoirs, AS_GRAPH))
     assert [row["verdict"] for row in chains] == [row["verdict"] for row in graphs]
     assert {row["verdict"] for row in chains} >= {"stable", "collapsed"}
     pushed = [row for row in chains if row["verdict"] == "stable" and float(row["horizontal_coefficient"]) != 0.0]
@@ -65,8 +63,8 @@ def test_critical_thickness_of_pushed_arches_is_that_of_their_joint_graphs(tmp_p
 &sweep parameter = 'horizontal_coefficient', values = -0.1, 0.15 /
 &output joints = .false., blocks = .false. {more} /
 """
-    chains = rows_of(tmp_path, "chain", deck.format(more=""))
-    graphs = rows_of(tmp_path, "graph", deck.format(more=AS_GRAPH))
+    chains = cases_of(tmp_path, "chain", deck.format(more=""))
+    graphs = cases_of(tmp_path, "graph", deck.format(more=AS_GRAPH))
     assert [row["verdict"] for row in chains] == [row["verdict"] for row in graphs]
     for chain, graph in zip(chains, graphs):
         if chain["verdict"] == "found":
@@ -80,7 +78,7 @@ def test_a_search_of_an_arch_takes_the_two_decisions_that_prove_its_bracket(tmp_
 &sweep parameter = 'horizontal_coefficient', first = -0.2, last = 0.3, count = 6 /
 &joint friction_deg = 75 /
 """
-    rows = rows_of(tmp_path, "sweep", deck)
+    rows = cases_of(tmp_path, "sweep", deck)
     assert {row["verdict"] for row in rows} == {"found"}
     assert {row["steps"] for row in rows} == {"2"}
     for row in rows:
@@ -103,6 +101,6 @@ def test_sliding_arches_are_as_exact_and_brackets_as_narrow_as_asked(tmp_path: P
 &sweep parameter = 'friction_deg', linked = .true., values = 50, 37.92929292929293, 39.949494949, 46.414141414 /
 &output joints = .false., blocks = .false. /
 """
-    for row in rows_of(tmp_path, "exact", deck):
+    for row in cases_of(tmp_path, "exact", deck):
         assert abs(float(row["relative_error"])) < 1e-10
         assert float(row["critical_high"]) - float(row["critical_low"]) <= 1.0001 * tolerance * float(row["critical"])

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 LEVEL = (0.0, 0.25011638446681367, 0.6035971503472201, 0.9749743829203876, 1.2410130403590103, 1.517347052446026)
@@ -46,14 +45,11 @@ def test_a_wall_on_a_slow_ramp_lets_go_where_its_path_does(tmp_path: Path, law: 
     path = critical_push(tmp_path, law) if law == WEAK_MORTAR else PATH
     (tmp_path / "x.blocks").write_text(
         wall() + f"measure {RIGHT - 0.1!r} 1.5\nbase_acceleration\n0 0 0\n10 -9.81 0\n")
-    (tmp_path / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material density = 2200.0 /\n"
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material density = 2200.0 /\n"
         f"&joint {law} /\n&analysis unknowns = 3, mode = 'dynamic', geometry = '{geometry}',\n"
-        "  time_step = 2e-3, duration = 6.8, damping = 50, steps = 200000 /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "x" / "points.csv").open() as table:
-        moved = [(float(row["time"]) / 10.0, abs(float(row["u"]))) for row in csv.DictReader(table)]
+        "  time_step = 2e-3, duration = 6.8, damping = 50, steps = 200000 /\n", "--quiet")
+    moved = [(float(row["time"]) / 10.0, abs(float(row["u"]))) for row in rows_of(tmp_path / "x" / "points.csv")]
     assert max(way for push, way in moved if push < 0.98 * path) < 1e-6
     assert max(way for push, way in moved if push < 1.02 * path) > 1e-5
 
@@ -65,8 +61,7 @@ def critical_push(folder: Path, law: str, blocks: str = wall()) -> float:
         "&scene kind = 'blocks', geometry = 's.blocks' /\n&material density = 2200.0 /\n"
         f"&joint {law} /\n&search parameter = 'horizontal_coefficient', high = 4.0 /\n")
     assert run_dda("run", "s.nml", "--quiet", cwd=folder).returncode == 0
-    with (folder / "s" / "results.csv").open() as table:
-        return float(next(csv.DictReader(table))["critical"])
+    return float(rows_of(folder / "s" / "results.csv")[0]["critical"])
 
 
 @pytest.mark.parametrize("bricks", ["3x8", "4x8", "5x10"])
@@ -84,8 +79,7 @@ def test_the_joint_of_a_mortared_block_is_told_with_the_push_that_breaks_it(tmp_
     """Just before the joint breaks its shear is the push and its moment that of the push at mid-height."""
     blocks = block(box(-5.0, -1.0, 6.0, 0.0), "fixed") + block(box(0.0, 0.0, 1.0, 2.0))
     push = critical_push(tmp_path, "friction_deg = 30, cohesion = 2e4, tension = 1e4", blocks)
-    with (tmp_path / "s" / "joints.csv").open() as table:
-        joint = next(csv.DictReader(table))
+    joint = rows_of(tmp_path / "s" / "joints.csv")[0]
     weight = 2200.0 * 9.81 * 2.0
     assert abs(float(joint["shear_force"])) == pytest.approx(push * weight, rel=1e-6)
     assert float(joint["normal_force"]) == pytest.approx(weight, rel=1e-9)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections import defaultdict
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 GROUND = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\n"
 BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
@@ -19,13 +18,10 @@ def run(folder: Path, blocks: str, groups: str) -> dict[str, list[dict[str, str]
     """Tables of a scene of blocks by their names."""
     (folder / "x.blocks").write_text(blocks)
     kind = "&scene kind = 'blocks', geometry = 'x.blocks' /\n" if blocks else ""
-    (folder / "x.nml").write_text(f"{kind}{groups}\n")
-    done = run_dda("run", "x.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(folder, f"{kind}{groups}\n", "--out", "out", "--quiet")
     tables = {}
     for file in (folder / "out").glob("*.csv"):
-        with file.open(newline="") as lines:
-            tables[file.stem] = list(csv.DictReader(lines))
+        tables[file.stem] = rows_of(file)
     return tables
 
 

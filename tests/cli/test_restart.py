@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from fuzz_restart import file_of, numbers_of
 
 #: A stone that slides on its base; held by a spring if asked for
@@ -30,8 +29,7 @@ def run(folder: Path, name: str, more: str, geometry: str = "current") -> subpro
 
 def rows(folder: Path, table: str = "results.csv") -> list[dict[str, str]]:
     """Rows of a table."""
-    with (folder / table).open(newline="") as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(folder / table)
 
 
 def change(folder: Path, edit: Callable[[list[int], list[float]], None]) -> None:

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 DECK = """&search /
 &sweep parameter = 'half_angle_deg', values = 60, 90, 120 /
@@ -57,8 +57,7 @@ def tables(folder: Path) -> dict[str, list[str]]:
 
 def seconds(folder: Path) -> dict[str, str]:
     """Wall time of each case as written, by which a row that was kept is known again."""
-    with (folder / "results.csv").open(newline="") as lines:
-        return {row["case"]: row["seconds"] for row in csv.DictReader(lines)}
+    return {row["case"]: row["seconds"] for row in rows_of(folder / "results.csv")}
 
 
 def cut(file: Path, keep: int) -> None:
@@ -207,8 +206,7 @@ def test_changed_set_is_computed_again(tmp_path: Path, first: str | None, second
     run(tmp_path, *setting(first))
     done = run(tmp_path, "--resume", *setting(second))
     assert "all cases are computed" in done.stdout
-    with (out / "results.csv").open(newline="") as lines:
-        assert {row["friction_deg"] for row in csv.DictReader(lines)} == {second or "50"}
+    assert {row["friction_deg"] for row in rows_of(out / "results.csv")} == {second or "50"}
 
 
 def test_results_of_another_build_are_computed_again(tmp_path: Path) -> None:

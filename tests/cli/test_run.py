@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import pty
 import signal
@@ -11,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"
@@ -27,10 +26,9 @@ def write_decks(folder: Path, **texts: str) -> None:
         (folder / f"{name}.nml").write_text(text)
 
 
-def rows_of(folder: Path) -> list[dict[str, str]]:
+def cases_of(folder: Path) -> list[dict[str, str]]:
     """Rows of results.csv in a folder, by case."""
-    with (folder / "results.csv").open(newline="") as lines:
-        return sorted(csv.DictReader(lines), key=lambda row: int(row["case"]))
+    return sorted(rows_of(folder / "results.csv"), key=lambda row: int(row["case"]))
 
 
 def names_in(folder: Path) -> list[str]:
@@ -121,7 +119,7 @@ def test_a_dynamic_run_may_take_the_steps_of_its_duration(tmp_path: Path) -> Non
     motion = "&analysis mode = 'dynamic', geometry = 'current', duration = 0.6, time_step = 1e-3 /\n"
     write_decks(tmp_path, deck=STABLE + motion)
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 0
-    (row,) = rows_of(tmp_path / "deck")
+    (row,) = cases_of(tmp_path / "deck")
     assert row["verdict"] == "completed"
     assert int(row["steps"]) >= 600
 
@@ -130,7 +128,7 @@ def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'steps', values = 400, 1, 400 /\n"
     write_decks(tmp_path, deck=STABLE + "&analysis geometry = 'current' /\n" + sweep)
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
-    verdicts = [row["verdict"] for row in rows_of(tmp_path / "deck")]
+    verdicts = [row["verdict"] for row in cases_of(tmp_path / "deck")]
     assert verdicts == ["stable", "undecided", "stable"]
     assert "step limit" in (tmp_path / "deck" / "log.txt").read_text()
 
@@ -138,7 +136,7 @@ def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
 def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
     write_decks(tmp_path, deck="&search /\n&analysis geometry = 'current', steps = 1 /\n")
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
-    (row,) = rows_of(tmp_path / "deck")
+    (row,) = cases_of(tmp_path / "deck")
     assert row["verdict"] == "undecided"
     assert row["critical"] == row["critical_low"] == row["critical_high"] == ""
 
@@ -183,7 +181,7 @@ def test_default_folder_is_named_as_the_deck_in_the_current_folder(tmp_path: Pat
 def test_only_the_last_ending_is_cut(tmp_path: Path) -> None:
     (tmp_path / "arch.v1.nml").write_text(STABLE)
     assert run_dda("run", "arch.v1.nml", cwd=tmp_path).returncode == 0
-    (row,) = rows_of(tmp_path / "arch.v1")
+    (row,) = cases_of(tmp_path / "arch.v1")
     assert row["deck"] == "arch.v1"
 
 
@@ -213,7 +211,7 @@ def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false., blocks = .false. /\n")
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
-    assert len(rows_of(tmp_path / "results")) == 1
+    assert len(cases_of(tmp_path / "results")) == 1
     files = ["deck.record", "disk.record", "log.txt", "results.csv", "run.lock", "sizes.record"]
     assert names_in(tmp_path / "results") == files
 
@@ -242,10 +240,9 @@ def test_hostile_names_are_names(tmp_path: Path, name: str) -> None:
     done = run_dda("run", f"./{name}", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     stem = Path(name).stem if not name.endswith(".") else name[:-1]
-    (row,) = rows_of(tmp_path / stem)
+    (row,) = cases_of(tmp_path / stem)
     assert row["deck"] == stem
     assert row["verdict"] == "stable"
-
 
 
 def test_deep_folders_are_found_and_made(tmp_path: Path) -> None:
@@ -338,7 +335,7 @@ def test_set_overrides_the_deck(tmp_path: Path, setting: str, column: str, value
     write_decks(tmp_path, deck="&arch thickness_ratio = 0.3 /\n")
     done = run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    (row,) = rows_of(tmp_path / "deck")
+    (row,) = cases_of(tmp_path / "deck")
     assert float(row[column]) == value
 
 
@@ -354,7 +351,7 @@ def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     setting = "search%parameter=thickness_ratio"
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    (row,) = rows_of(tmp_path / "deck")
+    (row,) = cases_of(tmp_path / "deck")
     assert row["verdict"] == "found"
 
 
@@ -365,7 +362,7 @@ def test_long_set_is_not_cut(tmp_path: Path) -> None:
     done = run_dda("run", "deck.nml", "--set", f"arch%joints_deg={joints}", cwd=tmp_path)
     assert done.returncode in (0, 2)
     if done.returncode == 0:
-        (row,) = rows_of(tmp_path / "deck")
+        (row,) = cases_of(tmp_path / "deck")
         assert row["blocks"] == "1000"
 
 
@@ -380,7 +377,7 @@ MANY = (
 
 def without_seconds(folder: Path) -> list[dict[str, str]]:
     """Rows of results.csv by case, wall times left out."""
-    rows = rows_of(folder)
+    rows = cases_of(folder)
     for row in rows:
         del row["seconds"]
     return rows
@@ -406,8 +403,7 @@ def test_repeated_runs_agree_bit_for_bit(tmp_path: Path, jobs: str) -> None:
 def test_one_job_writes_the_cases_in_order(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=MANY)
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 0
-    with (tmp_path / "deck" / "results.csv").open() as lines:
-        assert [int(row["case"]) for row in csv.DictReader(lines)] == list(range(1, 13))
+    assert [int(row["case"]) for row in rows_of(tmp_path / "deck" / "results.csv")] == list(range(1, 13))
 
 
 @pytest.mark.parametrize("jobs", ["64", "100000", "2147483647"])
@@ -415,7 +411,7 @@ def test_more_jobs_than_cases_do_no_harm(tmp_path: Path, jobs: str) -> None:
     write_decks(tmp_path, deck=STABLE + "&sweep parameter = 'radius', values = 5, 10 /\n")
     done = run_dda("run", "deck.nml", "--jobs", jobs, cwd=tmp_path)
     assert done.returncode == 0
-    assert len(rows_of(tmp_path / "deck")) == 2
+    assert len(cases_of(tmp_path / "deck")) == 2
 
 
 def test_rows_survive_a_kill(tmp_path: Path) -> None:
@@ -431,7 +427,7 @@ def test_rows_survive_a_kill(tmp_path: Path) -> None:
             assert time.monotonic() < patience
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
-    rows = rows_of(tmp_path / "deck")
+    rows = cases_of(tmp_path / "deck")
     assert table.read_text().endswith("\n")
     assert 20 < len(rows) < 100000
     assert [int(row["case"]) for row in rows] == list(range(1, len(rows) + 1))
@@ -445,6 +441,6 @@ def test_names_that_begin_with_a_dash_follow_two_dashes(tmp_path: Path, name: st
         assert run_dda(verb, "--", name, cwd=tmp_path).returncode == 0
     done = run_dda("run", "--out", "out", "--", name, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert [row["verdict"] for row in rows_of(tmp_path / "out")] == ["stable"]
+    assert [row["verdict"] for row in cases_of(tmp_path / "out")] == ["stable"]
     assert run_dda("run", "--out", "out", f"./{name}", cwd=tmp_path).returncode == 0
     assert run_dda("run", "--out", "out", "--", "./" + name, "--quiet", cwd=tmp_path).returncode == 2

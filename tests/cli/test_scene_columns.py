@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 ARCH_COLUMNS = (
     "half_angle_deg thickness_ratio exact relative_error intrados_hinge_deg extrados_hinge_deg "
@@ -21,12 +20,6 @@ BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
 TIP = "block\n0.5 2\n1 3\n0 3\nfix block 3 0 3 x\nfix block 3 1 3 x\n"
 
 Row = dict[str, str]
-
-
-def rows_of(file: Path) -> list[Row]:
-    """Rows of a table."""
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def run(folder: Path, text: str, status: int = 0) -> tuple[list[Row], list[Row]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import fcntl
 import os
 import pty
@@ -12,7 +11,7 @@ import termios
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 
 SEARCH = "&arch voussoirs = 12 /\n&search /\n"
 THREE = "&sweep parameter = 'half_angle_deg', values = 60, 90, 120 /\n"
@@ -61,15 +60,14 @@ def on_terminal(folder: Path, text: str, columns: int, environment: dict[str, st
 def test_swept_values_come_first_then_what_was_found(tmp_path: Path) -> None:
     head, *rows = table_of(tmp_path, SEARCH + THREE)
     assert head.split() == ("case half_angle_deg thickness_ratio verdict exact error mode intrados hinge".split())
-    with (tmp_path / "deck/results.csv").open() as lines:
-        for shown, row in zip(rows, csv.DictReader(lines), strict=True):
-            words = shown.split()
-            assert words[:2] == [row["case"], row["half_angle_deg"]]
-            assert words[3] == "found" and words[6] == row["collapse_mode"]
-            assert float(words[2]) == pytest.approx(float(row["critical"]), rel=1e-9)
-            assert float(words[4]) == pytest.approx(float(row["exact"]), rel=1e-9)
-            assert float(words[5]) == pytest.approx(float(row["relative_error"]), rel=0.06)
-            assert float(words[7]) == pytest.approx(float(row["intrados_hinge_deg"]))
+    for shown, row in zip(rows, rows_of(tmp_path / "deck/results.csv"), strict=True):
+        words = shown.split()
+        assert words[:2] == [row["case"], row["half_angle_deg"]]
+        assert words[3] == "found" and words[6] == row["collapse_mode"]
+        assert float(words[2]) == pytest.approx(float(row["critical"]), rel=1e-9)
+        assert float(words[4]) == pytest.approx(float(row["exact"]), rel=1e-9)
+        assert float(words[5]) == pytest.approx(float(row["relative_error"]), rel=0.06)
+        assert float(words[7]) == pytest.approx(float(row["intrados_hinge_deg"]))
 
 
 @pytest.mark.parametrize(
@@ -102,8 +100,7 @@ def test_values_of_any_size_are_shown_with_their_digits(tmp_path: Path, cohesion
         f"&search parameter = 'cohesion', low = {cohesion / 9!r}, high = {cohesion * 9!r} /\n"
     )
     (_, row) = table_of(tmp_path, text)
-    with (tmp_path / "deck/results.csv").open() as lines:
-        critical = float(next(csv.DictReader(lines))["critical"])
+    critical = float(rows_of(tmp_path / "deck/results.csv")[0]["critical"])
     assert float(row.split()[1]) == pytest.approx(critical, rel=5e-9)
     assert critical == pytest.approx(cohesion, rel=1e-6)
 
@@ -116,8 +113,7 @@ def test_a_critical_value_has_the_digits_of_its_bracket(tmp_path: Path, toleranc
         "&support right_dx = 0.01 /\n&analysis geometry = 'current' /\n"
         f"&search parameter = 'displacement_factor', low = 0, high = 100, tolerance = {tolerance} /\n")
     shown = table_of(tmp_path, spread)[1].split()[1]
-    with (tmp_path / "deck" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(tmp_path / "deck" / "results.csv")
     value, low, high = (float(row[name]) for name in ("critical", "critical_low", "critical_high"))
     digits = len(shown.replace(".", "").lstrip("0"))
     assert 10.0 ** (digits - 2) <= value / (0.5 * (high - low)) * 1.0001

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 FREE = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\nblock\n0 0\n1 0\n1 2\n0 2\nmeasure 0.5 1\n"
 SLENDER = "block fixed\n-3 -1\n5 -1\n5 0\n-3 0\nblock\n0 0\n0.4 0\n0.4 2\n0 2\nmeasure 0.2 2\n"
@@ -22,8 +21,7 @@ def search(folder: Path, blocks: str, groups: str, *settings: str) -> tuple[dict
     (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
     done = run_dda("run", "x.nml", "--out", "out", "--quiet", *settings, cwd=folder)
     assert done.returncode in (0, 3), done.stderr
-    with (folder / "out" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(folder / "out" / "results.csv")
     return row, (folder / "out" / "log.txt").read_text().splitlines()[1], done.returncode
 
 
@@ -144,15 +142,12 @@ def test_the_damping_that_stops_a_block_in_time(tmp_path: Path) -> None:
 
 def test_the_thickness_that_withstands_a_pulse(tmp_path: Path) -> None:
     """An arch of 0.15 bears 1 g for 0.2239 s by an integrator written apart; so 0.2239 s want 0.15."""
-    (tmp_path / "a.nml").write_text(
-        "&arch half_angle_deg = 78.75, voussoirs = 7 /\n&joint friction_deg = 89.9 /\n"
+    run_deck(
+        tmp_path, "&arch half_angle_deg = 78.75, voussoirs = 7 /\n&joint friction_deg = 89.9 /\n"
         "&ground pulse = 'rectangular', amplitude = 9.81, duration = 0.2239 /\n"
         "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = 0.01, duration = 5,"
         " steps = 100000, max_displacement_ratio = 0.02 /\n"
-        "&search parameter = 'thickness_ratio', low = 0.14, high = 0.16, tolerance = 0.02 /\n")
-    done = run_dda("run", "a.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "a" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+        "&search parameter = 'thickness_ratio', low = 0.14, high = 0.16, tolerance = 0.02 /\n", "--quiet", name="a")
+    (row,) = rows_of(tmp_path / "a" / "results.csv")
     assert row["verdict"] == "found" and row["collapses_at"] == "low" and row["thickness_ratio"] == ""
     assert float(row["critical"]) == pytest.approx(0.15, rel=0.02)

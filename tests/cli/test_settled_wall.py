@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 COURSES, LENGTH, HEIGHT, G = 10, 0.25, 0.125, 9.81
 
@@ -31,16 +30,12 @@ def run(folder: Path, blocks: str, friction_deg: float, duration: float,
         time_step: float = 1e-3, unknowns: int = 6) -> tuple[list[dict[str, str]], int]:
     """Rows of the measured point and passes of a run."""
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
+    run_deck(
+        folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = {unknowns}, "
-        f"time_step = {time_step!r}, duration = {duration!r}, steps = 9999 /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    with (folder / "x" / "results.csv").open() as table:
-        passes = int(next(csv.DictReader(table))["open_close_iterations"])
-    with (folder / "x" / "points.csv").open() as table:
-        return list(csv.DictReader(table)), passes
+        f"time_step = {time_step!r}, duration = {duration!r}, steps = 9999 /\n", "--quiet")
+    passes = int(rows_of(folder / "x" / "results.csv")[0]["open_close_iterations"])
+    return rows_of(folder / "x" / "points.csv"), passes
 
 
 # fewer and more than 300 and 2000 joints; blocks that strain swing first
@@ -77,14 +72,11 @@ def test_a_brick_thrown_onto_a_wall_brings_in_its_own_energy_alone(tmp_path: Pat
     brick = block([(0.5, low), (0.5 + LENGTH, low), (0.5 + LENGTH, low + HEIGHT), (0.5, low + HEIGHT)],
                   "velocity 0.8 -1.0 4.0")
     (tmp_path / "x.blocks").write_text(wall(columns, courses) + brick)
-    (tmp_path / "x.nml").write_text(
-        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
+    run_deck(
+        tmp_path, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = {step!r}, duration = 0.1, "
-        "steps = 9999 /\n&output energy = .true. /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "x" / "energy.csv").open() as table:
-        rows = list(csv.DictReader(table))
+        "steps = 9999 /\n&output energy = .true. /\n", "--quiet")
+    rows = rows_of(tmp_path / "x" / "energy.csv")
     totals = [sum(float(row[name]) for name in ("kinetic", "elastic", "gravity")) for row in rows]
     fall = 2240.0 * courses * columns * LENGTH * HEIGHT * (G * step) ** 2 / 2.0
     motion = [fall + float(row["kinetic"]) for row in rows]
@@ -98,15 +90,12 @@ def test_a_brick_that_flies_into_a_wall_without_gravity_adds_nothing(tmp_path: P
     low = 8.3 * HEIGHT
     brick = block([(-0.3, low), (-0.05, low), (-0.05, low + HEIGHT), (-0.3, low + HEIGHT)], f"velocity {speed!r} 0 0")
     (tmp_path / "x.blocks").write_text(wall(9, courses) + brick)
-    (tmp_path / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&load gravity = 0 /\n"
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&load gravity = 0 /\n"
         f"&joint friction_deg = {friction_deg} /\n"
         "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = 5e-3, duration = 0.08, "
-        "steps = 9999 /\n&output energy = .true. /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "x" / "energy.csv").open() as table:
-        kinetic = [float(row["kinetic"]) for row in csv.DictReader(table)]
+        "steps = 9999 /\n&output energy = .true. /\n", "--quiet")
+    kinetic = [float(row["kinetic"]) for row in rows_of(tmp_path / "x" / "energy.csv")]
     first = 2240.0 * LENGTH * HEIGHT * speed**2 / 2.0
     assert kinetic[0] == pytest.approx(first, rel=1e-12)
     assert 0.0 < kinetic[-1] < 0.9 * first

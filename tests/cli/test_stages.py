@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 GRAVITY = 9.81
 
@@ -36,19 +35,12 @@ def wall(courses: int = 4, skip: tuple[int, ...] = ()) -> str:
 def run(folder: Path, blocks: str, keys: str = "") -> tuple[dict[str, str], dict[tuple[float, ...], dict[str, str]]]:
     """The row of results.csv, and the joints by their ends."""
     (folder / "scene.blocks").write_text(blocks)
-    (folder / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys)
-    done = run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    (row,) = table(folder / "out" / "results.csv")
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys, "--out", "out", "--quiet", name="deck")
+    (row,) = rows_of(folder / "out" / "results.csv")
     ends = ("x_intrados", "y_intrados", "x_extrados", "y_extrados")
-    joints = table(folder / "out" / "joints.csv")
+    joints = rows_of(folder / "out" / "joints.csv")
     return row, {tuple(round(float(joint[name]), 9) for name in ends): joint for joint in joints}
-
-
-def table(file: Path) -> list[dict[str, str]]:
-    """Rows of a table."""
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def forces_apart(one: dict, other: dict) -> float:
@@ -68,8 +60,8 @@ def test_excavation_leaves_the_forces_of_the_final_shape(tmp_path: Path, skip: t
     assert row["verdict"] == "stable"
     assert float(row["path_time"]) == 1.0
     assert forces_apart(staged, at_once) < 1e-8
-    assert {int(line["block"]) for line in table(tmp_path / "out" / "blocks.csv")} == set(range(1, 28)) - set(skip)
-    reactions = table(tmp_path / "out" / "reactions.csv")
+    assert {int(line["block"]) for line in rows_of(tmp_path / "out" / "blocks.csv")} == set(range(1, 28)) - set(skip)
+    reactions = rows_of(tmp_path / "out" / "reactions.csv")
     assert {line["block"] for line in reactions} == {"1"}
 
 
@@ -147,11 +139,11 @@ def test_block_falls_freely_once_its_support_is_gone(tmp_path: Path) -> None:
     move = "&analysis mode = 'dynamic', geometry = 'current', duration = {}, time_step = 0.005, steps = 10000 /\n"
     row, _ = run(tmp_path, tower, move.format(0.6))
     assert row["verdict"] == "completed"
-    last = table(tmp_path / "out" / "points.csv")[-1]
+    last = rows_of(tmp_path / "out" / "points.csv")[-1]
     assert float(last["y"]) == pytest.approx(1.5 - GRAVITY * 0.3**2 / 2, abs=2e-5)
     assert float(last["vy"]) == pytest.approx(-GRAVITY * 0.3, rel=1e-4)
     run(tmp_path, tower, move.format(2.0))
-    last = table(tmp_path / "out" / "points.csv")[-1]
+    last = rows_of(tmp_path / "out" / "points.csv")[-1]
     assert float(last["y"]) == pytest.approx(0.5, abs=1e-4)
 
 
@@ -164,7 +156,7 @@ def test_pictures_show_only_what_is_there(tmp_path: Path) -> None:
         "&output frames = 6 /\n",
     )
     shown = {}
-    for line in table(tmp_path / "out" / "frames.csv"):
+    for line in rows_of(tmp_path / "out" / "frames.csv"):
         shown.setdefault(float(line["time"]), set()).add(line["block"])
     assert all("2" in blocks for time, blocks in shown.items() if time < 0.299)
     assert all("2" not in blocks for time, blocks in shown.items() if time > 0.301)
@@ -211,7 +203,7 @@ def test_a_block_that_is_built_while_nothing_can_move_falls_from_then_on(
     dynamic = (f"&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.41, time_step = 0.003,"
                f" unknowns = {unknowns}{keys} /\n")
     run(tmp_path, BASE + rectangle(0, 1, 1, 2) + "add block 2 at 0.3\nmeasure 0.5 1.5\n", dynamic)
-    ways = table(tmp_path / "out" / "points.csv")
+    ways = rows_of(tmp_path / "out" / "points.csv")
     assert float(ways[-1]["time"]) == pytest.approx(0.41, abs=1e-12)
     for way in ways:
         time = max(0.0, float(way["time"]) - 0.3)
@@ -224,6 +216,6 @@ def test_time_goes_on_between_a_block_that_goes_and_one_that_comes(tmp_path: Pat
     dynamic = "&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.4, time_step = 0.004 /\n"
     run(tmp_path, BASE + rectangle(0, 1, 1, 2) + rectangle(3, 1, 4, 2)
         + "remove block 2 at 0.1\nadd block 3 at 0.25\nmeasure 3.5 1.5\n", dynamic)
-    last = table(tmp_path / "out" / "points.csv")[-1]
+    last = rows_of(tmp_path / "out" / "points.csv")[-1]
     assert float(last["time"]) == pytest.approx(0.4, abs=1e-12)
     assert float(last["v"]) == pytest.approx(-GRAVITY * 0.15**2 / 2.0, abs=1e-12)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 DENSITY, G = 2240.0, 9.81
 HALF_SPAN, COUNT = 10.0, 36
@@ -17,13 +16,11 @@ HALF_SPAN, COUNT = 10.0, 36
 def run(folder: Path, blocks: str, keys: str, young: float) -> Path:
     """Folder of the results of a run without restitution."""
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 50 /\n"
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 50 /\n"
         f"&material young = {young!r}, poisson = 0 /\n"
         "&analysis mode = 'dynamic', geometry = 'current', unknowns = 6, restitution = 0, steps = 99999, "
-        f"{keys} /\n&output energy = .true. /\n")
-    done = run_dda("run", "x.nml", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
+        f"{keys} /\n&output energy = .true. /\n", "--quiet")
     return folder / "x"
 
 
@@ -39,8 +36,7 @@ def test_a_column_sinks_twice_as_deep_as_at_rest(tmp_path: Path, step: float) ->
     half_swing = 2.0 * length / math.sqrt(young / DENSITY)
     out = run(tmp_path, blocks + f"measure 0.5 {length!r}\n",
               f"time_step = {step!r}, duration = {1.5 * half_swing!r}", young)
-    with (out / "points.csv").open() as table:
-        rows = list(csv.DictReader(table))
+    rows = rows_of(out / "points.csv")
     deepest = min(rows, key=lambda row: float(row["v"]))
     assert float(deepest["v"]) == pytest.approx(-DENSITY * G * length**2 / young, rel=50.0 * step)
     assert float(deepest["time"]) == pytest.approx(half_swing, rel=0.05, abs=2.5 * step)
@@ -66,6 +62,5 @@ def test_an_arch_falls_or_stands_at_every_time_step(tmp_path: Path, step: float,
                                                     start: str, falls: bool) -> None:
     """At rest 0.1074 is critical. Runs of 0.1 ms resolve the strain for 1e9 and 1e10, and agree; 1e12 is near rigid."""
     out = run(tmp_path, arch(thickness), f"start = '{start}', time_step = {step!r}, duration = 1.5", young)
-    with (out / "energy.csv").open() as table:
-        last = float(list(csv.DictReader(table))[-1]["kinetic"])
+    last = float(rows_of(out / "energy.csv")[-1]["kinetic"])
     assert last > 1e3 if falls else last < 1.0

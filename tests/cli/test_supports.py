@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 RADIUS = 10.0
@@ -29,16 +28,13 @@ Point = tuple[float, float]
 
 def run(folder: Path, deck: str) -> Row:
     """The row of the only case of a deck."""
-    (folder / "x.nml").write_text(deck)
-    done = run_dda("run", "x.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(folder, deck, "--out", "out", "--quiet")
     return table(folder, "results")[0]
 
 
 def table(folder: Path, name: str) -> list[Row]:
     """Rows of a table."""
-    with (folder / "out" / f"{name}.csv").open(newline="") as lines:
-        return list(csv.DictReader(lines))
+    return rows_of(folder / "out" / f"{name}.csv")
 
 
 def blocks_by_hand(ratio: float, half_angle_deg: float, count: int, ways: tuple[Point, Point]) -> str:
@@ -82,8 +78,7 @@ def test_springings_collapse_as_blocks_by_hand(tmp_path: Path, support: str, way
             math.hypot(float(row["force_x"]), float(row["force_y"])), abs=1e-6 * largest)
 
 
-with (DATA / "led_supports.csv").open(newline="") as lines:
-    LED = [tuple(row.values()) for row in csv.DictReader(lines)]
+LED = [tuple(row.values()) for row in rows_of(DATA / "led_supports.csv")]
 
 
 @pytest.mark.parametrize(("count", "ratio", "half_angle", "way", "longest"), LED)

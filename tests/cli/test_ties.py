@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import run_dda, run_deck
 from test_live_loads import rows
 
 #: Thickness, voussoirs, height and width of the buttresses over the radius; least and greatest force of a tie 0.1 below
@@ -61,9 +61,7 @@ def test_the_written_blocks_stand_by_the_same_bar(tmp_path: Path) -> None:
     (tmp_path / "x.nml").write_text(deck_of(0.15, 20, 2.0, 0.3, ", strength = 0.2"))
     assert run_dda("export", "x.nml", "--out", "files", cwd=tmp_path).returncode == 0
     deck = "&joint friction_deg = 90 /\n&material unit_weight = 1 /\n&output thrust_bar = 1 /\n"
-    (tmp_path / "y.nml").write_text("&scene kind = 'blocks', geometry = 'files/x.blocks' /\n" + deck)
-    done = run_dda("run", "y.nml", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    run_deck(tmp_path, "&scene kind = 'blocks', geometry = 'files/x.blocks' /\n" + deck, "--quiet", name="y")
     values = (tmp_path / "y" / "results.csv").read_text().splitlines()
     row = dict(zip(values[0].split(","), values[1].split(",")))
     weight = weight_of(0.15, 20)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 Case = tuple[float, float, int, str]
 
@@ -27,14 +26,11 @@ def run(folder: Path, below: str, ground: float, size: float, case: Case) -> tup
     corners = [(0.0, ground), (size, ground), (size * (1 + lean), ground + 2 * size), (size * lean, ground + 2 * size)]
     text = below + "block\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
     (folder / "x.blocks").write_text(text)
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = 'current' /\n"
-        f"&joint friction_deg = {friction} /\n&load horizontal_coefficient = {push!r} /\n"
-    )
-    done = run_dda("run", "x.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode in (0, 3), done.stderr
-    with (folder / "out" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = 'current' /\n"
+        f"&joint friction_deg = {friction} /\n&load horizontal_coefficient = {push!r} /\n",
+        "--out", "out", "--quiet", accepted=(0, 3))
+    (row,) = rows_of(folder / "out" / "results.csv")
     return row["verdict"], (folder / "out" / "log.txt").read_text()
 
 

@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections import defaultdict
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda, run_deck
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "input" / "benchmarks"
 Row = dict[str, str]
 
 
-def rows_of(file: Path) -> list[Row]:
-    """Rows of a table."""
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
-
-
 def run(folder: Path, text: str, *options: str) -> Path:
     """Folder of the results of a deck."""
-    (folder / "deck.nml").write_text(text)
-    done = run_dda("run", "deck.nml", "--quiet", *options, cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run_deck(folder, text, "--quiet", *options, name="deck")
     return folder / "deck"
 
 

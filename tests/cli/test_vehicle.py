@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
 from bridges import spans
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from test_live_loads import BLOCK, GROUND, SEARCH, WEIGHT, rows, table
 
 ARCH = "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&material unit_weight = 1.0 /\n"
@@ -108,8 +107,7 @@ def test_a_search_without_an_answer_says_its_limit_and_how_far_it_came(tmp_path:
     (limit,) = rows(tmp_path, deck + "&analysis flow = 'associated' /\n", head="")
     (tmp_path / "x.nml").write_text(deck)
     status = run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode
-    with (tmp_path / "x" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(tmp_path / "x" / "results.csv")
     assert float(row["exact_high"]) == pytest.approx(float(limit["critical"]), rel=1e-9)
     assert status == (3 if row["verdict"] == "undecided" else 0)
     if row["verdict"] == "undecided":

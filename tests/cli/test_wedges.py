@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_deck
 
 WEDGES = """block fixed material 3\n0 0\n-3.0 3.0\n-4.0 3.0\n-4.0 -2.0\n0 -2.0
 block fixed material 3\n0 0\n0 -2.0\n6.0 -2.0\n6.0 -1.057961884251
@@ -32,13 +31,9 @@ def friction_that_holds(weight: float) -> float:
 @pytest.mark.parametrize("geometry, young", [("reference", 5e9), ("current", 5e9), ("current", 5e12)])
 def test_friction_that_holds_two_wedges_is_found(tmp_path: Path, weight: float, geometry: str, young: float) -> None:
     (tmp_path / "x.blocks").write_text(WEDGES.format(weight=weight))
-    (tmp_path / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&search parameter = 'friction_deg' /\n"
-        f"&analysis geometry = '{geometry}' /\n&material young = {young!r} /\n"
-    )
-    done = run_dda("run", "x.nml", "--out", "out", "--quiet", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with (tmp_path / "out" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    run_deck(
+        tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&search parameter = 'friction_deg' /\n"
+        f"&analysis geometry = '{geometry}' /\n&material young = {young!r} /\n", "--out", "out", "--quiet")
+    (row,) = rows_of(tmp_path / "out" / "results.csv")
     assert row["verdict"] == "found"
     assert float(row["critical"]) == pytest.approx(friction_that_holds(weight), rel=1e-7 if young > 1e10 else 1e-4)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from random_bridges import Bridge, check, random_bridge, random_study, run
 
 DDA = os.environ["DDA"]
@@ -38,8 +37,7 @@ def row_of(folder: Path, deck: str) -> dict[str, str]:
     """The row of a deck of one case."""
     (folder / "x.nml").write_text(deck)
     assert run_dda("run", "x.nml", "--quiet", cwd=folder).returncode == 0
-    with (folder / "x" / "results.csv").open(newline="") as lines:
-        (row,) = csv.DictReader(lines)
+    (row,) = rows_of(folder / "x" / "results.csv")
     return row
 
 
