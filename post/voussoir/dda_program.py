@@ -96,12 +96,9 @@ def defaults(dda: Path) -> dict[str, str]:
 class Asked:
     """What a deck asks for, as the program says it."""
 
-    #: Number of cases
-    cases: int
-    #: Text of deck.record: keys, values, check sums of the files named, build of the program
-    record: str
-    #: First line of every table that a run writes, by its name
-    headers: dict[str, str]
+    cases: int  #: Number of cases
+    record: str  #: Text of deck.record: keys, values, check sums of the files named, build of the program
+    headers: dict[str, str]  #: First line of every table that a run writes, by its name
 
 
 def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:

@@ -107,8 +107,7 @@ class Campaign:
         with ThreadPoolExecutor(jobs) as workers:
             running = [
                 workers.submit(
-                    run_program, file.stem, [dda, "run", path_word(file), "--out", self.out / file.stem, *options]
-                )
+                    run_program, file.stem, [dda, "run", path_word(file), "--out", self.out / file.stem, *options])
                 for file in longest_first
             ]
             for done in as_completed(running):

@@ -30,8 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="number of decks and figures at the same time (default: one per processor)")
     parser.add_argument("--resume", action="store_true", help="keep the finished decks of an earlier run")
     parser.add_argument(
-        "--limerick", action="store_true",
-        help="run the decks of Shi's scheme as well, which takes much longer")
+        "--limerick", action="store_true", help="run the decks of Shi's scheme as well, which takes much longer")
     add_decks(parser)
     parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: beside `voussoir`)")
     add_quiet(parser)

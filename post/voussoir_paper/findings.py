@@ -105,8 +105,7 @@ def paper_elsewhere(campaign: Campaign) -> Finding:
     total = sum(1 for _ in _values(campaign, _PAPER))
     return Finding(
         f"The paper's values lie above the exact ones in {count} of {total} arches",
-        "; ".join(parts) + ". The thinner the arch, the more the same closure of its joints weighs.",
-    )
+        "; ".join(parts) + ". The thinner the arch, the more the same closure of its joints weighs.")
 
 
 def other_columns(campaign: Campaign) -> Iterator[Finding]:
@@ -133,8 +132,7 @@ def hinges(campaign: Campaign) -> Finding:
     rows = campaign.tables["table4"].rows
     same = sum(float(row.values[_RIGID].hinge) == float(row.values[_PAPER].hinge) for row in rows)
     exact = sum(
-        [float(part) for part in row.values[_RIGID].hinge.split(";") if part] == exact_hinges(row) for row in rows
-    )
+        [float(part) for part in row.values[_RIGID].hinge.split(";") if part] == exact_hinges(row) for row in rows)
     return Finding(
         f"The hinges of Table 4 are the paper's in {same} of {len(rows)} rows",
         f"They are the joints that bind in limit analysis in {exact} of {len(rows)} rows. The "

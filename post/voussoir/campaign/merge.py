@@ -35,10 +35,8 @@ _PLACE = np.dtype([("case", "i8"), ("number", "i4"), ("start", "i8"), ("stop", "
 class Summary:
     """What a merged table holds."""
 
-    #: Cases with a row
-    cases: int
-    #: Those of them that are undecided
-    undecided: int
+    cases: int  #: Cases with a row
+    undecided: int  #: Those of them that are undecided
 
 
 def owners(parts: list[Path], total: int) -> tuple[np.ndarray, bool]:

@@ -20,19 +20,14 @@ from pathlib import Path
 class Part:
     """Some cases of a campaign."""
 
-    #: The program dda
-    dda: Path
-    #: The deck
-    deck: Path
-    #: Values of --set
-    settings: tuple[str, ...]
-    #: Where its tables are
-    folder: Path
+    dda: Path  #: The program dda
+    deck: Path  #: The deck
+    settings: tuple[str, ...]  #: Values of --set
+    folder: Path  #: Where its tables are
     #: Its first case and its last
     first: int
     last: int
-    #: Text of deck.record that it must have in the end
-    record: str
+    record: str  #: Text of deck.record that it must have in the end
 
 
 def run_part(part: Part) -> tuple[int, str]:

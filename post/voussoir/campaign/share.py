@@ -32,18 +32,12 @@ Engine = Callable[[list[Part]], Iterator[Outcome]]
 class Campaign:
     """What is computed, and where its results go."""
 
-    #: The program dda
-    dda: Path
-    #: The deck
-    deck: Path
-    #: Values of --set
-    settings: tuple[str, ...]
-    #: Folder of the results
-    out: Path
-    #: Number of cases of the deck
-    total: int
-    #: What the deck asks for, as the program says it
-    asked: Asked
+    dda: Path  #: The program dda
+    deck: Path  #: The deck
+    settings: tuple[str, ...]  #: Values of --set
+    out: Path  #: Folder of the results
+    total: int  #: Number of cases of the deck
+    asked: Asked  #: What the deck asks for, as the program says it
 
     @property
     def parts(self) -> Path:

@@ -31,8 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "log.txt, sorted by case. The same command continues a stopped campaign."
     )
     parser.add_argument("deck", metavar="DECK", type=Path, help="deck with &sweep groups")
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="folder of the results (default: the name of the deck)")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="folder of the results (default: the name of the deck)")
     parser.add_argument(
         "--set", metavar="group%key=value", action="append", default=[],
         help="override the deck; repeatable (default: the deck as written)")
@@ -46,16 +45,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "DIR and dda (default: processes on this machine)",
     )
     parser.add_argument(
-        "--index",
-        metavar="I",
-        type=whole_number(1),
-        help="share I of N of the cases, for job arrays; the last share to end merges (default: all cases)",
-    )
+        "--index", metavar="I", type=whole_number(1),
+        help="share I of N of the cases, for job arrays; the last share to end merges (default: all cases)")
     parser.add_argument("--of", metavar="N", type=whole_number(1), help="number of shares (default: 1)")
     parser.add_argument("--merge", action="store_true", help="merge the finished cases without computing")
     parser.add_argument("--discard", action="store_true", help="discard the finished cases of an earlier campaign")
-    parser.add_argument(
-        "--parquet", action="store_true", help="write results.parquet as well; needs pyarrow")
+    parser.add_argument("--parquet", action="store_true", help="write results.parquet as well; needs pyarrow")
     add_quiet(parser)
 
 

@@ -55,8 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="layers, or values of the properties role or layer, of fixed blocks (default: " + ", ".join(FIXED) + ")")
     parser.add_argument(
         "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of further fixed blocks")
-    parser.add_argument(
-        "--allow-dropped", action="store_true", help="accept dropped pieces that make no block")
+    parser.add_argument("--allow-dropped", action="store_true", help="accept dropped pieces that make no block")
     parser.add_argument(
         "--search", metavar="PARAMETER", help="key whose critical value is searched, such as horizontal_coefficient")
     parser.add_argument("--run", action="store_true", help="run the deck and draw the result")
@@ -132,8 +131,7 @@ def import_file(arguments: argparse.Namespace) -> _Imported:
         f"chords within {arguments.tolerance:g} m of their arcs")
     made.lines += _said_of(shapes, blocks)
     if not made.fixed:
-        made.advice.append(
-            "no block is fixed: put supports on a layer named 'fixed', or give --fixed WORD or --hold N")
+        made.advice.append("no block is fixed: put supports on a layer named 'fixed', or give --fixed WORD or --hold N")
     return made
 
 

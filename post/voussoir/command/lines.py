@@ -19,8 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Draws the lines, bolts and points of a joint map."
     parser.add_argument("table", metavar="TABLE", type=Path, help="table of dda lines, NAME_lines.csv")
     parser.add_argument(
-        "--out", metavar="FILE", type=Path, help="picture, .png, .svg or .pdf (default: TABLE with the ending .png)"
-    )
+        "--out", metavar="FILE", type=Path, help="picture, .png, .svg or .pdf (default: TABLE with the ending .png)")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -16,9 +16,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
 
 def add_decks(parser: argparse.ArgumentParser) -> None:
     """Add --decks."""
-    parser.add_argument(
-        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those of the package)"
-    )
+    parser.add_argument("--decks", metavar="DIR", type=Path, help="folder of the decks (default: those of the package)")
 
 
 def whole_number(least: int) -> Callable[[str], int]:
@@ -81,8 +79,6 @@ def add_sheet(parser: argparse.ArgumentParser, where: str) -> None:
         "--min-font", metavar="P", type=type_size, default=5.0,
         help="smallest type of labels and legends in points (default: 5)")
     parser.add_argument(
-        "--no-title", dest="title", action="store_false", default=True,
-        help="omit the title (default: draw it)")
+        "--no-title", dest="title", action="store_false", default=True, help="omit the title (default: draw it)")
     parser.add_argument(
-        "--no-legend", dest="legend", action="store_false", default=True,
-        help="omit the legend (default: draw it)")
+        "--no-legend", dest="legend", action="store_false", default=True, help="omit the legend (default: draw it)")

@@ -52,8 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--forces", action="store_true", default=None,
         help="draw the contact forces (default: without a thrust line, for up to 150 joints)")
     forces.add_argument(
-        "--no-forces", dest="forces", action="store_false",
-        help="omit the contact forces (default: as under --forces)")
+        "--no-forces", dest="forces", action="store_false", help="omit the contact forces (default: as under --forces)")
 
 
 def add_charts(parser: argparse.ArgumentParser) -> None:

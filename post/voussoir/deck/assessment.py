@@ -30,35 +30,18 @@ _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 @dataclass
 class Assessment:
-    """All that the page of one deck needs.
+    """All that the page of one deck needs."""
 
-    Attributes
-    ----------
-    deck : Path
-        The deck, and `text`, what stands in it.
-    own : Results
-        The run of the loads given.
-    dead : dict
-        Row of the run without live loads.
-    found, factor : Results and dict, or None
-        The search for the load factor, and its row, corrected by fixed positions that are worse.
-    safety : tuple of float and str
-        Thickness over critical thickness, and how it was found.
-    axles : list of tuple
-        Places and weights of the axles [m, N/m].
-    positions : Table or None
-        Load factors along the road.
-    """
-
-    deck: Path
+    deck: Path  #: The deck, and `text`, what stands in it
     text: str
-    own: Results
-    dead: Row
+    own: Results  #: The run of the loads given
+    dead: Row  #: Row of the run without live loads
+    #: The search for the load factor, and its row, corrected by fixed positions that are worse
     found: Results | None
     factor: Row | None
-    safety: tuple[float, str]
-    axles: list[tuple[float, float]]
-    positions: Table | None
+    safety: tuple[float, str]  #: Thickness over critical thickness, and how it was found
+    axles: list[tuple[float, float]]  #: Places and weights of the axles [m, N/m]
+    positions: Table | None  #: Load factors along the road
 
     @property
     def row(self) -> Row:
@@ -195,8 +178,7 @@ def _positions(text: str, x: np.ndarray, steps: list[float], worst: float, flow:
         try:
             return run_deck(
                 f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = {values} /\n",
-                **flow,
-            ).cases
+                **flow).cases
         except DdaError:
             continue
     return None

@@ -25,21 +25,12 @@ _LAW = ("friction_deg", "cohesion", "tension")
 
 @dataclass(frozen=True)
 class BlockShape:
-    """One polygon as the file of blocks has it: its pieces, if it has holes.
+    """One polygon as the file of blocks has it: its pieces, if it has holes."""
 
-    Attributes
-    ----------
-    pieces : tuple of sequence of (float, float)
-        Corners of the polygon [m], or of the pieces that it was cut into.
-    fixed : bool
-        Whether it never moves.
-    material : int
-        Number of its material, from 1.
-    """
-
+    #: Corners of the polygon [m], or of the pieces that it was cut into
     pieces: tuple[Sequence[tuple[float, float]], ...]
-    fixed: bool
-    material: int
+    fixed: bool  #: Whether it never moves
+    material: int  #: Number of its material, from 1
 
 
 class Blocks(Deck):

@@ -36,30 +36,14 @@ class StudyError(ValueError):
 
 @dataclass(frozen=True)
 class Series:
-    """A result over the values of the key.
+    """A result over the values of the key."""
 
-    Attributes
-    ----------
-    name : str
-        What it is, such as "critical" or "u of point 1, case 2".
-    unit : str
-        Its unit.
-    values : ndarray
-        From the coarsest run to the finest; NaN where a run has none.
-    scale : float
-        Size of what the result is part of, such as the way of a point.
-    exact : float
-        The exact value, NaN where none is given.
-    factor : float
-        Ratio of the resolutions of two runs, above 1.
-    """
-
-    name: str
-    unit: str
-    values: np.ndarray
-    scale: float = 0.0
-    exact: float = math.nan
-    factor: float = 2.0
+    name: str  #: What it is, such as "critical" or "u of point 1, case 2"
+    unit: str  #: Its unit
+    values: np.ndarray  #: From the coarsest run to the finest; NaN where a run has none
+    scale: float = 0.0  #: Size of what the result is part of, such as the way of a point
+    exact: float = math.nan  #: The exact value, NaN where none is given
+    factor: float = 2.0  #: Ratio of the resolutions of two runs, above 1
 
     @property
     def rounding(self) -> float:
@@ -113,24 +97,12 @@ class Series:
 
 @dataclass(frozen=True)
 class Study:
-    """A convergence study.
+    """A convergence study."""
 
-    Attributes
-    ----------
-    key : str
-        The key with its group, such as "analysis%time_step".
-    values : list of float
-        Its values, from the coarsest to the finest.
-    steps : ndarray
-        Steps of each run, the sum of its cases.
-    series : list of Series
-        What was followed.
-    """
-
-    key: str
-    values: list[float]
-    steps: np.ndarray
-    series: list[Series]
+    key: str  #: The key with its group, such as "analysis%time_step"
+    values: list[float]  #: Its values, from the coarsest to the finest
+    steps: np.ndarray  #: Steps of each run, the sum of its cases
+    series: list[Series]  #: What was followed
 
     @property
     def resolution(self) -> np.ndarray:

@@ -28,23 +28,12 @@ RULES = {
 
 @dataclass(frozen=True)
 class Vehicle:
-    """A vehicle of a list.
+    """A vehicle of a list."""
 
-    Attributes
-    ----------
-    name, source : str
-        Its name, and where its numbers come from.
-    axles : tuple of float
-        Weight of each axle [N], from the first to the last.
-    spacings : tuple of float
-        Distances between them [m].
-    track, wheel, length : float
-        Distance of the middles of the wheels of an axle, width and length of a wheel on the road [m].
-    """
-
-    name: str
-    axles: tuple[float, ...]
-    spacings: tuple[float, ...]
+    name: str  #: Its name, and where its numbers come from
+    axles: tuple[float, ...]  #: Weight of each axle [N], from the first to the last
+    spacings: tuple[float, ...]  #: Distances between them [m]
+    #: Distance of the middles of the wheels of an axle, width and length of a wheel on the road [m]
     track: float
     wheel: float
     length: float
@@ -61,30 +50,14 @@ class Vehicle:
 
 @dataclass(frozen=True)
 class Passage:
-    """A vehicle, or a convoy, on an arch.
+    """A vehicle, or a convoy, on an arch."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the vehicle, or of the convoy.
-    weight : float
-        Sum of its axle loads [N].
-    width : float
-        Effective width [m].
-    text : str
-        The deck that was computed.
-    found : Assessment
-        Its worst position, its factor, and the factors along the road.
-    opposite : float
-        Least load factor of the better direction of travel, NaN where only one is tried.
-    """
-
-    name: str
-    weight: float
-    width: float
-    text: str
-    found: Assessment
-    opposite: float = math.nan
+    name: str  #: Name of the vehicle, or of the convoy
+    weight: float  #: Sum of its axle loads [N]
+    width: float  #: Effective width [m]
+    text: str  #: The deck that was computed
+    found: Assessment  #: Its worst position, its factor, and the factors along the road
+    opposite: float = math.nan  #: Least load factor of the better direction of travel, NaN where only one is tried
 
     @property
     def factor(self) -> float:

@@ -10,21 +10,11 @@ MATERIAL = ("density", "unit_weight", "young", "poisson")
 
 
 class Layer(str):
-    """A layer by its name.
+    """A layer by its name."""
 
-    Attributes
-    ----------
-    is_fixed : bool
-        Whether the file says that the outline does not move.
-    is_name : bool
-        Whether it is the name of the outline alone, which makes no material.
-    properties : tuple of (str, float)
-        Properties of the material.
-    """
-
-    is_fixed: bool = False
-    is_name: bool = False
-    properties: tuple[tuple[str, float], ...] = ()
+    is_fixed: bool = False  #: Whether the file says that the outline does not move
+    is_name: bool = False  #: Whether it is the name of the outline alone, which makes no material
+    properties: tuple[tuple[str, float], ...] = ()  #: Properties of the material
 
     @property
     def material(self) -> object:

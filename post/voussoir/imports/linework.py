@@ -184,8 +184,7 @@ def _cut_rows(drawn: list[Drawn], tolerance: float) -> dict[int, list[list[compl
     corners = [point for one in drawn for curve in one.curves for point in (curve.start, curve.end)]
     bent = [curve for one in drawn for curve in one.curves if not isinstance(curve, Line)]
     if (count := sum(curve.chords(0.0, 1.0, tolerance) for curve in bent)) > MOST_CHORDS:
-        raise ValueError(
-            f"expected curves of at most {MOST_CHORDS} chords, got {count:.3g}; use a larger --tolerance")
+        raise ValueError(f"expected curves of at most {MOST_CHORDS} chords, got {count:.3g}; use a larger --tolerance")
     for _ in range(2):
         known = Points(corners)
         corners = corners + [point for curve in bent for point in polyline(curve, known, reach, tolerance)]

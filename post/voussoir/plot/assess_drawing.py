@@ -155,5 +155,4 @@ def draw_dimension(axes: Axes, dimension: Dimension, size: float, pen: float) ->
     offset, ha, va = ((0, -2), "center", "top") if flat else ((3, 0), "left", "center")
     axes.annotate(
         text, (middle[0], middle[1]), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=type_of(SMALL),
-        zorder=9,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85} if short else None)
+        zorder=9, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85} if short else None)

@@ -93,8 +93,7 @@ def figures_of(found: Assessment) -> list[str]:
             parts.append(figure_of(chart, "Position of the vehicle", _POSITIONS[slides(found.own)]))
         parts.append(figure_of(draw_case(found.own, 1, sheet=sheet), "Thrust under the loads given"))
         if found.found is not None and found.factor is not None and found.factor["verdict"] == "found":
-            parts.append(figure_of(
-                draw_case(found.found, 1, sheet=sheet), "Collapse under the live loads multiplied"))
+            parts.append(figure_of(draw_case(found.found, 1, sheet=sheet), "Collapse under the live loads multiplied"))
     return parts
 
 
@@ -133,8 +132,7 @@ def comparison(all_found: Sequence[Assessment], origin: Sequence[tuple[str, str]
         own = [line for line in assumptions_of(found) if line not in common]
         shown = [figures[0], figures[-1]] if len(figures) > 1 else figures
         sections.append((found.title, f'<div class="pair">{"".join(shown)}</div>' + (list_of(own) if own else "")))
-    texts = "".join(
-        f"<h3>{escape(found.deck.name)}</h3><pre>{escape(found.text)}</pre>" for found in all_found)
+    texts = "".join(f"<h3>{escape(found.deck.name)}</h3><pre>{escape(found.text)}</pre>" for found in all_found)
     sections += [("Input", texts), ("Origin", table_of(origin, "origin"))]
     verdicts = [(f"{found.title}: {verdict_of(found)[0]}", verdict_of(found)[1]) for found in all_found]
     return page(f"Comparison of {len(all_found)} arches", verdicts, sections)
@@ -142,8 +140,6 @@ def comparison(all_found: Sequence[Assessment], origin: Sequence[tuple[str, str]
 
 def page(title: str, verdicts: Sequence[tuple[str, bool]], parts: Sequence[tuple[str, str]]) -> str:
     """The whole page; a verdict is marked where it is a bad one."""
-    body = "".join(
-        f"<section>{f'<h2>{escape(name)}</h2>' if name else ''}{text}</section>" for name, text in parts)
-    said = "".join(
-        f'<p class="verdict{" falls" if falls else ""}">{escape(words)}</p>' for words, falls in verdicts)
+    body = "".join(f"<section>{f'<h2>{escape(name)}</h2>' if name else ''}{text}</section>" for name, text in parts)
+    said = "".join(f'<p class="verdict{" falls" if falls else ""}">{escape(words)}</p>' for words, falls in verdicts)
     return document(title, STYLE, f"<h1>{escape(title)}</h1>{said}{body}")

@@ -156,8 +156,7 @@ class JointMarks:
                 line for one, other in zip(self.sides["in"], self.sides["out"])
                 for line in np.stack((one[mask], other[mask]), axis=1)]
             if lines:
-                axes.add_collection(
-                    LineCollection(lines, colors=color, linewidths=width, capstyle="round", zorder=3))
+                axes.add_collection(LineCollection(lines, colors=color, linewidths=width, capstyle="round", zorder=3))
                 entries.append(entry(words, linestyle="-", color=color, linewidth=width))
         return entries
 

@@ -51,8 +51,7 @@ def pictures_of(run: Results, number: int) -> list[Frame]:
     return [
         Frame(
             picture, 0, 0.0, [block.corners + picture / GROWTH * most * block.displacement for block in blocks],
-            Table({})
-        )
+            Table({}))
         for picture in range(GROWTH + 1)
     ]
 

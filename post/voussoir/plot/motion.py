@@ -11,22 +11,14 @@ from voussoir.results import Block
 
 @dataclass(frozen=True)
 class Motion:
-    """Displacements of a case as its picture shows them.
+    """Displacements of a case as its picture shows them."""
 
-    Attributes
-    ----------
-    shown, written : float
-        Multiples of the displacements at which the picture shows the blocks, and at which tables have their points.
-    fields : dict of int to ndarray
-        Of each block that can move, the rows a of u = (x, y, 1) a: (3, 2), of the places before it has moved.
-    corners : dict of int to ndarray
-        Its corners before it has moved [m].
-    """
-
+    #: Multiples of the displacements at which the picture shows the blocks, and at which tables have their points
     shown: float
     written: float
+    #: Of each block that can move, the rows a of u = (x, y, 1) a: (3, 2), of the places before it has moved
     fields: dict[int, np.ndarray]
-    corners: dict[int, np.ndarray]
+    corners: dict[int, np.ndarray]  #: Its corners before it has moved [m]
 
     def carried(self, points: np.ndarray, blocks: np.ndarray) -> np.ndarray:
         """Places in the picture of points of tables, each of one block: (n, 2) [m]."""

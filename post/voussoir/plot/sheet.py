@@ -38,17 +38,10 @@ THINNEST = 0.35
 
 @dataclass(frozen=True)
 class Sheet:
-    """Sheet of a picture.
+    """Sheet of a picture."""
 
-    Attributes
-    ----------
-    width : float
-        Width of the whole picture [inch].
-    title, legend : bool
-        Whether it has them.
-    """
-
-    width: float = WIDTH
+    width: float = WIDTH  #: Width of the whole picture [inch]
+    #: Whether it has them
     title: bool = True
     legend: bool = True
 

@@ -36,8 +36,7 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
             linewidth=0.9, markerfacecolor="white", label=words)
         if not math.isnan(order):
             reach = study.resolution[len(values) - len(errors):]
-            axes.plot(
-                at, errors[-1] * (reach / reach[-1]) ** order, color=color, linewidth=0.6, linestyle=(0, (3, 2)))
+            axes.plot(at, errors[-1] * (reach / reach[-1]) ** order, color=color, linewidth=0.6, linestyle=(0, (3, 2)))
     axes.set_xlabel(axis_label(study.key))
     exact = bool(drawn) and not math.isnan(drawn[0].exact)
     axes.set_ylabel("error" if exact else "difference from the run before")

@@ -135,8 +135,7 @@ def draw_contours(axes: Axes, along: np.ndarray, up: np.ndarray, field: np.ndarr
     finite = field[np.isfinite(field)]
     if min(field.shape) < 2 or len(np.unique(finite)) < 3:
         return
-    lines = axes.contour(
-        along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
+    lines = axes.contour(along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
     sides = np.array([np.ptp(along), np.ptp(up)])
     long = [
         level for level, paths in zip(lines.levels, lines.allsegs)

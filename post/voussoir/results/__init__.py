@@ -281,8 +281,7 @@ class Results:
         """Joints of one case; KeyError if none were written."""
         if self.joints is None:
             raise KeyError(
-                f"no joints.csv in {self.folder}: run the deck again with --set output%joints=.true. --cases {number}"
-            )
+                f"no joints.csv in {self.folder}: run the deck again with --set output%joints=.true. --cases {number}")
         return self.joints.where(case=number)
 
     def blocks_of(self, number: int) -> list[Block]:

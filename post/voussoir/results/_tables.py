@@ -85,8 +85,7 @@ def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | No
                 pieces.append([_once(piece) for piece in _columns(file, names, rows, kept)])
     except (UnicodeDecodeError, csv.Error) as problem:
         raise DamagedTable(
-            f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN
-        ) from problem
+            f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN) from problem
     columns = dict(zip([name for name in names if name in kept], zip(*(pieces or [_columns(file, names, [], kept)]))))
     if any(len({piece.dtype.kind for piece in column}) > 1 for column in columns.values()):
         return read_columns(file, None, choice)  # a swept parameter whose words are numbers here and there
@@ -147,8 +146,7 @@ def _typed(file: Path, lines: list[int], name: str, cells: tuple[str, ...]) -> n
             column_of(name, (cell,))
         except (ValueError, OverflowError):
             raise DamagedTable(
-                f"{file}:{line}: error: expected {name} as dda writes it, got '{cell[:40]}'; " + _AGAIN
-            ) from None
+                f"{file}:{line}: error: expected {name} as dda writes it, got '{cell[:40]}'; " + _AGAIN) from None
     raise DamagedTable(f"{file}:1: error: expected {name} as dda writes it, got another column; " + _AGAIN)
 
 

@@ -29,18 +29,12 @@ _WANTS = {
 class DiscreteSolution(NamedTuple):
     """Critical state of one arch of voussoirs; angles from the crown [rad]."""
 
-    #: "found", "stands_always" (eta = 0) or "none_admissible" (eta = nan)
-    status: str
-    #: Critical thickness ratio
-    eta: float
-    #: Horizontal thrust there over gamma r^2 eta
-    thrust: float
-    #: Joints that turn about their intrados corner
-    intrados_hinges: tuple[float, ...]
-    #: Joints that turn about their extrados corner
-    extrados_hinges: tuple[float, ...]
-    #: Joints whose friction is exhausted
-    sliding_joints: tuple[float, ...]
+    status: str  #: "found", "stands_always" (eta = 0) or "none_admissible" (eta = nan)
+    eta: float  #: Critical thickness ratio
+    thrust: float  #: Horizontal thrust there over gamma r^2 eta
+    intrados_hinges: tuple[float, ...]  #: Joints that turn about their intrados corner
+    extrados_hinges: tuple[float, ...]  #: Joints that turn about their extrados corner
+    sliding_joints: tuple[float, ...]  #: Joints whose friction is exhausted
 
 
 def discrete_critical(

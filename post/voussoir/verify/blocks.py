@@ -87,8 +87,7 @@ class Source:
     water: list[Water] = field(default_factory=list)
     lines: list[tuple[np.ndarray, Law]] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
-    #: Whether loads change with time
-    changing: bool = False
+    changing: bool = False  #: Whether loads change with time
 
     def present(self, time: float) -> list[int]:
         """Numbers of the blocks that are there at a time: before its first change a block is what that changes."""

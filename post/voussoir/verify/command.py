@@ -42,8 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--exact", action="store_true",
         help=f"repeat proofs of limits in rational arithmetic, for up to {MOST_JOINTS} joints")
     parser.add_argument(
-        "--ignore-sums", action="store_true",
-        help="ignore checksums, for tables that another program has rewritten")
+        "--ignore-sums", action="store_true", help="ignore checksums, for tables that another program has rewritten")
     parser.add_argument("--quiet", action="store_true", help="print the worst case only")
 
 

@@ -44,19 +44,15 @@ class Joint:
 
     first: int
     second: int
-    #: The corners: (2, 2)
-    ends: np.ndarray
+    ends: np.ndarray  #: The corners: (2, 2)
     #: Both corners of the edge at each end, in the order in which it runs along the first block: (2, 2, 2)
     edges: np.ndarray
     single: bool
     #: The two contacts: block 0 or 1 that has the edge, number of the edge and of the other block's corner
     contacts: tuple[tuple[int, int, int], ...]
-    #: Unit normals of the edges, from the first block to the second: (2, 2)
-    across: np.ndarray = field(init=False)
-    #: Gaps at both ends [m]
-    gaps: np.ndarray = field(init=False)
-    #: Unit normal of the joint: that of its edges, or halfway between theirs
-    normal: np.ndarray = field(init=False)
+    across: np.ndarray = field(init=False)  #: Unit normals of the edges, from the first block to the second: (2, 2)
+    gaps: np.ndarray = field(init=False)  #: Gaps at both ends [m]
+    normal: np.ndarray = field(init=False)  #: Unit normal of the joint: that of its edges, or halfway between theirs
     #: Middle of the feet of the corners on their edges, where the shear force acts
     middle: np.ndarray = field(init=False)
 

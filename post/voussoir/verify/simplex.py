@@ -125,9 +125,7 @@ def _improve_floats(columns: np.ndarray, right: np.ndarray, basis: list[int], wa
     return basis
 
 
-def _leaving(
-    x: _Numbers, more_x: _Numbers, z: _Numbers, more_z: _Numbers, zero: float
-) -> tuple[Any, int, int] | None:
+def _leaving(x: _Numbers, more_x: _Numbers, z: _Numbers, more_z: _Numbers, zero: float) -> tuple[Any, int, int] | None:
     """Up to where a vertex is the best one of a disturbed programme, and the column or row that ends it."""
     rows = [(-value / more, -1, i) for i, (value, more) in enumerate(zip(x, more_x)) if value < -zero and more > 0]
     columns = [(-value / more, j, -1) for j, (value, more) in enumerate(zip(z, more_z)) if value < -zero and more > 0]
