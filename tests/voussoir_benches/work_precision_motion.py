@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from voussoir.deck.text import Groups, deck_text, merged
+from voussoir_benches import exact, measures
 from voussoir_benches.checks import GRAVITY, Outcome
 from voussoir_benches.deck_runs import Finished, run_deck, timed
-from voussoir_benches.exact import next_amplitude, quarter_period, slide
 from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block
+from voussoir_benches.tables import rows
 from voussoir_benches.work_precision_scenes import ELASTIC, ORIGINAL, RIGID
 
 #: Length of a step over that of the longest
@@ -52,7 +53,7 @@ class Motion:
     groups: dict[str, Any]
     duration: float
     longest: float
-    checks: tuple[tuple[str, float, Callable[[Outcome], float]], ...]
+    checks: list[tuple[str, float, Callable[[Outcome], float]]]
     restitution: float = 0.0
 
     def deck(self, step: float, repeats: int, more: Groups) -> str:
@@ -94,14 +95,14 @@ class Motion:
 
 def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
     """Run every scene with every length of the step, so many times each: a point a quantity and length."""
-    for motion in (_slide(), rocking(), _pendulum(), _bounce()):
+    for motion in motions():
         for step in motion.steps():
             finished, seconds = timed(functools.partial(motion.run, step, folder, {}), repeats)
             if not finished.rows or finished.rows[0]["verdict"] != "completed":
                 continue
             outcome = motion.outcome(finished)
-            for name, exact, measure in motion.checks:
-                error = abs(measure(outcome) / exact - 1.0)
+            for name, answer, measure in motion.checks:
+                error = abs(measure(outcome) / answer - 1.0)
                 yield MotionPoint(name, step, error, seconds, int(finished.rows[0]["steps"]))
 
 
@@ -114,73 +115,21 @@ def order(points: list[MotionPoint]) -> float | None:
     return float(np.polyfit(steps, errors, 1)[0])
 
 
-def _slide() -> Motion:
-    """A block that slides down 30 degrees with friction 20 for a second."""
-    text = written_block(rectangle(-2.0, -1.0, 16.0, 1.0), "fixed")
-    text += written_block(rectangle(0.0, 0.0, 2.0, 0.5)) + "measure 1.0 0.25\n"
-    way: Callable[[Outcome], float] = lambda outcome: float(outcome.end(1)[0])  # noqa: E731
-    groups = {"joint": {"friction_deg": 20.0}, "load": {"gravity_direction_deg": -60.0}, "material": {"young": 5e12}}
-    return Motion(text, groups, 1.0, 0.04, (("incline: way", slide(30.0, 20.0) / 2.0, way),))
+def motions() -> list[Motion]:
+    """The rows of work_precision_motion.json: a slide, a rocking block, a pendulum, a cube that bounces."""
+    names = {
+        **vars(exact), **vars(measures), "GRAVITY": GRAVITY, "block": written_block, "rectangle": rectangle,
+        "turned": _turned, "measured": _measured, "crossing": crossing, "largest": largest,
+        "pendulum_quarter": pendulum_quarter}
+    return [
+        Motion("".join(row["blocks"]), row["deck"], row["duration"], row["longest"], row["checks"],
+               row.get("restitution", 0.0))
+        for row in rows("work_precision_motion.json", names)]
 
 
 def rocking() -> Motion:
     """Housner's block of 0.5 x 1.0 m, let go at half of its angle."""
-    width, height = 0.5, 1.0
-    angle = math.atan2(width, height)
-    tilted = _turned(rectangle(0.0, 0.0, width, height), -angle / 2.0, (width, 0.0))
-    text = written_block(rectangle(-3.0, -1.0, 7.0, 1.0), "fixed") + written_block(tilted)
-    # in the middle of the foot and of the head
-    for y in (0.05, 0.95):
-        text += _measured(_turned([(width / 2.0, y)], -angle / 2.0, (width, 0.0))[0])
-
-    def tilt(outcome: Outcome) -> np.ndarray:
-        return outcome.direction(1, 2) - math.pi / 2.0
-
-    def upright(outcome: Outcome) -> float:
-        return _crossing(outcome, tilt(outcome))
-
-    def swing(outcome: Outcome) -> float:
-        return float(tilt(outcome).max() / angle)
-
-    exact = quarter_period(width / 2.0, height / 2.0, 0.5)
-    other = next_amplitude(width / 2.0, height / 2.0, 0.5)
-    checks = (("rocking: quarter period", exact, upright), ("rocking: next tilt", other, swing))
-    groups = {"joint": {"friction_deg": 78.0}, "material": {"young": 5e12}}
-    return Motion(text, groups, 0.75, 0.008, checks)
-
-
-def _pendulum() -> Motion:
-    """A bar of 1 m held at the middle of its upper end, let go at 60 degrees."""
-    width, height, amplitude = 0.1, 1.0, math.pi / 3.0
-    hanging = rectangle(-width / 2.0, -height, width, height)
-    text = written_block(_turned(hanging, amplitude, (0.0, 0.0))) + "fix 0 0\nmeasure 0 0\n"
-    text += _measured(_turned([(0.0, -height)], amplitude, (0.0, 0.0))[0])
-    gyration = (width**2 + height**2) / 12.0 + height**2 / 4.0
-    frequency = math.sqrt(GRAVITY * height / 2.0 / gyration)
-
-    def angle(outcome: Outcome) -> np.ndarray:
-        return outcome.direction(1, 2) + math.pi / 2.0
-
-    def quarter(outcome: Outcome) -> float:
-        return _crossing(outcome, angle(outcome))
-
-    def swing(outcome: Outcome) -> float:
-        return float(-angle(outcome).min())
-
-    exact = pendulum_quarter(amplitude, frequency)
-    checks = (("pendulum: quarter period", exact, quarter), ("pendulum: next amplitude", amplitude, swing))
-    return Motion(text, {"material": {"young": 1e12}}, 1.2, 0.016, checks)
-
-
-def _bounce() -> Motion:
-    """A cube dropped from 1 m with restitution 0.8, at its second top."""
-    restitution = 0.8
-    text = written_block(rectangle(-3.0, -1.0, 7.0, 1.0), "fixed")
-    text += written_block(rectangle(0.0, 1.0, 1.0, 1.0)) + "measure 0.5 1.5\n"
-    time = math.sqrt(2.0 / GRAVITY) * (1.0 + 2.0 * restitution + restitution**2)
-    height: Callable[[Outcome], float] = lambda outcome: 1.0 + float(outcome.end(1)[1])  # noqa: E731
-    checks = (("bounce: second top", restitution**4, height),)
-    return Motion(text, {"material": {"young": 5e12}}, time, 0.064, checks, restitution)
+    return motions()[1]
 
 
 def pendulum_quarter(amplitude: float, frequency: float) -> float:
@@ -194,13 +143,22 @@ def pendulum_quarter(amplitude: float, frequency: float) -> float:
     return math.pi / (2.0 * a * frequency)
 
 
-def _crossing(outcome: Outcome, values: np.ndarray) -> float:
-    """Time at which values first change their sign [s]."""
-    time = outcome.track(2)[0]
-    k = int(np.flatnonzero(values * values[0] < 0.0)[0])
-    # a straight line between steps errs by the square of the step; Hermite's cubic by its fourth
-    slope = np.gradient(values, time)
-    return _root(time[k - 1 : k + 1], values[k - 1 : k + 1], slope[k - 1 : k + 1])
+def largest(start: float, sign: float, scale: float) -> Callable[[Outcome], float]:
+    """Measure of the largest angle from points 1 to 2 less its start [rad], to one side, over a scale."""
+    return lambda outcome: float((sign * (outcome.direction(1, 2) - start)).max() / scale)
+
+
+def crossing(start: float) -> Callable[[Outcome], float]:
+    """Measure of the time at which the angle from points 1 to 2 first is its start [s]."""
+
+    def measure(outcome: Outcome) -> float:
+        values, time = outcome.direction(1, 2) - start, outcome.track(2)[0]
+        k = int(np.flatnonzero(values * values[0] < 0.0)[0])
+        # a straight line between steps errs by the square of the step; Hermite's cubic by its fourth
+        slope = np.gradient(values, time)
+        return _root(time[k - 1 : k + 1], values[k - 1 : k + 1], slope[k - 1 : k + 1])
+
+    return measure
 
 
 def _root(time: np.ndarray, value: np.ndarray, slope: np.ndarray) -> float:

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block
+from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block, written_blocks
+from voussoir_benches.stability_blocks import wall as half_bond
 
 #: Names of the methods, as legends have them; where each stands is a panel's affair
 RIGID = "DDA, rigid blocks"
@@ -91,10 +92,7 @@ def moving_arch() -> SceneClass:
 def wall(courses: int = 8, bricks: int = 5) -> SceneClass:
     """A wall of bricks, half a brick displaced: the horizontal load at collapse."""
     text = written_block(rectangle(-1.0, -0.5, bricks + 2.0, 0.5), "fixed")
-    for course in range(courses):
-        ends = list(range(bricks + 1)) if course % 2 == 0 else [0, *(brick + 0.5 for brick in range(bricks)), bricks]
-        for left, right in zip(ends, ends[1:]):
-            text += written_block(rectangle(float(left), 0.5 * course, float(right - left), 0.5))
+    text += written_blocks(half_bond(courses, bricks, 1.0, 0.5))
     kind = {"scene": {"kind": "blocks", "geometry": BLOCKS}}
     groups = _searched(kind, "horizontal_coefficient", 30.0)
     original = tuple({"search": {"low": 0.1, "high": 1.0, "tolerance": 10.0**-k}} for k in (1, 2))
