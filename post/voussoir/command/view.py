@@ -51,19 +51,9 @@ def pictures_of_case(read: Results, number: int) -> list[Frame]:
 
 def block_at(shapes: list[np.ndarray], point: np.ndarray) -> int:
     """The number of the block that a point of the plane lies in, or else is nearest to."""
+    from voussoir.plot.motion import distance
 
-    def distance(corners: np.ndarray) -> float:
-        start, end = corners, np.roll(corners, -1, axis=0)
-        edge, way = end - start, point - start
-        share = np.clip((way * edge).sum(axis=1) / (edge**2).sum(axis=1), 0.0, 1.0)
-        crossing = (start[:, 1] > point[1]) != (end[:, 1] > point[1])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            left = point[0] < start[:, 0] + (point[1] - start[:, 1]) * edge[:, 0] / edge[:, 1]
-        if np.count_nonzero(crossing & left) % 2:
-            return -1.0
-        return float(np.hypot(*(way - share[:, None] * edge).T).min())
-
-    return 1 + int(np.argmin([distance(corners) for corners in shapes]))
+    return 1 + int(np.argmin([distance(corners, point) for corners in shapes]))
 
 
 def words_of(read: Results, number: int, pictures: list[Frame], frame: Frame, block: int) -> str:

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.field_chart import draw_field
-from voussoir.plot.figure_style import INK, SMALL, Picture, legend_below, type_of
+from voussoir.plot.figure_style import INK, MARKERS, SMALL, Picture, legend_below, type_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Results, Table
@@ -19,7 +19,6 @@ from voussoir.results import Results, Table
 _SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")
 #: First and last column that every table has; swept parameters stand between
 _BEFORE, _BEHIND = "case", "blocks"
-_MARKERS = "osD^vP*X"
 #: Most curves that can be distinguished
 MOST_CURVES = 8
 #: Most curves whose colours differ; more are a map
@@ -66,7 +65,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
         )
     if len(found) < 2:
         raise ChartError("expected two critical values or more, got fewer; give the deck &search")
-    others = [name for name in swept if name != column and not _follows(found, name, column)]
+    others = [name for name in swept if name != column and not follows(found, name, column)]
     missing = _missing(run.cases, found)
     numbers = set(others) <= set(numeric)
     curves = _different(*(found[name] for name in others))
@@ -106,7 +105,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
         known = ~np.isnan(rows["exact"])
         exact |= bool(known.any())
         axes.plot(
-            rows[column], rows["critical"], linestyle="none", color=color, markersize=6, marker=_MARKERS[number],
+            rows[column], rows["critical"], linestyle="none", color=color, markersize=6, marker=MARKERS[number],
             markerfacecolor="white", label=label or "DDA")
         axes.plot(
             rows[column][known], rows["exact"][known], linestyle="none", color=color, marker="+", markersize=9,
@@ -149,7 +148,7 @@ def _values(cases: Table, name: str) -> set[Any]:
     return set(column[~np.isnan(column)].tolist() if column.dtype.kind == "f" else column.tolist())
 
 
-def _follows(cases: Table, name: str, column: str) -> bool:
+def follows(cases: Table, name: str, column: str) -> bool:
     """Whether a column is a function of the abscissa, as in a linked sweep."""
     return _different(cases[column], cases[name]) == _different(cases[column])
 

@@ -24,6 +24,8 @@ EXACT_DPI = 300
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
 #: Line styles that distinguish the curves without colour
 DASHES = ("-", (0, (6, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
+#: Marks that distinguish curves
+MARKERS = "osD^vP*X"
 #: Fill of masonry
 STONE = "#ececec"
 #: Fill of masonry by its material, that of the deck first

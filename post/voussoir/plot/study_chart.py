@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from voussoir.deck.study import Study
-from voussoir.plot.figure_style import INK, SMALL, Picture, legend_below, type_of
+from voussoir.plot.figure_style import INK, MARKERS, SMALL, Picture, legend_below, type_of
 from voussoir.plot.units import axis_label
 
-_MARKERS = "osD^vP*X"
 #: Most curves, and most labels of the axis
 MOST, MOST_LABELS = 8, 5
 
@@ -32,7 +31,7 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
         words = name + (f": order {order:.2f}" if not math.isnan(order) else ": no order")
         color = INK[number % 3]
         axes.plot(
-            at, np.where(errors > 0.0, errors, np.nan), color=color, marker=_MARKERS[number], markersize=4.5,
+            at, np.where(errors > 0.0, errors, np.nan), color=color, marker=MARKERS[number], markersize=4.5,
             linewidth=0.9, markerfacecolor="white", label=words)
         if not math.isnan(order):
             reach = study.resolution[len(values) - len(errors):]

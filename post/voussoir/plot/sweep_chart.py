@@ -9,12 +9,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from voussoir.plot.design_chart import MOST_CURVES, ChartError, groups_of, swept_columns
-from voussoir.plot.figure_style import INK, SMALL, TINY, Picture, legend_below, type_of
+from voussoir.plot.design_chart import MOST_CURVES, ChartError, follows, groups_of, swept_columns
+from voussoir.plot.figure_style import INK, MARKERS, SMALL, TINY, Picture, legend_below, type_of
 from voussoir.plot.units import axis_label, name_of
 from voussoir.results import Results, Table
 
-_MARKERS = "osD^vP*X"
 #: Words and units of columns of results that are no parameters
 COLUMNS = {
     "thrust_min": ("least thrust", "N/m"), "thrust_max": ("greatest thrust", "N/m"),
@@ -51,7 +50,7 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
         If there is no such key or column, or the curves are too many.
     """
     x, y = swept(run, key), number_column(run, column)
-    others = [name for name in swept_columns(run.cases) if name != x and not linked(run, name, x)]
+    others = [name for name in swept_columns(run.cases) if name != x and not follows(run.cases, name, x)]
     groups = groups_of(run.cases, others)
     if len(groups) > MOST_CURVES:
         raise ChartError(
@@ -62,7 +61,7 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
     for number, (label, rows) in enumerate(groups):
         rows = rows.take(np.argsort(rows[x], kind="stable"))
         axes.plot(
-            rows[x], values_of(rows, y), color=INK[number % 3], linewidth=0.8, marker=_MARKERS[number], markersize=4.5,
+            rows[x], values_of(rows, y), color=INK[number % 3], linewidth=0.8, marker=MARKERS[number], markersize=4.5,
             markerfacecolor="white", label=label if len(others) != 1 else plain_value(rows[others[0]][0]))
     axes.set_xlabel(axis_label(x))
     axes.set_ylabel(column_label(run, y))
@@ -97,7 +96,7 @@ def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, leg
     """
     x, y = (swept(run, key) for key in keys)
     others = [name for name in swept_columns(run.cases) if name not in (x, y)]
-    others = [name for name in others if not linked(run, name, x) and not linked(run, name, y)]
+    others = [name for name in others if not follows(run.cases, name, x) and not follows(run.cases, name, y)]
     if x == y or others:
         found = f"{x} twice" if x == y else f"also {', '.join(others)}"
         raise ChartError(f"expected two swept keys and no other, got {found}; sweep two keys")
@@ -186,12 +185,6 @@ def column_label(run: Results, column: str) -> str:
         return "critical " + axis_label(run.searched or "thickness_ratio")
     words, unit = COLUMNS.get(column) or name_of(column)
     return f"{words} [{unit}]" if unit else words
-
-
-def linked(run: Results, name: str, key: str) -> bool:
-    """Return true if a column is a function of a swept key, as in a linked sweep."""
-    pairs = set(zip(run.cases[key].tolist(), run.cases[name].tolist()))
-    return len(pairs) == len(set(run.cases[key].tolist()))
 
 
 def note(axes: Axes, lost: int, count: int, column: str) -> None:
