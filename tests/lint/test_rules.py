@@ -97,7 +97,8 @@ def test_constructors_that_gfortran_gets_wrong_are_found(tmp_path: Path, stateme
     assert [rule in line for line in found] == [True] * bool(rule), found
 
 
-@pytest.mark.parametrize(("folder", "strict"), [("post", True), ("docs", False), ("tests", False)])
+@pytest.mark.parametrize(("folder", "strict"), [("post", True), ("tests/voussoir_benches", True),
+                                                ("docs", False), ("tests", False)])
 def test_python_sources_keep_the_rules(folder: str, strict: bool) -> None:
     files = sorted((REPOSITORY / folder).rglob("*.py"))
     assert files

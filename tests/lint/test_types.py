@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-POST = Path(__file__).resolve().parents[2] / "post"
+TESTS = Path(__file__).resolve().parents[1]
+POST = TESTS.parent / "post"
 
 
 def has_typed_packages() -> bool:
@@ -27,6 +29,8 @@ def test_types_are_complete() -> None:
     if not has_typed_packages():
         pytest.skip("mypy with numpy 2.2 and matplotlib 3.8 is not installed")
     words = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", "/dev/null"]
-    packages = [word for package in POST.iterdir() for word in ("-p", package.name)]
-    done = subprocess.run([*words, *packages], cwd=POST, capture_output=True, text=True)
+    names = [*(package.name for package in POST.iterdir()), "voussoir_benches"]
+    packages = [word for name in names for word in ("-p", name)]
+    places = {**os.environ, "MYPYPATH": f"{POST}{os.pathsep}{TESTS}"}
+    done = subprocess.run([*words, *packages], cwd=POST, env=places, capture_output=True, text=True)
     assert [line for line in done.stdout.splitlines() if ": error: " in line] == []
