@@ -145,30 +145,72 @@ def run(command, decks, timeout):
     return done.returncode, done.stdout.decode("utf-8", "replace").splitlines()
 
 
-def complaint(status, lines, decks):
-    """What the outcome of a run breaks, as text; empty if all is well. Also the number refused."""
+def complaint(status, lines, files, others=False):
+    """What the outcome of a run breaks, as text; empty if all is well. Also the number refused.
+
+    With `others` a message may be about another file than these.
+    """
     if status is None:
         return "hang", 0
     if status not in (0, 2):
         return f"status {status}: " + " | ".join(lines[-5:]), 0
     refused = set()
-    names = {str(deck): deck for deck in decks}
+    names = {str(file): file for file in files}
     for line in lines:
         match = ERROR.match(line)
         if not match:
-            if "error:" in line.lower():
+            if "error:" in line.lower() or "NaN" in line or "Infinity" in line:
                 return f"no file and line: {line}", 0
             continue
-        if match["file"] not in names or match["file"] in refused:
-            return f"not one line a deck: {line}", 0
-        refused.add(match["file"])
-        text = names[match["file"]].read_bytes()
+        if match["file"] in refused or match["file"] not in names and not others:
+            return f"not one line a file: {line}", 0
+        text = names[match["file"]].read_bytes() if match["file"] in names else b"\n" * 10**4
+        refused.add(match["file"] if match["file"] in names else line)
         ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
         if not 1 <= int(match["line"]) <= ends + 1:
             return f"no such line: {line}", 0
     if (status == 2) != bool(refused):
-        return f"status {status} with {len(refused)} decks refused", 0
+        return f"status {status} with {len(refused)} files refused", 0
     return "", len(refused)
+
+
+def report(file, words, keep):
+    """Keep a file that failed, and print why."""
+    Path(keep).mkdir(parents=True, exist_ok=True)
+    shutil.copy(file, keep)
+    print(f"{file.name}: {words}", flush=True)
+
+
+def try_batch(files, attempt, keep):
+    """Numbers of files refused and failed: all are tried together, and each alone where that breaks a rule.
+
+    `attempt` is `complaint` of a run on some files.
+    """
+    trouble, refused = attempt(files)
+    if not trouble:
+        return refused, 0
+    refused = failed = 0
+    for file in files:
+        here, one = attempt([file])
+        refused += one
+        if here:
+            failed += 1
+            report(file, here, keep)
+    if not failed:
+        failed = 1
+        print(f"only together, from {files[0].name}: {trouble}", flush=True)
+    return refused, failed
+
+
+def parser_of(doc, batch):
+    """Options that fuzzers share."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mutants", type=int, default=20000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--batch", type=int, default=batch, help="files a call")
+    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
+    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
+    return parser
 
 
 def small(program, deck):
@@ -195,14 +237,9 @@ def run_first_case(program, deck, timeout):
 
 def main():
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, 50)
     parser.add_argument("--command", required=True, help="what to run, before the names of decks")
-    parser.add_argument("--mutants", type=int, default=20000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--batch", type=int, default=50, help="decks a call")
-    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
     parser.add_argument("--run", metavar="PROGRAM", help="dda, to compute good decks with")
-    parser.add_argument("--keep", default="fuzz_failed", help="folder for decks that failed")
     options = parser.parse_args()
     command = shlex.split(options.command)
     rng = random.Random(options.seed)
@@ -212,30 +249,16 @@ def main():
             decks = [Path(folder) / f"mutant{i}.nml" for i in range(start, min(start + options.batch, options.mutants))]
             for deck in decks:
                 deck.write_bytes(mutant(rng))
-            trouble, count = complaint(*run(command, decks, options.timeout), decks)
-            if trouble:
-                count = 0
-                for deck in decks:
-                    trouble_here, one = complaint(*run(command, [deck], options.timeout), [deck])
-                    count += one
-                    if trouble_here:
-                        failed += 1
-                        Path(options.keep).mkdir(parents=True, exist_ok=True)
-                        shutil.copy(deck, options.keep)
-                        print(f"{deck.name}: {trouble_here}", flush=True)
-            if trouble and not failed:
-                failed += 1
-                print(f"only together, from {decks[0].name}: {trouble}", flush=True)
-            refused += count
-            for deck in decks if options.run and not trouble else ():
+            count, broken = try_batch(
+                decks, lambda files: complaint(*run(command, files, options.timeout), files), options.keep)
+            refused, failed = refused + count, failed + broken
+            for deck in decks if options.run and not broken else ():
                 if run(command, [deck], options.timeout)[0] == 0 and small(options.run, deck):
                     computed += 1
-                    broken = run_first_case(options.run, deck, 60.0)
-                    if broken:
+                    words = run_first_case(options.run, deck, 60.0)
+                    if words:
                         failed += 1
-                        Path(options.keep).mkdir(parents=True, exist_ok=True)
-                        shutil.copy(deck, options.keep)
-                        print(f"{deck.name}: {broken}", flush=True)
+                        report(deck, words, options.keep)
             for deck in decks:
                 deck.unlink()
     print(f"{options.mutants} mutants, seed {options.seed}: {refused} refused, "

@@ -13,7 +13,6 @@ mutants. Ends with status 1 and keeps the files that failed.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
 import shutil
@@ -21,7 +20,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from fuzz_deck import ERROR, cut, run
+from fuzz_deck import complaint, cut, parser_of, run, try_batch
 
 INPUT = Path(__file__).parents[2] / "input" / "limerick"
 SMALL = """<?xml version="1.0"?>
@@ -117,52 +116,21 @@ def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
     return text
 
 
-def complaint(status: int | None, lines: list[str], files: list[Path]) -> tuple[str, int]:
-    """Broken rule of a call, empty if none, and the number of refused files; a call that hangs has no status."""
-    if status is None:
-        return "hang", 0
-    if status not in (0, 2):
-        return f"status {status}: " + " | ".join(lines[-5:]), 0
-    names = {str(path): path for path in files}
-    refused = set()
-    for line in lines:
-        match = ERROR.match(line)
-        if not match:
-            if "error:" in line.lower() or "NaN" in line or "Infinity" in line:
-                return f"not FILE:LINE: error: {line}", 0
-            continue
-        if match["file"] in refused:
-            return f"not one line a file: {line}", 0
-        # a complaint of the geometry about its analysis counts for the analysis
-        text = names[match["file"]].read_bytes() if match["file"] in names else b"\n" * 10**4
-        refused.add(match["file"] if match["file"] in names else line)
-        ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
-        if not 1 <= int(match["line"]) <= ends + 1:
-            return f"no such line: {line}", 0
-    if (status == 2) != bool(refused):
-        return f"status {status} with {len(refused)} files refused", 0
-    return "", len(refused)
-
-
 def try_files(dda: str, form: str, files: list[Path], timeout: float) -> tuple[str, int]:
     """Run the program on mutants of a form of SEEDS for so many seconds a call: as `complaint`."""
     if form.endswith(".geo"):
-        return complaint(*run([dda, "cut"], files, timeout), files)
+        return complaint(*run([dda, "cut"], files, timeout), files, others=True)
     decks = [path.with_suffix(".nml") for path in files]
     for path, deck in zip(files, decks):
         deck.write_text(f"&scene kind='lines', geometry='terrace.geo', analysis='{path.name}' /\n")
-    return complaint(*run([dda, "check"], decks, timeout), files)
+    # a complaint of the geometry about its analysis counts for the analysis
+    return complaint(*run([dda, "check"], decks, timeout), files, others=True)
 
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, 25)
     parser.add_argument("--dda", required=True, help="the program")
-    parser.add_argument("--mutants", type=int, default=20000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--batch", type=int, default=25, help="files a call")
-    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
-    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
     options = parser.parse_args()
     rng = random.Random(options.seed)
     refused = failed = made = 0
@@ -175,22 +143,9 @@ def main() -> int:
             made += len(files)
             for path in files:
                 path.write_bytes(mutant(rng, SEEDS[form]))
-            trouble, count = try_files(options.dda, form, files, options.timeout)
-            if trouble:
-                count = before = 0
-                before = failed
-                for path in files:
-                    here, one = try_files(options.dda, form, [path], options.timeout)
-                    count += one
-                    if here:
-                        failed += 1
-                        Path(options.keep).mkdir(parents=True, exist_ok=True)
-                        shutil.copy(path, options.keep)
-                        print(f"{path.name}: {here}", flush=True)
-                if failed == before:
-                    failed += 1
-                    print(f"only together, from {files[0].name}: {trouble}", flush=True)
-            refused += count
+            count, broken = try_batch(
+                files, lambda tried, form=form: try_files(options.dda, form, tried, options.timeout), options.keep)
+            refused, failed = refused + count, failed + broken
             for path in files:
                 path.unlink()
     print(f"{made} mutants, seed {options.seed}: {refused} refused, "
