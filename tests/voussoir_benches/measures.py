@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from voussoir_benches.checks import DENSITY, GRAVITY, Outcome
+from voussoir_benches.checks import DENSITY, GRAVITY, YOUNG, Outcome
 from voussoir_benches.exact import THROWN
 
 #: A quantity of an outcome
@@ -270,7 +270,7 @@ def arrival(modulus: float) -> Measure:
 
 def _about_mean(outcome: Outcome, point: int) -> np.ndarray:
     """Vertical way of a point about its mean under self-weight: (steps) [m]."""
-    return outcome.track(point)[4] + 2500.0 * GRAVITY * 4.0 / (2.0 * 5e9)
+    return np.asarray(outcome.track(point)[4] + 2500.0 * GRAVITY * 4.0 / (2.0 * YOUNG))
 
 
 def lost_amplitude(outcome: Outcome) -> float:

@@ -46,7 +46,8 @@ def searched(
     """A search for the critical thickness; where blocks move it may differ by what elasticity explains."""
     arch = WHOLE if arch is None else arch
     exact = exact_thickness(arch, friction_deg)
-    deck = {"arch": arch, "joint": {"friction_deg": friction_deg}, "search": {"parameter": "thickness_ratio"}, **others}
+    search = {"parameter": "thickness_ratio"}
+    deck: dict[str, Any] = {"arch": arch, "joint": {"friction_deg": friction_deg}, "search": search, **others}
     expectation = Critical(exact)
     if moving:
         deck["analysis"] = {"geometry": "current", **others.get("analysis", {})}
