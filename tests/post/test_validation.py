@@ -65,6 +65,12 @@ def test_foot_slides_below_the_angle_of_the_literature(
     assert foot[1] == 0.0
 
 
+def test_unit_weight_of_the_passive_wedge_is_that_of_the_literature() -> None:
+    """Areas 2 and 8 m2: W1 tan(45 - phi) = W2 tan(phi - 10)."""
+    (check,) = next(scene for scene in SCENES if scene.name == "two_wedges").expectation.checks
+    assert check.exact * 8.0 / 2000.0 == pytest.approx(0.736184, abs=5e-7)
+
+
 def test_snap_load_of_a_shallow_truss_is_that_of_its_cubic() -> None:
     """EA z (z0^2 - z^2)/l^3 is most at z0/sqrt(3)."""
     half_span, rise = 100.0, 0.5

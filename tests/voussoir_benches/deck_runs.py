@@ -65,12 +65,12 @@ def run_deck(
         tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)), out, seconds)
 
 
-def read_rows(file: Path) -> list[Row]:
-    """Rows of a table; none if there is no such file."""
+def read_rows(file: Path, case: int | None = None) -> list[Row]:
+    """Rows of a table, or of one case; none if there is no such file."""
     if not file.is_file():
         return []
     with file.open(newline="", encoding="utf-8") as lines:
-        return list(csv.DictReader(lines))
+        return [row for row in csv.DictReader(lines) if case is None or row["case"] == str(case)]
 
 
 def _remarks(file: Path) -> dict[str, str]:

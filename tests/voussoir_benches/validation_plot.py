@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+
+from voussoir_benches.deck_runs import read_rows
 
 #: Size of a plot, its left, bottom and other margins [px]
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM, _MARGIN = 260.0, 200.0, 52.0, 34.0, 14.0
@@ -22,11 +23,8 @@ _TEXT = 'font-family="sans-serif" font-size="10" fill="#333"'
 def track_of(file: Path, case: int) -> np.ndarray:
     """Return time and displacements of the monitoring point of a case that moves most: (3, steps), or (3, 0)."""
     points: dict[str, list[list[float]]] = {}
-    if file.exists():
-        with file.open(encoding="utf-8") as lines:
-            for row in csv.DictReader(lines):
-                if row["case"] == str(case):
-                    points.setdefault(row["point"], []).append([float(row[name]) for name in ("time", "u", "v")])
+    for row in read_rows(file, case):
+        points.setdefault(row["point"], []).append([float(row[name]) for name in ("time", "u", "v")])
     tracks = [np.array(rows).T for rows in points.values()]
     return max(tracks, key=lambda track: float(np.ptp(track[1:], axis=1).max()), default=np.empty((3, 0)))
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from voussoir_benches.deck_runs import read_rows
 
 #: Width and largest height of a sketch [px]
 _WIDTH, _HEIGHT = 260.0, 200.0
@@ -33,13 +34,9 @@ class Shape:
 
 def shapes_of(file: Path, case: int) -> tuple[Shape, ...]:
     """Return the blocks of a case in `blocks.csv`; none if there is no such file."""
-    if not file.exists():
-        return ()
     blocks: dict[str, list[dict[str, str]]] = {}
-    with file.open(encoding="utf-8") as lines:
-        for row in csv.DictReader(lines):
-            if row["case"] == str(case):
-                blocks.setdefault(row["block"], []).append(row)
+    for row in read_rows(file, case):
+        blocks.setdefault(row["block"], []).append(row)
     return tuple(
         Shape(_columns(rows, "x", "y"), _columns(rows, "u", "v"), rows[0]["state"] == "fixed")
         for rows in blocks.values())

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import subprocess
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from voussoir.dda_program import find_dda
+from voussoir.dda_program import DdaError, find_dda, keys_of
 
 if TYPE_CHECKING:
     from voussoir.results import Results
@@ -74,12 +72,12 @@ def name_of(parameter: str) -> tuple[str, str]:
 def key_units() -> dict[str, str]:
     """Units of the keys of decks by their names without groups; none where `dda` is missing."""
     try:
-        text = subprocess.run([find_dda(), "help", "keys", "--json"], capture_output=True, text=True, check=True).stdout
-    except (FileNotFoundError, subprocess.CalledProcessError):
+        groups = keys_of(find_dda())
+    except (FileNotFoundError, DdaError):
         return {}
-    keys = (key for group in json.loads(text)["groups"] for key in group["keys"])
     powers = {"m2": "m²", "m3": "m³", "s2": "s²"}
-    return {key["name"]: re.sub("[ms][23]", lambda found: powers[found[0]], key.get("unit", "")) for key in keys}
+    return {name: re.sub("[ms][23]", lambda found: powers[found[0]], key.get("unit", ""))
+            for keys in groups.values() for name, key in keys.items()}
 
 
 def axis_label(parameter: str) -> str:
