@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from voussoir.extras import advice
-from voussoir.files import read_text
+from voussoir.html_page import escape
 from voussoir.record import Record, read_record
 from voussoir.results import _table_view
 from voussoir.results._tables import Choice, DamagedTable, read_columns

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import numpy as np
+
+from voussoir.html_page import cell, escape, table
 
 #: Rows that are shown of a long table, and the width of its text
 MOST_ROWS, WIDTH = 12, 100
@@ -57,9 +58,6 @@ def as_text(columns: dict[str, np.ndarray], rows: int) -> str:
 def as_html(columns: dict[str, np.ndarray], rows: int) -> str:
     """A table for a notebook."""
     names, texts = _shown(columns, rows)
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in names)
-    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in zip(*texts))
-    return (
-        f'<div style="overflow-x:auto"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody>'
-        f"</table></div><p>{rows} row{'s' * (rows != 1)}, {len(columns)} columns</p>"
-    )
+    heads = [cell(escape(name), tag="th") for name in names]
+    body = table(heads, ([cell(escape(text)) for text in row] for row in zip(*texts)))
+    return f'<div style="overflow-x:auto">{body}</div><p>{rows} row{"s" * (rows != 1)}, {len(columns)} columns</p>'
