@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from voussoir.results import Block, Results
+from voussoir.results import Results
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class Assembly:
     pairs: np.ndarray  #: Places of its two blocks, -1 for one that is fixed: (joints, 2)
 
 
-def moments(block: Block) -> tuple[float, np.ndarray]:
+def moments(corners: np.ndarray) -> tuple[float, np.ndarray]:
     """Area and centre of gravity of a polygon."""
-    corner = block.corners - block.corners[0]
+    corner = corners - corners[0]
     x, y = corner.T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
     area = cross.sum() / 2.0
     centre = ((corner + np.roll(corner, -1, axis=0)) * cross[:, None]).sum(axis=0) / (6.0 * area)
-    return abs(area), block.corners[0] + centre
+    return abs(area), corners[0] + centre
 
 
 def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = None) -> Assembly:
@@ -45,7 +45,7 @@ def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = 
     blocks, joints = run.blocks_of(1), run.joints_of(1)
     free = [block for block in blocks if block.state != "fixed"]
     place = {block.number: number for number, block in enumerate(free)}
-    area, centre = map(np.array, zip(*map(moments, free)))
+    area, centre = map(np.array, zip(*(moments(block.corners) for block in free)))
     dead, live = np.zeros((2, len(free), 3))
     dead[:, 1] = -area
     if push is None:
@@ -58,7 +58,7 @@ def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = 
         [np.column_stack((joints[f"x_{end}"], joints[f"y_{end}"])) for end in ("intrados", "extrados")], axis=1)
     pairs = np.array(
         [[place.get(int(joints[f"block_{side}"][row]), -1) for side in (1, 2)] for row in range(len(joints))])
-    whole = {block.number: moments(block)[1] for block in blocks}
+    whole = {block.number: moments(block.corners)[1] for block in blocks}
     for row in range(len(joints)):  # ends so that their normal points from the first block to the second
         first, second = (whole[int(joints[f"block_{side}"][row])] for side in (1, 2))
         along = ends[row, 1] - ends[row, 0]

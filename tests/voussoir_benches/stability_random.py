@@ -10,6 +10,7 @@ import numpy as np
 
 from voussoir_benches.checks import DENSITY, GRAVITY, Check
 from voussoir_benches.expectations import Critical, Verdict
+from voussoir_benches.limit_lp_blocks import moments
 from voussoir_benches.measures import end
 from voussoir_benches.scene import GEOMETRIES, Scene, block_scene, rectangle, written_block, written_blocks
 from voussoir_benches.stability_blocks import BASE, at_rest, moving, wall
@@ -121,7 +122,7 @@ def _lump(number: int, chance: np.random.Generator) -> Scene:
         friction = float(np.round(chance.uniform(1.0, 80.0), 2))
         if len(corners) < 4 or not _is_convex(corners):
             continue
-        x, y = _centre(corners)
+        x, y = moments(corners)[1]
         if x > -foot:
             exact = min(math.tan(math.radians(friction)), (corners[1, 0] - x) / y)
     text = BASE + written_block([(float(x), float(y)) for x, y in corners])
@@ -171,7 +172,7 @@ def _flight(number: int, chance: np.random.Generator) -> Scene:
     while np.diff(np.append(angles, angles[0] + 2.0 * math.pi)).max() > 0.9 * math.pi:
         angles = np.sort(chance.uniform(0.0, 2.0 * math.pi, corners))
     polygon = [(float(math.cos(a)), float(math.sin(a))) for a in angles]
-    x, y = _centre(np.array(polygon))
+    x, y = map(float, moments(np.array(polygon))[1])
     vx, vy, spin = (float(np.round(v, 3)) for v in chance.uniform(-5.0, 5.0, 3))
     text = written_block(polygon, f"velocity {vx!r} {vy!r} {spin!r}") + f"measure {x!r} {y!r}\n"
     step = float(10.0 ** chance.uniform(-3.0, -1.0))
@@ -182,12 +183,3 @@ def _flight(number: int, chance: np.random.Generator) -> Scene:
     return moving(
         "random blocks", f"{number}: flight of {corners} corners, spin {spin:g} rad/s, steps of {step:.1e} s", "", text,
         checks, step, 1.0, {"analysis": {"max_displacement_ratio": 1.0}})
-
-
-def _centre(corner: np.ndarray) -> tuple[float, float]:
-    """Centre of a polygon [m]."""
-    x, y = corner.T
-    cross = x * np.roll(y, -1) - y * np.roll(x, -1)
-    area = cross.sum() / 2.0
-    along = ((corner + np.roll(corner, -1, axis=0)) * cross[:, None]).sum(axis=0) / (6.0 * area)
-    return float(along[0]), float(along[1])
