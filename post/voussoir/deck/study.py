@@ -124,30 +124,11 @@ def study(
 ) -> Study:
     """Run a deck with the value of a key, and with that value halved (or doubled) `times` times.
 
-    Parameters
-    ----------
-    deck : str or Path
-        File of a deck.
-    key : str
-        A key with a number, such as "time_step" or "arch%voussoirs"; "penalty" is penalty_ratio.
-    times : int
-        Number of halvings: there is one more run.
-    double : bool, optional
-        Double instead.
-    at : float, optional
-        Time at which monitoring points are read, in seconds; the end by default.
-    exact : float, optional
-        The exact value of the only thing that is followed.
-    columns : sequence of str, optional
-        Columns of results.csv to follow, and "u", "v" for displacements of the monitoring points; by default these
-        and the columns of `FOLLOWED`, where they have values.
-    **set
-        Other keys, as for `voussoir.run`.
-
-    Raises
-    ------
-    StudyError
-        If the key has no number, a sweep has it, or nothing has a value.
+    The key has a number, such as "time_step" or "arch%voussoirs"; "penalty" is penalty_ratio. There is one run more
+    than halvings. Monitoring points are read at the time `at` [s], by default at the end. `exact` is the exact value of
+    the only thing that is followed. Followed are the named columns of results.csv, and "u", "v" for displacements of
+    the monitoring points; by default these and the columns of `FOLLOWED`, where they have values. `set` are other keys,
+    as for `voussoir.run`. StudyError if the key has no number, a sweep has it, or nothing has a value.
     """
     dda = find_dda()
     group, name = _named(dda, key)

@@ -129,20 +129,9 @@ def pass_over(
 ) -> Passage:
     """Search the worst position of a vehicle on the arch of a deck, and its factors along the road.
 
-    Parameters
-    ----------
-    deck : Path
-        A deck with &arch; its own &vehicle and &search are left out.
-    vehicle : Vehicle
-        The vehicle.
-    rule : str, optional
-        Name of one of `RULES`.
-    width, barrel : float, optional
-        The effective width, if no rule gives it, and the width of the barrel that limits that of a rule [m].
-    both : bool, optional
-        True to try both directions of travel.
-    count, gap : int and float, optional
-        Number of vehicles in a convoy, and the distance of their last and first axles [m].
+    The deck's own &vehicle and &search are left out. The rule is one of `RULES`; `width` is the effective width if no
+    rule gives it, and `barrel` the width of the barrel that limits that of a rule [m]. With `both` both directions of
+    travel are tried. A convoy has `count` vehicles, the last and first axles of two of them `gap` apart [m].
     """
     bare = f"{without(read_text(deck), 'vehicle', 'search').rstrip()}\n"
     name = vehicle.name if count == 1 else f"{count} x {vehicle.name}, {gap:g} m apart"

@@ -20,19 +20,8 @@ def points_on_edges(
 ) -> list[tuple[int, float, int]]:
     """Points within reach of edges and farther than that from their ends.
 
-    Parameters
-    ----------
-    starts, ends : ndarray
-        Ends of the edges: (m) complex.
-    points : ndarray
-        Points: (n) complex.
-    reach : float
-        Distance.
-
-    Returns
-    -------
-    list of tuple
-        Edge, share along it and point, sorted by edge and share.
+    Edges lead from `starts` to `ends`, (m) complex; points are (n) complex. Gives edge, share along it and point,
+    sorted by edge and share.
     """
     found: list[tuple[int, float, int]] = []
     for edge, point in _pairs(starts, ends, points, reach):
@@ -87,16 +76,9 @@ def _pairs(
 
 
 class Cells:
-    """Curves by the cells of a grid that they go through, widened by a distance.
+    """Curves by the cells of a grid that they go through, widened by the distance `reach`.
 
-    Parameters
-    ----------
-    curves : sequence of Curve
-        The curves.
-    reach : float
-        The distance.
-    tolerance : float
-        How far chords may be from a curve.
+    Chords may be `tolerance` from a curve.
     """
 
     def __init__(self, curves: Sequence[Curve], reach: float, tolerance: float) -> None:

@@ -34,17 +34,8 @@ _LINE = re.compile(r"<Line\b[^>]*>([^<]*)</Line>", re.IGNORECASE)
 def draw_file(file: Path, sheet: Sheet = Sheet(), numbers: bool = False, coordinates: bool = False) -> Figure:
     """Draw the blocks of a file of blocks or of lines, what acts on them, and lines that are no edge of a block.
 
-    Parameters
-    ----------
-    file : Path
-        A file whose name ends in .blocks or .geo.
-    numbers, coordinates : bool, optional
-        Whether blocks have their numbers on them, and whether the axes are drawn [m].
-
-    Raises
-    ------
-    DdaError
-        If `dda` cannot read the file: its own message.
+    The file's name ends in .blocks or .geo. Blocks have their numbers on them with `numbers`, and the axes are drawn
+    [m] with `coordinates`. DdaError, with its own message, if `dda` cannot read the file.
     """
     lines: list[np.ndarray] = []
     if plain(file).suffix == ".geo":

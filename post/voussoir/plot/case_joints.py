@@ -60,16 +60,8 @@ def thrust_points(joints: Table) -> np.ndarray:
 class JointMarks:
     """The joints of one case, where its picture shows them.
 
-    Parameters
-    ----------
-    scene, joints, motion
-        The case.
-    size : float
-        Size of the piece of plane [m].
-    pen : float
-        Width of lines over that of a large picture.
-    points_per_metre : float
-        Scale of the drawing.
+    `size` is that of the piece of plane [m], `pen` the width of lines over that of a large picture, and
+    `points_per_metre` the scale of the drawing.
     """
 
     def __init__(

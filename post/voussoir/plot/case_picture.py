@@ -40,24 +40,11 @@ def draw_case(
 ) -> Figure:
     """Draw one case of any scene.
 
-    Parameters
-    ----------
-    magnify : float or "auto", optional
-        Magnification of the displaced shape, chosen and stated with "auto". Without it what stands
-        is drawn as it stands, and a collapse mechanism, which has no size, as large as can be seen.
-    with_forces : bool, optional
-        Whether the forces of the joints are drawn; by default where no thrust line is drawn and the joints are few.
-    numbers : bool, optional
-        Whether blocks have their numbers on them.
-    coordinates : bool, optional
-        Whether the axes are drawn [m].
-    sheet : Sheet, optional
-        Width of the picture, and whether it has a title and a legend.
-
-    Raises
-    ------
-    KeyError
-        If there is no such case, or its blocks were not written.
+    `magnify` is the magnification of the displaced shape, chosen and stated with "auto". Without it what stands is
+    drawn as it stands, and a collapse mechanism, which has no size, as large as can be seen. The forces of the joints
+    are drawn with `with_forces`, by default where no thrust line is drawn and the joints are few; the numbers of blocks
+    with `numbers`, the axes [m] with `coordinates`. The sheet has the width of the picture, and says if it has a title
+    and a legend. KeyError if there is no such case, or its blocks were not written.
     """
     title = title_of(row_with_safety(run, number), run) if sheet.title else ""
     scene, source = scene_of(run, number), source_of(run)

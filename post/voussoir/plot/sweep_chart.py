@@ -37,17 +37,8 @@ MAP_COLORS = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.7
 def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool = True) -> Figure:
     """Draw a column of results against a swept key, a curve for each combination of the other swept values.
 
-    Parameters
-    ----------
-    key, column : str
-        Key of a &sweep group, such as "radius" or "arch%radius", and a column of numbers; by default what was searched.
-    legend : bool, optional
-        Whether several curves are named.
-
-    Raises
-    ------
-    ChartError
-        If there is no such key or column, or the curves are too many.
+    The key is that of a &sweep group, such as "radius" or "arch%radius"; the column, of numbers, is by default what was
+    searched. Several curves are named with `legend`. ChartError if there is no such key or column, or too many curves.
     """
     x, y = swept(run, key), number_column(run, column)
     others = [name for name in swept_columns(run.cases) if name != x and not follows(run.cases, name, x)]
@@ -80,19 +71,8 @@ def plain_value(value: object) -> str:
 def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, legend: bool = True) -> Figure:
     """Draw a column of results over two swept keys: a coloured cell per case, with contours; or verdicts.
 
-    Parameters
-    ----------
-    keys : pair of str
-        Keys along and up.
-    column : str, optional
-        A column of numbers; by default what was searched, and without a search the verdicts.
-    legend : bool, optional
-        Whether verdicts are named.
-
-    Raises
-    ------
-    ChartError
-        If there are no such keys, or other keys were swept, too.
+    Keys are those along and up. The column, of numbers, is by default what was searched, and without a search the
+    verdicts, which are named with `legend`. ChartError if there are no such keys, or other keys were swept, too.
     """
     x, y = (swept(run, key) for key in keys)
     others = [name for name in swept_columns(run.cases) if name not in (x, y)]
