@@ -99,15 +99,19 @@ contains
    !> Compute a case
    subroutine compute_case(this)
       type(case_t), intent(inout) :: this
+      type(scene_t) :: no_scene
       integer(int64) :: start, finish, rate
 
       if (this%exact_known) call exact_thickness(this%family%deck, this%exact, this%exact_known)
       call system_clock(start, rate)
       call plan_album(this)
       if (this%searches) then
-         ! the scene of one value is none of another
-         allocate (this%critical%scene)
-         call move_scene(this%scene, this%critical%scene)
+         ! a load changes no blocks; the scene of any other value is none of another
+         if (this%family%load /= searched_load%none) then
+            allocate (this%critical%scene)
+            call move_scene(this%scene, this%critical%scene)
+         end if
+         this%scene = no_scene
       end if
       if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
       if (this%searches .and. this%limerick) then
