@@ -230,6 +230,42 @@ def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> 
         assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
 
 
+SPREAD = (
+    "&arch half_angle_deg = 60, radius = 1, thickness_ratio = 0.15, voussoirs = 15 /\n&support right_dx = 0.25 /\n"
+    "&joint friction_deg = 40 /\n&analysis geometry = 'current' /\n"
+)
+
+
+def test_a_falling_arch_has_hinges_where_it_gapes_and_no_thrust_line(tmp_path: Path) -> None:
+    run = compute(tmp_path, SPREAD)
+    row, joints = run.case(1), run.joints_of(1)
+    assert row["verdict"] == "collapsed"
+    with house_style():
+        figure = draw_case(run, 1)
+    legend = legend_of(figure)
+    assert "hinge" in legend and "thrust line" not in legend and "support that moves" in legend
+    assert f"{100 * (1 + row['path_time']):.1f} % of the displacement of the supports" in title_of(row, run)
+    # a joint that gapes keeps one corner: it has no length in the table
+    ends = [np.column_stack((joints[f"x_{side}"], joints[f"y_{side}"])) for side in ("intrados", "extrados")]
+    gaping = ends[0][np.all(ends[0] == ends[1], axis=1)]
+    assert len(gaping) >= 3
+    discs = np.vstack([line.get_xydata() for line in figure.axes[0].lines if line.get_marker() == "o"])
+    for corner in gaping:
+        assert np.hypot(*(discs - corner).T).min() < 1e-6
+    gaps = np.fmax(joints["opening_intrados"], joints["opening_extrados"])
+    closed = (gaps < 1e-4) & ~np.all(ends[0] == ends[1], axis=1)
+    for end in ends:
+        assert np.hypot(*(discs[:, None] - end[closed]).transpose(2, 0, 1)).min() > 1e-3
+
+
+def test_title_of_a_spread_has_the_displacement_at_collapse(tmp_path: Path) -> None:
+    run = compute(tmp_path, SPREAD + "&search parameter = 'displacement_factor', low = 0, high = 1, tolerance = 1e-2 /\n")
+    row = run.case(1)
+    lines = title_of(row, run).splitlines()
+    assert lines[-2].startswith(f"Collapse with the right support {250 * row['critical']:.3g} mm to the right (±")
+    assert lines[-1] == "Drawn: last equilibrium before it"
+
+
 def test_what_is_not_reported_is_not_drawn(tmp_path: Path, capsys) -> None:
     run = benchmark(tmp_path, "stack", "output%joints=.false.")
     with house_style():
@@ -274,7 +310,7 @@ def test_magnification_is_stated_and_forces_may_be_left_out(arches, tmp_path: Pa
             magnify: legend_of(draw_case(arches, 2, magnify, with_forces))
             for magnify, with_forces in ((None, True), ("auto", True), (30.0, False), (0.0, False))
         }
-    assert "contact forces, longest 548 kN/m" in texts[None]
+    assert "contact forces on the upper block, longest 548 kN/m" in texts[None]
     assert "displaced" not in texts[None]  # what stands is drawn as it stands
     assert "displacements × 500 (largest 1.09 mm)" in texts["auto"]
     assert "displacements × 30 (" in texts[30.0] and "forces" not in texts[30.0]
@@ -292,7 +328,7 @@ def test_title_has_the_deck_s_own_and_the_swept_values_in_words(tmp_path: Path) 
     )
     lines = title_of(run.case(2), run).splitlines()
     assert lines[:2] == ["Costs \\$5", "Case 2 of 2: radius 5 m, half angle 90°, friction angle 50°, 36 blocks"]
-    assert lines[2].startswith("Critical thickness over radius: 0.107424, exact 0.107424")
+    assert lines[2].startswith("Critical thickness over radius: 0.1074, exact 0.1074")
     assert axis_label("analysis%time_step") == "time step [s]" and axis_label("young") == "Young's modulus [Pa]"
 
 

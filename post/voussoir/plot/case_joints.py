@@ -27,6 +27,8 @@ MOST_MARKS = 40
 APART, SMALLEST, LARGEST = 5.0, 2.5, 6.5
 #: Least widths of a thrust line and of coloured joints [points]
 THINNEST_THRUST, THINNEST_STATE = 0.9, 0.35
+#: Least gap of a joint that is seen as open in a fall: the width of a line [points]
+SEEN_GAP = 1.0
 #: More joints than these have no forces unless they are asked for
 MOST_FORCES = 150
 #: What the marks mean where nothing collapses
@@ -36,6 +38,9 @@ TOUCHES = {
     "hinge": "touches at this corner only",
     "open": "open joint",
 }
+#: Discs of joints that touch at one corner where nothing turns: not those of hinges
+TOUCH_MARKS: dict[str, dict[str, Any]] = {
+    **MARKS, **{kind: {**MARKS[kind], "markerfacecolor": "white"} for kind in ("intrados", "hinge")}}
 
 
 def roles_of(joints: Table, moved: bool = False) -> np.ndarray:
@@ -48,6 +53,15 @@ def roles_of(joints: Table, moved: bool = False) -> np.ndarray:
         return state
     kept = moved & (mechanism == "none") & np.isin(state, ("hinge_intrados", "hinge_extrados"))
     return np.asarray(np.where(kept, state, mechanism))
+
+
+def falling_roles(joints: Table, points_per_metre: float) -> np.ndarray:
+    """What each joint of falling blocks shows: a hinge where it touches at one corner, open where a gap is seen."""
+    gaps = np.fmax(joints["opening_intrados"], joints["opening_extrados"]) * points_per_metre
+    roles = np.array(np.where(gaps > SEEN_GAP, joints["state"], "none"), dtype=object)
+    length = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"])
+    roles[(length == 0.0) & (joints["state"] != "open")] = "hinge"
+    return roles
 
 
 def thrust_points(joints: Table) -> np.ndarray:
@@ -74,13 +88,15 @@ class JointMarks:
         for name, x, y in (("in", "x_intrados", "y_intrados"), ("out", "x_extrados", "y_extrados"), ("at", "x", "y")):
             there = np.column_stack((joints[x], joints[y]))
             self.sides[name] = (motion.carried(there, first), motion.carried(there, second))
-        self.collapses = bool(np.any(joints["mechanism"] != "none"))
+        self.collapses = scene.is_falling or bool(np.any(joints["mechanism"] != "none"))
         self.roles = roles_of(joints, scene.moves)
+        if scene.is_falling:
+            self.roles = falling_roles(joints, motion.shown * points_per_metre)
         long = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
         # a joint of one corner turns about it always: it is marked in a collapse only
         self.marked = long | (joints["mechanism"] != "none") | (self.collapses and scene.moves)
         self.slides = np.isfinite(joints["slides_x"])
-        self.opens = np.isin(self.roles, ("hinge_intrados", "hinge_extrados", "open")) & self.marked
+        self.opens = np.isin(self.roles, ("hinge_intrados", "hinge_extrados", "hinge", "open")) & self.marked
         lengths = np.hypot(*(self._middle("out") - self._middle("in")).T)
         self.thickness = float(np.median(lengths[lengths > 0.0])) * points_per_metre if np.any(lengths > 0.0) else 0.0
         places = self._middle("at")[self.opens | self.slides]
@@ -100,7 +116,7 @@ class JointMarks:
     def draw(self, axes: Axes, with_forces: bool | None) -> list[Artist]:
         """Draw all; gives the entries of the legend."""
         pairs = thrust_pairs(self.scene, self.joints)
-        entries = self.draw_thrust(axes, pairs) if pairs else []
+        entries = self.draw_thrust(axes, pairs) if pairs and not self.scene.is_falling else []
         if with_forces or with_forces is None and not pairs and len(self.joints) <= MOST_FORCES:
             entries += self.draw_forces(axes)
         if self.crowded:
@@ -121,9 +137,11 @@ class JointMarks:
         return [entry("thrust line", linestyle="-", color=INK[1], linewidth=width)]
 
     def draw_forces(self, axes: Axes) -> list[Artist]:
-        """Draw the force of each joint on its second block, or on the one of its two that can move."""
+        """Draw the force of each joint on the upper of its two blocks."""
         vectors = np.column_stack((self.joints["force_x"], self.joints["force_y"]))
-        vectors[np.isin(self.joints["block_2"], [block.number for block in self.scene.supports])] *= -1.0
+        height = {block.number: block.corners[:, 1].mean() for block in self.scene.blocks + self.scene.supports}
+        first, second = ([height[number] for number in self.joints[f"block_{side}"].tolist()] for side in (1, 2))
+        vectors[np.array(first) > np.array(second)] *= -1.0
         largest = float(np.hypot(*vectors.T).max(initial=0.0))
         if not largest > 0.0:
             return []
@@ -131,8 +149,8 @@ class JointMarks:
         axes.quiver(
             *self.thrust_points().T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2],
             width=0.8 * self.pen / POINTS, units="inches", headwidth=4.5, zorder=4.5)
-        words = f"contact forces, longest {force_text(largest, self.scene.unit)}"
-        return [entry(words, linestyle="-", color=INK[2], linewidth=1.2 * self.pen)]
+        words = f"contact forces on the upper block, longest {force_text(largest, self.scene.unit)}"
+        return [entry(words, marker=r"$\uparrow$", markersize=10, color=INK[2])]
 
     def draw_states(self, axes: Axes) -> list[Artist]:
         """Draw the lines of joints in the colours of what they do; gives the entries of the legend."""
@@ -155,17 +173,19 @@ class JointMarks:
     def draw_hinges(self, axes: Axes) -> list[Artist]:
         """Draw hinges and open joints; gives the entries of the legend."""
         entries: list[Artist] = []
-        kinds = (("intrados", "hinge_intrados", "in"), ("extrados", "hinge_extrados", "out"), ("open", "open", "at"))
+        kinds = (("intrados", "hinge_intrados", "in"), ("extrados", "hinge_extrados", "out"), ("hinge", "hinge", "at"),
+                 ("open", "open", "at"))
+        marks, words = (MARKS, MEANINGS) if self.collapses else (TOUCH_MARKS, TOUCHES)
         seen = set()
         for kind, role, at in kinds:
             mask = (self.roles == role) & self.marked
             mark = "hinge" if kind != "open" and not self.scene.is_arch else kind
             if not mask.any():
                 continue
-            style: dict[str, Any] = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **MARKS[mark]}
+            style: dict[str, Any] = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **marks[mark]}
             axes.plot(*self._middle(at)[mask].T, linestyle="none", zorder=6, **style)
             if mark not in seen:
-                entries.append(entry(MEANINGS[mark] if self.collapses else TOUCHES[mark], **style))
+                entries.append(entry(words[mark], **style))
             seen.add(mark)
         return entries
 

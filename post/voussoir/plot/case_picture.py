@@ -146,7 +146,9 @@ def draw_blocks(
         }
         axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
         name = f"blocks of material {material}" if several else "blocks" if held else words
-        entries.append(Patch(**style, label=name + (" with restraints" if held else "")))
+        if held:  # in an arch only &support holds blocks
+            name = "support that moves" if scene.voussoirs else f"{name} with restraints"
+        entries.append(Patch(**style, label=name))
     return [*entries, entry(words)] if several and words != "blocks" else entries
 
 

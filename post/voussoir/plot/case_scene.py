@@ -28,6 +28,7 @@ class CaseScene:
     voussoirs: int = 0  #: Of an arch of any shape, the voussoirs of a ring, which are numbered first
     count: int = 0  #: The number of all of them
     unit: str = "N/m"  #: Unit of its forces
+    is_falling: bool = False  #: Whether the blocks are drawn in a fall, without equilibrium
 
     @property
     def largest(self) -> float:
@@ -62,13 +63,14 @@ def scene_of(run: Results, number: int) -> CaseScene:
     # a search along a path has the blocks where they come to rest nearest to critical
     moves = row["geometry"] == "current" and (not run.searched or not math.isnan(row["path_time"]))
     falls = row["collapse_mode"] != "none" and not moves
+    is_falling = moves and row["verdict"] == "collapsed"
     if run.kind != "shape":
-        return CaseScene(free, supports, is_arch, moves, falls)
+        return CaseScene(free, supports, is_arch, moves, falls, is_falling=is_falling)
     one, rings, spans = (
         int(row.get(name, run.setting(f"arch%{name}") or usual))
         for name, usual in (("voussoirs", 36), ("rings", 1), ("spans", 1))
     )
-    return CaseScene(free, supports, is_arch, moves, falls, one, one * rings * spans, force_unit(run))
+    return CaseScene(free, supports, is_arch, moves, falls, one, one * rings * spans, force_unit(run), is_falling)
 
 
 def shortened(support: Block, free: list[Block]) -> Block:

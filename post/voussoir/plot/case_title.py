@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from voussoir.deck.supports import FACTOR, critical_movement, displacements, uncertainty
 from voussoir.plot.units import force_text, force_unit, name_of, value_label
 from voussoir.results import Results
 
@@ -17,7 +18,7 @@ def title_of(row: Row, run: Results | None = None) -> str:
     given = ", ".join(_given(row, run))
     if run is not None and len(run.cases) > 1:
         given = f"Case {row['case']} of {len(run.cases)}: {given}"
-    lines = [title, given, _ending(row, run)]
+    lines = [title, given, *_ending(row, run).split("\n")]
     return "\n".join(_plain(line) for line in lines if line)
 
 
@@ -46,16 +47,28 @@ def _ending(row: Row, run: Results | None) -> str:
     """The verdict and its numbers."""
     end = str(row["verdict"])
     if end == "found":
-        words, unit = name_of(run.searched if run is not None and run.searched else "value")
-        space = "" if unit == "°" else " "
-        end = f"critical {words}: {row['critical']:.6g}{space if unit else ''}{unit}"
-        if not math.isnan(row["exact"]):
-            end += f", exact {row['exact']:.6g}"
+        end = _critical(row, run)
+    if end == "collapsed" and run is not None and displacements(run) and -1.0 < row.get("path_time", math.nan) < 0.0:
+        end += f" at {1.0 + row['path_time']:.1%} of the displacement of the supports".replace("%", " %")
     if end == "stable":
         end += safety_of(row, run)
     if row["collapse_mode"] != "none":
         end += f", {row['collapse_mode']} collapse"
+    moves = run is not None and (run.searched == FACTOR or bool(displacements(run)))
+    if row["verdict"] == "found" and moves and not math.isnan(row["path_time"]):
+        end += "\nDrawn: last equilibrium before it"
     return end
+
+
+def _critical(row: Row, run: Results | None) -> str:
+    """The critical value; of a search for displacements of supports, these displacements."""
+    if run is not None and (moved := critical_movement(run, row["critical"])):
+        known = uncertainty(row["critical_low"], row["critical_high"])
+        return f"collapse with the {' and the '.join(moved)}{f' ({known})' if known else ''}"
+    words, unit = name_of(run.searched if run is not None and run.searched else "value")
+    space = "" if unit == "°" else " "
+    text = f"critical {words}: {row['critical']:.4g}{space if unit else ''}{unit}"
+    return text if math.isnan(row["exact"]) else f"{text}, exact {row['exact']:.4g}"
 
 
 def safety_of(row: Row, run: Results | None) -> str:
