@@ -232,3 +232,36 @@ def test_positions_without_a_factor_have_a_mark_that_says_why(tmp_path: Path) ->
     marked = {line.get_label(): list(line.get_xdata()) for line in axes.lines if not line.get_label().startswith("_")}
     still = [row["position"] for row in run.cases.rows() if row["verdict"] == "stable"]
     assert still and marked["no multiple collapses it"] == still
+
+
+#: An arch whose right support moves
+SPREAD = (
+    "&arch half_angle_deg = 60, radius = 10, thickness_ratio = 0.15, voussoirs = 15 /\n&support right_dx = 2.5 /\n"
+    "&joint friction_deg = 40 /\n&analysis geometry = 'current' /\n"
+)
+
+
+def page_of(folder: Path, text: str) -> str:
+    """Page of a deck."""
+    (folder / "deck.nml").write_text(text)
+    assert main(["assess", str(folder / "deck.nml")]) == 0
+    return (folder / "deck.html").read_text()
+
+
+def test_displacements_of_supports_are_a_load_case(tmp_path: Path) -> None:
+    page = page_of(tmp_path, SPREAD)
+    moved = "right support 2.5 m to the right"
+    assert f"The structure collapses with the {moved}; it falls at 9" in page
+    rows = dict(re.findall(r"<tr><th>(Dead load[^<]*)</th><td[^>]*>0</td><td[^>]*>(\w+)</td>", page))
+    assert rows == {"Dead load of masonry": "stable", f"Dead load of masonry, {moved}": "collapsed"}
+    assert f"Prescribed displacements: {moved}." in page
+    assert "rigid" not in page and "Thrust at the crown</th>" not in page.split("Load cases")[0]
+
+
+def test_a_search_for_displacements_has_them_at_collapse(tmp_path: Path) -> None:
+    search = "&search parameter = 'displacement_factor', low = 0, high = 4, tolerance = 1e-2 /\n"
+    text = SPREAD.replace("2.5", "0.63") + search
+    page = page_of(tmp_path, text)
+    critical = run_deck(text).case(1)["critical"]
+    assert f"It collapses when the supports move: right support {0.63 * critical:.3g} m to the right (±" in page
+    assert "Displacement at collapse</th>" in page and "last equilibrium before the collapse" in page

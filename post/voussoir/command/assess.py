@@ -11,7 +11,7 @@ from pathlib import Path
 
 from voussoir import __version__
 from voussoir.dda_program import DdaError, find_dda
-from voussoir.deck.assessment import assess
+from voussoir.deck.assessment import Assessment, assess
 from voussoir.files import read_text, write_text
 
 #: The file that a deck is computed from
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise DdaError(_COPY.sub(str(deck).replace("\\", r"\\"), str(error))) from error
         except OSError as error:
             raise ValueError(f"expected a deck that can be read: {error.strerror}") from error
-    origin = origin_of(decks)
+    origin = origin_of(decks, found)
     written = comparison(found, origin) if several else single(found[0], origin)
     try:
         write_text(out, written)
@@ -69,12 +69,15 @@ def check(text: str, deck: Path) -> None:
             raise ValueError(f"{deck}:{number}: error: expected an arch, got another kind; assess a deck with &arch")
 
 
-def origin_of(decks: Sequence[Path]) -> list[tuple[str, str]]:
-    """Versions and check sums."""
+def origin_of(decks: Sequence[Path], found: Sequence[Assessment]) -> list[tuple[str, str]]:
+    """Versions, check sums and methods."""
+    methods = {
+        "equilibrium of blocks with no tension that move and strain" if one.value("analysis%geometry") == "current" else
+        "limit analysis and loading path of rigid blocks with no tension" for one in found}
     program = find_dda()
     rows = [("Deck", f"{deck.name}, SHA-256 {hashlib.sha256(deck.read_bytes()).hexdigest()}") for deck in decks]
     return rows + [
         ("Program", f"voussoir {__version__}, dda SHA-256 {hashlib.sha256(Path(program).read_bytes()).hexdigest()}"),
         ("Python", f"{platform.python_version()} on {platform.system()}"),
-        ("Method", "limit analysis and loading path of rigid blocks with no tension; see docs/method.md"),
+        ("Method", f"{'; '.join(sorted(methods))}; see docs/method.md"),
     ]

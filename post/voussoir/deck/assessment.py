@@ -12,6 +12,7 @@ import numpy as np
 
 from voussoir.dda_program import DdaError, defaults, find_dda
 from voussoir.deck.run import run as run_deck
+from voussoir.deck.supports import FACTOR, displacements, movement
 from voussoir.deck.text import deck_text, merged
 from voussoir.deck.thickness import dead_groups, thickness_safety
 from voussoir.results import Results, Table
@@ -25,6 +26,10 @@ SMALLER = 1e-6
 _OF_FACTOR = ("verdict", "critical", "critical_low", "critical_high", "collapses_at", "exact_low", "exact_high")
 #: Name of a list of vehicles
 _LIST = re.compile(r"(\blist\s*=\s*)('[^']*'|\"[^\"]*\")", re.IGNORECASE)
+#: A search for displacements of supports
+_SPREAD = re.compile(
+    r"&search\b[^/]*?\bparameter\s*=\s*['\"](support%|load%)?(displacement_factor|(left|right)_(dx|dy|rotation_deg))",
+    re.IGNORECASE)
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
@@ -42,6 +47,7 @@ class Assessment:
     safety: tuple[float, str]  #: Thickness over critical thickness, and how it was found
     axles: list[tuple[float, float]]  #: Places and weights of the axles [m, N/m]
     positions: Table | None  #: Load factors along the road
+    spread: Results | None = None  #: The search for displacements of supports of the deck
 
     @property
     def row(self) -> Row:
@@ -52,6 +58,12 @@ class Assessment:
     def place(self) -> float:
         """The worst position [m], NaN where none is sought."""
         return math.nan if self.factor is None else float(self.factor.get("worst_position", math.nan))
+
+    @property
+    def movements(self) -> list[str]:
+        """Displacements of the supports that the deck prescribes, in words."""
+        scale = float(self.own.setting(f"load%{FACTOR}") or 1.0)
+        return [movement(name, scale * value) for name, value in displacements(self.own).items() if scale]
 
     @property
     def title(self) -> str:
@@ -73,7 +85,8 @@ class Assessment:
 
 def assess(text: str, deck: Path, full: bool = True) -> Assessment:
     """Compute what the page of a deck says; without `full` neither the critical thickness nor the dead load alone."""
-    bare = _LIST.sub(lambda match: f"{match[1]}'{(deck.parent / match[2][1:-1]).absolute()}'", without(text, "search"))
+    whole = _LIST.sub(lambda match: f"{match[1]}'{(deck.parent / match[2][1:-1]).absolute()}'", text)
+    bare = without(whole, "search")
     found, factor = load_search(bare)
     if found is not None and any(found.setting(f"vehicle%{name}") for name in ("effective_width", "convoy")):
         bare = axles_alone(bare, found)
@@ -92,9 +105,10 @@ def assess(text: str, deck: Path, full: bool = True) -> Assessment:
     if factor is not None:  # the title has the factor of the page
         own.cases["critical"][0] = factor["critical"]
     dead = own.case(1)
-    if factor is not None and full:
+    if full and (factor is not None or displacements(own)):
         dead = run_deck(merged(dead_groups(own, dead), {})).case(1)
-    return Assessment(deck, text, own, dead, found, factor, safety, axles, cases)
+    spread = run_deck(whole) if full and displacements(own) and _SPREAD.search(re.sub(r"!.*", "", text)) else None
+    return Assessment(deck, text, own, dead, found, factor, safety, axles, cases, spread)
 
 
 def axles_alone(text: str, run: Results) -> str:

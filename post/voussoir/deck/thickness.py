@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from voussoir.deck.run import run as run_deck
+from voussoir.deck.supports import FACTOR
 from voussoir.deck.text import groups_of, merged
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.results import Results
@@ -17,7 +18,7 @@ DEFAULT_RATIO = 0.15
 #: Shares of both thicknesses of a tapered arch that are decided at once, and how often between the last two
 SHARES, ROUNDS = 20, 6
 #: Groups that say nothing of an arch under its dead load
-_OTHERS = ("scene", "output", "search", "live", "vehicle")
+_OTHERS = ("scene", "output", "search", "live", "vehicle", "support")
 
 
 def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
@@ -71,7 +72,7 @@ def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
 
 
 def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
-    """What a deck says of one of its cases, whose row has what was swept, without its live loads."""
+    """What a deck says of one of its cases, whose row has what was swept, without live loads and moved supports."""
     groups: dict[str, Any] = {}
     for name in run.given:
         group, _, key = name.partition("%")
@@ -80,6 +81,7 @@ def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
     swept = {name: row[name.rpartition("%")[2]] for name in run.swept if name.rpartition("%")[2] in row}
     if swept:
         groups = merged(groups, groups_of(find_dda(), swept))
+    groups.get("load", {}).pop(FACTOR, None)
     return {group: keys for group, keys in groups.items() if group not in _OTHERS}
 
 

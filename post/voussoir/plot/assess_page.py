@@ -91,7 +91,13 @@ def figures_of(found: Assessment) -> list[str]:
             place = found.place
             chart = draw_positions(found.own, cases, None if place != place else place, sheet)
             parts.append(figure_of(chart, "Position of the vehicle", _POSITIONS[slides(found.own)]))
-        parts.append(figure_of(draw_case(found.own, 1, sheet=sheet), "Thrust under the loads given"))
+        falls = found.movements and found.row["verdict"] == "collapsed"
+        words = "Collapse" if falls else "Thrust under the loads given"
+        words += f", {' and '.join(found.movements)}" if found.movements else ""
+        parts.append(figure_of(draw_case(found.own, 1, sheet=sheet), words))
+        if found.spread is not None and found.spread.case(1)["verdict"] == "found":
+            parts.append(figure_of(
+                draw_case(found.spread, 1, sheet=sheet), "Supports moved: the last equilibrium before the collapse"))
         if found.found is not None and found.factor is not None and found.factor["verdict"] == "found":
             parts.append(figure_of(draw_case(found.found, 1, sheet=sheet), "Collapse under the live loads multiplied"))
     return parts

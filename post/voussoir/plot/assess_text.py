@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 from voussoir.deck.assessment import Assessment
+from voussoir.deck.supports import critical_movement, uncertainty
 from voussoir.plot.case_title import thrust_of
 from voussoir.plot.units import digits, force_unit, quantity
+from voussoir.results import Results
 
 #: The passive pressure and the spread of fill are named where they are not 0
 _NONE = ("0", "0.0")
@@ -23,7 +25,12 @@ def assumptions_of(found: Assessment) -> list[str]:
         young = quantity(float(value("material%young") or 0.0), "Pa")
         lines.append(f"Blocks move and strain: Young's modulus {young}.")
     else:
-        lines.append("Blocks are rigid and displacements small; supports do not move.")
+        lines.append("Blocks are rigid and displacements small" + ("." if found.movements else "; supports do not move."))
+        if found.movements:
+            lines.append("The arch keeps its shape while its supports move: their displacements select the forces.")
+    if found.movements:
+        words = "" if found.spread is None else "; they grow in proportion until the collapse"
+        lines.append(f"Prescribed displacements: {', '.join(found.movements)}{words}.")
     tension, cohesion = (float(value(f"joint%{name}") or 0.0) for name in ("tension", "cohesion"))
     joints = "no tension" if tension == 0.0 else f"tension up to {quantity(tension, 'Pa')}"
     joints += f"; friction angle {quantity(float(value('joint%friction_deg') or 0.0), '°')}"
@@ -83,11 +90,26 @@ def numbers_of(found: Assessment) -> list[tuple[str, str, str]]:
     else:
         rows.append(("Geometric safety factor", "any" if math.isinf(safety) else "not known", note + "."))
     rows += factor_rows(found)
-    thrust = thrust_of(found.row, force_unit(found.own))
-    rows.append((
-        "Thrust at the crown", thrust or "not known",
-        "Every horizontal thrust in this range is in equilibrium with the loads given; supports must bear the least."))
+    rows += spread_rows(found)
+    if thrust := thrust_of(found.row, force_unit(found.own)):
+        rows.append((
+            "Thrust at the crown", thrust,
+            "Every horizontal thrust in this range is in equilibrium with the loads given; supports must bear the "
+            "least."))
     return rows
+
+
+def spread_rows(found: Assessment) -> list[tuple[str, str, str]]:
+    """The displacement of the supports at the collapse, where the deck searches for it."""
+    name = "Displacement at collapse"
+    if found.spread is None:
+        return []
+    row = found.spread.case(1)
+    if row["verdict"] == "found":
+        low, high = (" and ".join(critical_movement(found.spread, row[f"critical_{end}"])) for end in ("low", "high"))
+        return [(name, " and ".join(critical_movement(found.spread, row["critical"])),
+                 f"Equilibrium with the {low}; collapse with the {high}.")]
+    return [(name, str(row["verdict"]), "The search found no displacement between search%low and search%high.")]
 
 
 def factor_rows(found: Assessment) -> list[tuple[str, str, str]]:
@@ -122,6 +144,14 @@ def cases_of(found: Assessment) -> list[tuple[str, ...]]:
     heads = ("Load case", f"Live load [k{unit}]", "Verdict", "Load factor [-]", f"Thrust at the crown [k{unit}]")
     dead = "Dead load of masonry" + (" and fill" if found.own.setting("fill%height") else "")
     rows: list[tuple[str, ...]] = [heads, (dead, "0", str(found.dead["verdict"]), "-", thrust_range(found.dead))]
+    if found.movements and found.spread is None:
+        moved = f"{dead}, {', '.join(found.movements)}"
+        rows.append((moved, "0", str(found.row["verdict"]), "-", thrust_range(found.row)))
+    if found.spread is not None and found.spread.case(1)["verdict"] == "found":
+        row = found.spread.case(1)
+        words = f"{dead}, {', '.join(critical_movement(found.spread, row['critical']))}"
+        mode = f"collapses, {row['collapse_mode']}" if row["collapse_mode"] != "none" else "collapses"
+        rows.append((words, "0", mode, "-", "-"))
     if found.factor is None:
         return rows
     live = sum(weight for _, weight in found.axles)
@@ -138,6 +168,20 @@ def cases_of(found: Assessment) -> list[tuple[str, ...]]:
     return rows
 
 
+def spread_verdict(found: Assessment, spread: Results) -> tuple[str, bool]:
+    """The verdict on supports that move until the structure collapses."""
+    row = spread.case(1)
+    dead = {"stable": "is stable", "collapsed": "collapses"}.get(found.dead["verdict"], "is undecided")
+    text = f"The structure {dead} under its dead load."
+    if row["verdict"] == "found":
+        known = uncertainty(row["critical_low"], row["critical_high"])
+        moved = " and the ".join(critical_movement(spread, row["critical"]))
+        text += f" It collapses when the supports move: {moved}{f' ({known})' if known else ''}."
+    else:
+        text += f" The search for the displacement of the supports is {row['verdict']} in its whole range."
+    return text, found.dead["verdict"] != "stable" or row["verdict"] not in ("found", "stable")
+
+
 def thrust_range(row: dict[str, object]) -> str:
     """Least and greatest thrust in thousands."""
     ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
@@ -152,7 +196,13 @@ def verdict_of(found: Assessment) -> tuple[str, bool]:
         "stable": "The structure is stable under the given loads.",
         "collapsed": "The structure collapses under the given loads.",
     }
+    if found.spread is not None:
+        return spread_verdict(found, found.spread)
     text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
+    if found.movements:
+        text = text.replace("under the given loads", f"with the {' and the '.join(found.movements)}")
+        if own["verdict"] == "collapsed" and -1.0 < own["path_time"] < 0.0:
+            text = text.removesuffix(".") + f"; it falls at {100.0 * (1.0 + own['path_time']):.3g} % of that."
     if factor is not None and factor["verdict"] == "found":
         text += f" It collapses when the live loads are multiplied by {digits(factor['critical'])}."
     elif factor is not None and factor["verdict"] == "stable":
