@@ -1,6 +1,9 @@
 !> Remarks on a computed case, printed and written beside its row
 module dda_case_remarks
    use dda_block_system, only : block_system_t
+   use dda_case, only : searched_name
+   use dda_deck, only : deck_t
+   use dda_key_names, only : search_high
    use dda_kinds, only : degree, wp
    use dda_search, only : critical_t, search_t
    use dda_settings, only : overturned, settings_t, verdict
@@ -11,7 +14,7 @@ module dda_case_remarks
    private
 
    public :: change_remark, completed_remark, contact_remark, fall_remark, joined, jump_remark
-   public :: kept_places_remark, path_remark, undecided_remark
+   public :: has_bracket, path_remark, range_remark, undecided_remark
 
    !> Displacement of a moving block over the largest
    real(wp), parameter :: moves = 1.0e-3_wp
@@ -48,7 +51,8 @@ contains
       if (n > most_named) remark = remark//" and others"
    end function fall_remark
 
-   !> Remark on a dynamic run that ends without a collapse because it could not detect one
+   !> Remark on a dynamic run that ends without a collapse although it may hide one: it has no key
+   !> that detects it, or a block has turned far without reaching the angle that counts as collapse
    pure function completed_remark(settings, system) result(remark)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system  !! The blocks at the end
@@ -60,25 +64,42 @@ contains
          remark = "geometry = 'reference' shows no collapse; the largest displacement is " &
             & //short_text(largest_displacement(system, .false.))//" m. " &
             & //"Set geometry = 'current' for large displacements."
-      else if (max(settings%collapse_rotation, settings%collapse_displacement) <= 0.0_wp) then
+      else
          b = maxloc(abs(system%motion(3, :)), dim=1)
-         if (abs(system%motion(3, b)) >= overturned) remark = "block "//to_text(b) &
-            & //" turned by "//short_text(abs(system%motion(3, b))/degree) &
-            & //" degrees; set collapse_rotation_deg or collapse_displacement to detect a collapse"
+         if (abs(system%motion(3, b)) < overturned) return
+         remark = "block "//to_text(b)//" turned by " &
+            & //short_text(abs(system%motion(3, b))/degree)//" degrees"
+         if (settings%collapse_rotation > 0.0_wp) then
+            ! a block that lies flat on its side has turned by 90 degrees, or a little less
+            remark = remark//", less than collapse_rotation_deg = " &
+               & //short_text(settings%collapse_rotation/degree)//": it may have fallen; set 45"
+         else if (settings%collapse_displacement <= 0.0_wp) then
+            remark = remark &
+               & //"; set collapse_rotation_deg or collapse_displacement to detect a collapse"
+         end if
       end if
    end function completed_remark
 
-   !> Remark on a search for displacements of supports that cannot find a collapse
-   pure function kept_places_remark(name, settings) result(remark)
-      character(len=*), intent(in) :: name  !! Name of the searched parameter
+   !> Remark on a search without a collapse: the range of the deck, or why there can be none
+   pure function range_remark(deck, search, settings) result(remark)
+      type(deck_t), intent(in) :: deck
+      type(search_t), intent(in) :: search
       type(settings_t), intent(in) :: settings
       character(len=:), allocatable :: remark
 
       remark = ""
-      if (name == "displacement_factor" .and. .not. settings%current) &
-         & remark = "geometry = 'reference' keeps the shape, so displacements of supports cause " &
-         & //"no collapse. Set geometry = 'current'."
-   end function kept_places_remark
+      if (searched_name(deck) == "displacement_factor" .and. .not. settings%current) then
+         remark = "geometry = 'reference' keeps the shape, so displacements of supports cause " &
+            & //"no collapse. Set geometry = 'current'."
+      else if (.not. deck%value(search_high)%given) then
+         ! a default range covers all values
+      else if (search%low > 0.0_wp) then
+         remark = "no collapse between search%low = "//short_text(search%low) &
+            & //" and search%high = "//short_text(search%high)//"; set them farther apart"
+      else
+         remark = "no collapse up to search%high = "//short_text(search%high)//"; raise it"
+      end if
+   end function range_remark
 
    !> Remark on the path of a static run
    pure function path_remark(outcome) result(remark)
@@ -151,6 +172,13 @@ contains
       end if
    end function change_remark
 
+   !> True if a value that collapses and one that is stable are known
+   pure logical function has_bracket(critical)
+      type(critical_t), intent(in) :: critical
+
+      has_bracket = allocated(critical%fallen) .and. allocated(critical%standing)
+   end function has_bracket
+
    !> Value at which a search is undecided, and the reason; at the upper end of the range a remedy
    pure function undecided_remark(search, critical) result(remark)
       type(search_t), intent(in) :: search
@@ -163,7 +191,7 @@ contains
          if (critical%undecided_at >= search%high) remark = "at search%high = " &
             & //short_text(critical%undecided_at)//": "//critical%reason//"; lower search%high"
       end if
-      if (allocated(critical%fallen) .and. allocated(critical%standing)) remark = remark &
+      if (has_bracket(critical)) remark = remark &
          & //"; collapsed at "//short_text(critical%falls)//", stable at " &
          & //short_text(critical%stands)
    end function undecided_remark

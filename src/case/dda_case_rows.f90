@@ -6,7 +6,7 @@ module dda_case_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
    use dda_case_remarks, only : change_remark, completed_remark, contact_remark, fall_remark, &
-      & joined, jump_remark, kept_places_remark, path_remark, undecided_remark
+      & has_bracket, joined, jump_remark, path_remark, range_remark, undecided_remark
    use dda_deck, only : deck_t, source_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
@@ -190,6 +190,7 @@ contains
          if (critical%verdict == verdict%undecided) &
             & remark = undecided_remark(this%search, critical)
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
+         if (critical%verdict == verdict%undecided) call tell_open_bracket(critical, row)
          if (ends_on_path(critical%standing)) &
             & row%path_time = some_number(critical%standing%outcome%path_time)
          if (critical%limit%known) then
@@ -199,7 +200,7 @@ contains
          if (critical%has_other) remark = "it also collapses at "//short_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
          if (critical%verdict == verdict%stable) remark = joined(remark, &
-            & kept_places_remark(searched_name(this%family%deck), this%scene%settings))
+            & range_remark(this%family%deck, this%search, this%scene%settings))
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
             & remark = joined(remark, change_remark(critical))
          if (allocated(critical%fallen)) &
@@ -224,6 +225,17 @@ contains
       if (outcome%condition > 0.0_wp .and. outcome%condition < huge(1.0_wp)) &
          & row%condition = some_number(outcome%condition)
    end subroutine tell_condition
+
+   !> Fill the columns of a bracket that could not be closed; the critical value stays blank
+   pure subroutine tell_open_bracket(critical, row)
+      type(critical_t), intent(in) :: critical
+      type(result_row_t), intent(inout) :: row
+
+      if (.not. has_bracket(critical)) return
+      row%critical_low = some_number(min(critical%falls, critical%stands))
+      row%critical_high = some_number(max(critical%falls, critical%stands))
+      row%collapses_at = merge("low ", "high", critical%falls < critical%stands)
+   end subroutine tell_open_bracket
 
    !> Fill the columns of a closed bracket. If its ends are at different distances from the value at
    !> which the collapse stops, that value is its middle; its width is at least the rounding error

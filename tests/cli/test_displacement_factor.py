@@ -57,3 +57,12 @@ def test_a_factor_of_nothing_is_refused(tmp_path: Path) -> None:
         done = run_dda("check", "x.nml", cwd=tmp_path)
         assert done.returncode == 2
         assert "displacement_factor needs a prescribed displacement" in done.stderr
+
+
+def test_a_range_without_a_collapse_is_named(tmp_path: Path) -> None:
+    deck = ("&arch half_angle_deg = 60, thickness_ratio = 0.15, voussoirs = 9 /\n&support right_dx = 0.001 /\n"
+            "&joint friction_deg = 40 /\n&analysis geometry = 'current' /\n"
+            "&search parameter = 'displacement_factor', low = 0, high = 20 /\n")
+    (tmp_path / "x.nml").write_text(deck)
+    done = run_dda("run", "x.nml", cwd=tmp_path)
+    assert "no collapse up to search%high = 20; raise it" in done.stdout

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,18 @@ def test_what_still_moves_away_is_undecided(tmp_path: Path) -> None:
     assert "still move away at the end of the run; give a longer duration" in log
 
 
+def test_a_block_that_lies_flat_is_not_said_to_survive(tmp_path: Path) -> None:
+    """It has turned by 90 degrees and not by more: the remark says that this angle hides its fall."""
+    groups = (
+        "&joint friction_deg = 78 /\n&ground pulse = 'rectangular', amplitude = -2.943, duration = 0.6 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 4, steps = 100000, time_step = 0.002,"
+        " unknowns = 3, collapse_rotation_deg = {} /\n")
+    row, log, _ = search(tmp_path, SLENDER, groups.format(95))
+    assert row["verdict"] == "completed"
+    assert "turned by 9" in log and "less than collapse_rotation_deg = 95: it may have fallen; set 45" in log
+    assert search(tmp_path, SLENDER, groups.format(45))[0]["verdict"] == "collapsed"
+
+
 def test_a_run_without_search_says_that_it_collapsed(tmp_path: Path) -> None:
     """One run on either side of the exact amplitude, with its end and the time of the collapse."""
     groups = sine(1.0, 2.0).split("&search")[0]
@@ -151,3 +164,17 @@ def test_the_thickness_that_withstands_a_pulse(tmp_path: Path) -> None:
     (row,) = rows_of(tmp_path / "a" / "results.csv")
     assert row["verdict"] == "found" and row["collapses_at"] == "low" and row["thickness_ratio"] == ""
     assert float(row["critical"]) == pytest.approx(0.15, rel=0.02)
+
+
+def test_an_undecided_search_has_the_bracket_of_its_remark(tmp_path: Path) -> None:
+    """A slender block that hovers upright at the end of its run has neither fallen nor come back."""
+    row, log, status = search(
+        tmp_path, SLENDER,
+        "&joint friction_deg = 78 /\n&ground pulse = 'rectangular', amplitude = -2.943 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 2, steps = 100000, time_step = 0.004,"
+        " unknowns = 3 /\n"
+        "&search parameter = 'ground%duration', low = 0.1, high = 1.0, tolerance = 1e-9 /")
+    assert status == 3 and row["verdict"] == "undecided"
+    ends = [float(word) for word in re.search(r"collapsed at (\S+), stable at (\S+)", log).groups()]
+    assert [float(row["critical_low"]), float(row["critical_high"])] == pytest.approx(sorted(ends), rel=1e-5)
+    assert row["critical"] == ""
