@@ -52,10 +52,11 @@ contains
       real(wp), intent(in) :: scale
       real(wp), allocatable, intent(out) :: row(:, :)
       type(error_t), allocatable, intent(out) :: error
-      integer :: place(3), start, first, last, number, n, header(2)
+      integer :: place(3), start, first, last, number, n, header(2), header_line
 
       allocate (row(3, 64))
       header = [1, 0]
+      header_line = 0
       n = 0
       number = 0
       start = 1
@@ -66,9 +67,14 @@ contains
                continue
             else if (n == 0 .and. .not. begins_with_number(line)) then
                header = [first, last]
+               header_line = number
             else
                if (n == 0) call find_columns(text(header(1):header(2)), column, place, error)
-               if (allocated(error)) exit
+               if (allocated(error)) then
+                  ! names are missing in the header, not in the first row
+                  if (header_line > 0) number = header_line
+                  exit
+               end if
                call make_room(row, n + 1)
                n = n + 1
                call take_row(line, place, scale, row(:, n), error)
@@ -205,8 +211,8 @@ contains
          place(i) = column_of(header, column(i), separator)
          if (place(i) > 0) cycle
          call fatal_error(error, "expected column '"//shown(trim(column(i)))//"', a number from " &
-            & //"1 to "//to_text(most_columns)//" or a name in the header, got none; " &
-            & //"name another")
+            & //"1 to "//to_text(most_columns)//" or a name in the header, got " &
+            & //names_of(header, separator)//"; name another")
          return
       end do
    end subroutine find_columns
@@ -221,6 +227,25 @@ contains
          if (lower_case(field_of(header, column, separator)) == lower_case(name)) return
       end do
    end function column_of
+
+   !> Names in a header for a message; of many the first
+   pure function names_of(header, separator) result(words)
+      character(len=*), intent(in) :: header
+      character, intent(in) :: separator
+      character(len=:), allocatable :: words
+      integer, parameter :: most = 8
+      integer :: k, n
+
+      n = n_columns(header, separator)
+      if (len_trim(header) == 0) n = 0
+      words = "none"
+      do k = 1, min(n, most)
+         if (k == 1) words = ""
+         if (k > 1) words = words//", "
+         words = words//"'"//shown(field_of(header, k, separator))//"'"
+      end do
+      if (n > most) words = words//" and others"
+   end function names_of
 
    !> Number of fields of a line
    pure integer function n_columns(line, separator)
@@ -255,10 +280,21 @@ contains
          if (ok) ok = abs(row(i)) <= largest
          if (ok) cycle
          call fatal_error(error, "expected a number of at most 1e30 in column " &
-            & //to_text(place(i))//", got '"//shown(field_of(line, place(i), separator))//"'")
+            & //to_text(place(i))//", got '"//shown(field_of(line, place(i), separator))//"'" &
+            & //comma_hint(field_of(line, place(i), separator)))
          return
       end do
    end subroutine take_row
+
+   !> Hint for a number with a decimal comma; empty for others
+   pure function comma_hint(field) result(words)
+      character(len=*), intent(in) :: field
+      character(len=:), allocatable :: words
+
+      words = ""
+      if (index(field, ",") > 0 .and. verify(field, "0123456789,+-eE ") == 0) &
+         & words = " (decimals are written with a point)"
+   end function comma_hint
 
    !> Check that time increases
    pure subroutine check_time(time, error)
