@@ -280,8 +280,8 @@ contains
       if (reason == strain_reason%strength) words = "deformable: strain decides which joint "// &
          & "breaks first"
       if (reason == strain_reason%forces) words = "deformable: strain distributes joint forces"
-      if (reason == strain_reason%files) words = "deformable: blocks of a file have materials "// &
-         & "and stress of their own"
+      if (reason == strain_reason%files) words = "deformable: blocks of a file may have "// &
+         & "materials and stress of their own"
       if (reason == strain_reason%displacement) words = "deformable: strain is part of the "// &
          & "displacement that means collapse"
    end function why
