@@ -411,6 +411,12 @@ def test_another_deck_is_found(tmp_path: Path, name: str, old: str, new: str) ->
     assert main(["verify", str(tmp_path / "x"), "--quiet"]) == 1
 
 
+def test_a_folder_without_proofs_is_not_verified(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = run_deck(tmp_path, HEAD + "&analysis mode = 'dynamic', geometry = 'current', duration = 0.01 /\n")
+    assert main(["verify", str(folder)]) == 2
+    assert capsys.readouterr().out.splitlines()[-1] == "no case of 1 has a proof: nothing was verified"
+
+
 def test_what_cannot_be_checked_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(tmp_path)]) == 2
     assert "deck.record" in capsys.readouterr().err
