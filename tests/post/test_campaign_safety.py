@@ -106,6 +106,16 @@ def test_changed_file_makes_another_campaign(tmp_path: Path, scene, settings, ca
     assert new["blocks.csv"] != old["blocks.csv"]
 
 
+def test_another_deck_of_the_same_program_is_named_alone(tmp_path: Path, capsys) -> None:
+    first, second = tmp_path / "first.nml", tmp_path / "second.nml"
+    for deck, value in ((first, 0.1), (second, 0.12)):
+        deck.write_text(f"&arch voussoirs = 8 /\n&sweep parameter = 'thickness_ratio', values = {value}, 0.2 /\n")
+    assert main(["campaign", str(first), "--out", str(tmp_path / "out"), "--quiet"]) == 0
+    assert main(["campaign", str(second), "--out", str(tmp_path / "out"), "--quiet"]) == 2
+    message = capsys.readouterr().err
+    assert "name of the deck" in message and "program" not in message
+
+
 def test_rebuilt_program_makes_another_campaign(tmp_path: Path, monkeypatch, capsys) -> None:
     deck = sweep(tmp_path)
     words = ["campaign", str(deck), "--out", str(tmp_path / "out"), "--quiet"]

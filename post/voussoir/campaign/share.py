@@ -95,11 +95,12 @@ def check_origin(table: Path) -> None:
 
 
 def changed_keys(old: str, new: str) -> str:
-    """What differs between two records: names of keys, "program" for another build, "files" for files of the deck."""
+    """What differs between two records: keys, "program" for another build, "name of the deck", "files" for its files."""
 
     def values(record: str) -> dict[str, list[str]]:
         lines = record.splitlines() or [""]
-        found: dict[str, list[str]] = {"program": lines[:1]}
+        program, _, deck = lines[0].partition(" on ")
+        found: dict[str, list[str]] = {"program": [program], "name of the deck": [deck]}
         name = ""
         for line in lines[1:]:
             if line.startswith("files"):
