@@ -49,9 +49,11 @@ def run(arguments: argparse.Namespace) -> int:
     moving = [number for number in cases if len(pictures_of(read, number)) > 1]
     if not moving or arguments.case and len(moving) < len(cases):
         still = next(number for number in cases if number not in moving)
+        moves = read.case(still)["geometry"] == "current"
+        advice = "" if moves else "&analysis geometry = 'current' / and "
         raise ValueError(
-            f"expected frames of case {still}, got none; give the deck &analysis geometry = "
-            "'current' / and &output frames = 20 /")
+            f"expected frames of case {still}, got none; give the deck "
+            f"{advice}&output frames = 20 /")
     file = arguments.out or arguments.folder / "plots" / "motion.gif"
     check_ending(file)
     file.parent.mkdir(parents=True, exist_ok=True)
