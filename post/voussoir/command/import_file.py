@@ -11,7 +11,7 @@ from typing import Optional
 
 from voussoir.command import plot
 from voussoir.command.options import magnification, whole_number
-from voussoir.dda_program import LEAVE_RESULTS, DdaError, call, path_word
+from voussoir.dda_program import LEAVE_RESULTS, DdaError, call, defaults, find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import ENDINGS, Content, ImportedShape, read_shapes
 from voussoir.files import write_text
@@ -130,6 +130,11 @@ def import_file(arguments: argparse.Namespace) -> _Imported:
         f"{deck}, {name}: {len(blocks.shapes)} blocks, {made.fixed} of them fixed; a unit is {scale:g} m ({whose}); "
         f"chords within {arguments.tolerance:g} m of their arcs")
     made.lines += _said_of(shapes, blocks)
+    try:
+        friction = float(defaults(find_dda())["joint%friction_deg"])
+        made.lines.append(f"assumed: friction angle {friction:g} degrees; change it by &joint friction_deg in {deck}")
+    except (FileNotFoundError, DdaError):  # files are imported without the program, too
+        pass
     if not made.fixed:
         made.advice.append("no block is fixed: put supports on a layer named 'fixed', or give --fixed WORD or --hold N")
     return made

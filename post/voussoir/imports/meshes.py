@@ -24,7 +24,8 @@ def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
     if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.all(abs(points) <= 1e12):
         raise ValueError("expected points of a mesh with two or three numbers within 1e12, got others")
     used: list[tuple[str, np.ndarray, str]] = []
-    for cells, groups in zip(mesh.cells, _groups_of(mesh)):
+    surfaces: list[int] = []  # 0 where not known
+    for cells, groups, entities in zip(mesh.cells, _groups_of(mesh), _surfaces_of(mesh)):
         if cells.type in ("vertex", "line", "line3"):
             notes.left_out.append(f"{len(cells.data)} cells '{cells.type}'")
             continue
@@ -36,7 +37,8 @@ def read_mesh(file: Path, plane: Plane, notes: Notes) -> Found:
                 raise ValueError(f"{words}: expected points from 1 to {len(points)}, got others")
             else:
                 used.append((words, corners, groups[number - 1] if number <= len(groups) else ""))
-    if len(used) > 1:
+                surfaces.append(entities[number - 1] if number <= len(entities) else 0)
+    if len(used) > 1 and (0 in surfaces or len(set(surfaces)) < len(surfaces)):
         notes.warnings.append(
             f"each of the {len(used)} elements is one block; give a stone one polygon, or it breaks at their sides")
     for words, corners, layer in used:
@@ -54,6 +56,12 @@ def _groups_of(mesh: Any) -> list[list[str]]:
     if tags is None:
         return [[] for _ in mesh.cells]
     return [[names.get(int(tag), f"group {int(tag)}" if tag else "") for tag in np.ravel(part)] for part in tags]
+
+
+def _surfaces_of(mesh: Any) -> list[list[int]]:
+    """Surfaces of gmsh that the cells are of, for each piece of the mesh; empty where they are not known."""
+    tags = (getattr(mesh, "cell_data", None) or {}).get("gmsh:geometrical")
+    return [[] for _ in mesh.cells] if tags is None else [[int(tag) for tag in np.ravel(part)] for part in tags]
 
 
 def _mesh_of(file: Path) -> Any:
