@@ -708,3 +708,30 @@ def test_pdf_files_embed_letters_that_can_be_searched(arches, tmp_path: Path) ->
     with house_style():
         (path,) = save(draw_case(arches, 1), tmp_path, "arch", ("pdf",))
     assert b"/Type3" not in path.read_bytes() and b"/CIDFontType2" in path.read_bytes()
+
+
+def test_labels_of_close_axles_leave_their_arrows_free(tmp_path: Path) -> None:
+    run = compute(tmp_path, BRIDGE.replace("0.4, 0.4", "0.7, 0.7").replace("12e3, 12e3, 20e3", "60e3, 70e3, 90e3"))
+    with house_style(8.0, 8.0):
+        figure = draw_case(run, 1, sheet=Sheet(80 / 25.4, title=False))
+    render = renderer_of(figure)
+    axes = figure.axes[0]
+    labels = [text for text in axes.texts if "kN/m" in text.get_text()]
+    arrows = [text.arrow_patch for text in axes.texts if getattr(text, "arrow_patch", None) is not None]
+    assert len(labels) == 3 and len(arrows) == 3
+    for label in labels:
+        box = label.get_window_extent(render)
+        assert not any(box.overlaps(arrow.get_window_extent(render)) for arrow in arrows), label.get_text()
+
+
+def test_a_contour_has_one_label_although_cells_break_it(tmp_path: Path) -> None:
+    from matplotlib import pyplot
+
+    from voussoir.plot.sweep_chart import draw_contours
+
+    field = np.add.outer(np.arange(9.0), np.arange(9.0))
+    field[4, 4] = field[3, 5] = field[5, 3] = np.nan
+    axes = pyplot.figure().subplots()
+    draw_contours(axes, np.arange(9.0), np.arange(9.0), field)
+    words = [text.get_text() for text in axes.texts]
+    assert words and len(words) == len(set(words))

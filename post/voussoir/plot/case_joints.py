@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from voussoir.plot.case_marks import entry
 from voussoir.plot.case_scene import CaseScene
 from voussoir.plot.collapse_picture import MARKS, MEANINGS
-from voussoir.plot.figure_style import INK
+from voussoir.plot.figure_style import INK, SMALL, type_of
 from voussoir.plot.motion import Motion
 from voussoir.plot.sheet import POINTS
 from voussoir.plot.thrust_path import thrust_pairs
@@ -150,7 +150,7 @@ class JointMarks:
             *self.thrust_points().T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2],
             width=0.8 * self.pen / POINTS, units="inches", headwidth=4.5, zorder=4.5)
         words = f"contact forces on the upper block, longest {force_text(largest, self.scene.unit)}"
-        return [entry(words, marker=r"$\uparrow$", markersize=10, color=INK[2])]
+        return [entry(words, marker=r"$\uparrow$", markersize=type_of(SMALL), color=INK[2])]
 
     def draw_states(self, axes: Axes) -> list[Artist]:
         """Draw the lines of joints in the colours of what they do; gives the entries of the legend."""

@@ -56,25 +56,33 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
         if len(source.loads) <= MOST_VALUES:
             values = [force_text(float(np.hypot(*source.loads[number][1]))) for number in chosen]
-            draw_values(axes, tails[chosen], values, color)
+            draw_values(axes, tails[chosen], values, color, (tails, tips))
         if chosen:
-            entries.append(entry(words, marker=r"$\downarrow$", markersize=10, color=color))
+            entries.append(entry(words, marker=r"$\downarrow$", markersize=type_of(SMALL), color=color))
     return entries
 
 
-def draw_values(axes: Axes, places: np.ndarray, values: list[str], color: str) -> None:
-    """Write values beside their places: equal neighbours once, others above those that they would hide."""
+def draw_values(
+    axes: Axes, places: np.ndarray, values: list[str], color: str, arrows: tuple[np.ndarray, np.ndarray]
+) -> None:
+    """Write values beside their places: equal neighbours once, others above values and arrows that they would hide."""
     figure: Any = axes.figure
     size = type_of(SMALL)
     axes.apply_aspect()
     points = axes.transData.transform(places) * POINTS / figure.dpi
-    written: list[tuple[np.ndarray, np.ndarray, str]] = []
+    tails, tips = (axes.transData.transform(ends) * POINTS / figure.dpi for ends in arrows)
+    written: list[tuple[np.ndarray, np.ndarray, str]] = [
+        (np.minimum(tail, tip) - 3.0, np.maximum(tail, tip) + 3.0, "") for tail, tip in zip(tails, tips)]
     for number in np.lexsort((points[:, 1], points[:, 0])):
         value, low = values[number], points[number] + (4.0, 3.0)
         box = np.array(text_size(figure, value, size))
         hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]
         if any(other[2] == value for other in hidden):
             continue
+        left = points[number] + (-4.0 - box[0], 3.0)
+        if any(not other[2] for other in hidden) and not any(
+                np.all((left < other[1]) & (other[0] < left + box)) for other in written):
+            low, hidden = left, []
         while hidden:
             low = np.array([low[0], max(other[1][1] for other in hidden) + 0.5])
             hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]

@@ -44,8 +44,9 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
     others = [name for name in swept_columns(run.cases) if name != x and not follows(run.cases, name, x)]
     groups = groups_of(run.cases, others)
     if len(groups) > MOST_CURVES:
+        other = others[0] if len(others) == 1 else "KEY"
         raise ChartError(
-            f"expected at most {MOST_CURVES} curves, got {len(groups)}; sweep fewer values, or draw --map {key} KEY")
+            f"expected at most {MOST_CURVES} curves, got {len(groups)}; sweep fewer values, or draw --map {key} {other}")
     figure = Picture(figsize=(5.2, 3.7), layout="constrained")
     figure.exact_size = True
     axes = figure.subplots()
@@ -105,7 +106,10 @@ def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, leg
     colors = axes.pcolormesh(along, up, field, shading="nearest", cmap=MAP_COLORS, rasterized=True)
     draw_contours(axes, along, up, field)
     figure.colorbar(colors, ax=axes, label=column_label(run, name))
-    note(axes, int(np.count_nonzero(np.isnan(values_of(run.cases, name)))), len(run.cases), name)
+    lost = np.isnan(values_of(run.cases, name))
+    kinds = [f"{word} {np.count_nonzero(lost & (run.cases['verdict'] == word))}" for word in VERDICTS
+             if name == "critical" and np.any(lost & (run.cases["verdict"] == word))]
+    note(axes, int(np.count_nonzero(lost)), len(run.cases), name, f"grey: {', '.join(kinds)}" if kinds else "grey")
     return figure
 
 
@@ -116,11 +120,18 @@ def draw_contours(axes: Axes, along: np.ndarray, up: np.ndarray, field: np.ndarr
         return
     lines = axes.contour(along, up, np.ma.masked_invalid(field), levels=MOST_CONTOURS, colors="white", linewidths=0.8)
     sides = np.array([np.ptp(along), np.ptp(up)])
-    long = [
-        level for level, paths in zip(lines.levels, lines.allsegs)
-        if any(np.hypot(*(np.diff(path, axis=0) / sides).T).sum() > LABELLED for path in paths)
-    ]
-    axes.clabel(lines, long, fmt="%.3g", fontsize=type_of(TINY))
+    # cells without a value break a contour: its longest piece has the label
+    long, places = [], []
+    for level, paths in zip(lines.levels, lines.allsegs):
+        lengths = [np.hypot(*(np.diff(path, axis=0) / sides).T) for path in paths]
+        longest = max(range(len(paths)), key=lambda piece: lengths[piece].sum(), default=None)
+        if longest is None or not lengths[longest].sum() > LABELLED:
+            continue
+        reached = np.cumsum(lengths[longest])
+        long.append(level)
+        places.append(tuple(paths[longest][1 + int(np.searchsorted(reached, 0.5 * reached[-1]))]))
+    if long:
+        axes.clabel(lines, long, fmt="%.3g", fontsize=type_of(TINY), manual=places)
 
 
 def swept(run: Results, key: str) -> str:
@@ -167,8 +178,8 @@ def column_label(run: Results, column: str) -> str:
     return f"{words} [{unit}]" if unit else words
 
 
-def note(axes: Axes, lost: int, count: int, column: str) -> None:
-    """Write above the axes how many cases have no value."""
+def note(axes: Axes, lost: int, count: int, column: str, kinds: str = "") -> None:
+    """Write above the axes how many cases have no value, and in parentheses which."""
     if lost:
         words = "critical value" if column == "critical" else f"value of {column}"
-        axes.set_title(f"{lost} of {count} cases have no {words}", fontsize=type_of(SMALL), color="#555555")
+        axes.set_title(f"{lost} of {count} cases have no {words}{f' ({kinds})' if kinds else ''}", fontsize=type_of(SMALL), color="#555555")
