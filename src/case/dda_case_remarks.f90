@@ -72,7 +72,7 @@ contains
          if (settings%collapse_rotation > 0.0_wp) then
             ! a block that lies flat on its side has turned by 90 degrees, or a little less
             remark = remark//", less than collapse_rotation_deg = " &
-               & //short_text(settings%collapse_rotation/degree)//": it may have fallen; set 45"
+               & //short_text(settings%collapse_rotation/degree)//": this may be a collapse; set 45"
          else if (settings%collapse_displacement <= 0.0_wp) then
             remark = remark &
                & //"; set collapse_rotation_deg or collapse_displacement to detect a collapse"

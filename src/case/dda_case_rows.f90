@@ -199,9 +199,10 @@ contains
          end if
          if (critical%has_other) remark = "it also collapses at "//short_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
-         ! runs in time say what is between the ends
+         ! a run in time has a remark on the values between the ends
          if (critical%verdict == verdict%stable .and. critical%others == 0) &
-            & remark = joined(remark, range_remark(this%family%deck, this%search, this%scene%settings))
+            & remark = joined(remark, &
+            & range_remark(this%family%deck, this%search, this%scene%settings))
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
             & remark = joined(remark, change_remark(critical))
          if (allocated(critical%fallen)) &

@@ -90,7 +90,7 @@ def test_a_block_that_lies_flat_is_not_said_to_survive(tmp_path: Path) -> None:
         " unknowns = 3, collapse_rotation_deg = {} /\n")
     row, log, _ = search(tmp_path, SLENDER, groups.format(95))
     assert row["verdict"] == "completed"
-    assert "turned by 9" in log and "less than collapse_rotation_deg = 95: it may have fallen; set 45" in log
+    assert "turned by 9" in log and "less than collapse_rotation_deg = 95: this may be a collapse; set 45" in log
     assert search(tmp_path, SLENDER, groups.format(45))[0]["verdict"] == "collapsed"
 
 
