@@ -259,7 +259,8 @@ def test_a_falling_arch_has_hinges_where_it_gapes_and_no_thrust_line(tmp_path: P
 
 
 def test_title_of_a_spread_has_the_displacement_at_collapse(tmp_path: Path) -> None:
-    run = compute(tmp_path, SPREAD + "&search parameter = 'displacement_factor', low = 0, high = 1, tolerance = 1e-2 /\n")
+    search = "&search parameter = 'displacement_factor', low = 0, high = 1, tolerance = 1e-2 /\n"
+    run = compute(tmp_path, SPREAD + search)
     row = run.case(1)
     lines = title_of(row, run).splitlines()
     assert lines[-2].startswith(f"Collapse with the right support {250 * row['critical']:.3g} mm to the right (±")

@@ -25,7 +25,8 @@ def assumptions_of(found: Assessment) -> list[str]:
         young = quantity(float(value("material%young") or 0.0), "Pa")
         lines.append(f"Blocks move and strain: Young's modulus {young}.")
     else:
-        lines.append("Blocks are rigid and displacements small" + ("." if found.movements else "; supports do not move."))
+        lines.append("Blocks are rigid and displacements small"
+                     + ("." if found.movements else "; supports do not move."))
         if found.movements:
             lines.append("The arch keeps its shape while its supports move: their displacements select the forces.")
     if found.movements:

@@ -58,7 +58,8 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
                 zorder=5)
     for each in (axes, below):
         each.axvline(place, color=INK[2], linewidth=pen, linestyle="--")
-    text = f"worst: {place:.3g} m" if worst is not None else f"least: {factor[least]:.3g} at {place:.3g} m"
+    text = f"worst: leftmost axle at {place:.3g} m"
+    text = text if worst is not None else f"least: {factor[least]:.3g} at {place:.3g} m"
     beyond = place > 0.5 * (left + right)
     axes.annotate(
         text, (place, 0.8), xycoords=("data", "axes fraction"), xytext=(-3 if beyond else 3, 0),

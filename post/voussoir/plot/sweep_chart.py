@@ -46,7 +46,8 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
     if len(groups) > MOST_CURVES:
         other = others[0] if len(others) == 1 else "KEY"
         raise ChartError(
-            f"expected at most {MOST_CURVES} curves, got {len(groups)}; sweep fewer values, or draw --map {key} {other}")
+            f"expected at most {MOST_CURVES} curves, got {len(groups)}; sweep fewer values, or draw "
+            f"--map {key} {other}")
     figure = Picture(figsize=(5.2, 3.7), layout="constrained")
     figure.exact_size = True
     axes = figure.subplots()
@@ -182,4 +183,5 @@ def note(axes: Axes, lost: int, count: int, column: str, kinds: str = "") -> Non
     """Write above the axes how many cases have no value, and in parentheses which."""
     if lost:
         words = "critical value" if column == "critical" else f"value of {column}"
-        axes.set_title(f"{lost} of {count} cases have no {words}{f' ({kinds})' if kinds else ''}", fontsize=type_of(SMALL), color="#555555")
+        text = f"{lost} of {count} cases have no {words}" + (f" ({kinds})" if kinds else "")
+        axes.set_title(text, fontsize=type_of(SMALL), color="#555555")

@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if there is none or nothing can be checked."""
+    """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if there is none or no check."""
     try:
         with np.errstate(all="ignore"):  # numbers beyond all bounds keep no law
             found = _check_folder(arguments)
