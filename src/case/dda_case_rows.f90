@@ -199,7 +199,7 @@ contains
          end if
          if (critical%has_other) remark = "it also collapses at "//short_text(critical%other)
          remark = joined(remark, jump_remark(critical%jumps, critical%largest_jump))
-         ! a run in time has a remark on the values between the ends
+         ! a dynamic run has a remark on the values between the ends
          if (critical%verdict == verdict%stable .and. critical%others == 0) &
             & remark = joined(remark, &
             & range_remark(this%family%deck, this%search, this%scene%settings))

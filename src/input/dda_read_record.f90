@@ -232,7 +232,7 @@ contains
    pure function names_of(header, separator) result(words)
       character(len=*), intent(in) :: header
       character, intent(in) :: separator
-      character(len=:), allocatable :: words
+      character(len=:), allocatable :: words  !! Names in quotes, or "none"
       integer, parameter :: most = 8
       integer :: k, n
 
@@ -289,7 +289,7 @@ contains
    !> Hint for a number with a decimal comma; empty for others
    pure function comma_hint(field) result(words)
       character(len=*), intent(in) :: field
-      character(len=:), allocatable :: words
+      character(len=:), allocatable :: words  !! The hint, in parentheses
 
       words = ""
       if (index(field, ",") > 0 .and. verify(field, "0123456789,+-eE ") == 0) &
