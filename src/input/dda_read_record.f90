@@ -288,7 +288,7 @@ contains
 
    !> Hint for a number with a decimal comma; empty for others
    pure function comma_hint(field) result(words)
-      character(len=*), intent(in) :: field
+      character(len=*), intent(in) :: field   !! Field of a line
       character(len=:), allocatable :: words  !! The hint, in parentheses
 
       words = ""

@@ -62,8 +62,6 @@ def check(folder: Path, dda: str) -> str:
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         status = voussoir_main(["verify", str(folder / "x"), "--quiet"])
-    if status == 2 and "no case has a proof" in said.getvalue():
-        return ""
     return "" if status == 0 else f"status {status}: {said.getvalue()[:400]}"
 
 

@@ -73,12 +73,14 @@ def draw_values(
     tails, tips = (axes.transData.transform(ends) * POINTS / figure.dpi for ends in arrows)
     written: list[tuple[np.ndarray, np.ndarray, str]] = [
         (np.minimum(tail, tip) - 3.0, np.maximum(tail, tip) + 3.0, "") for tail, tip in zip(tails, tips)]
+    wanted: list[tuple[np.ndarray, str]] = []
     for number in np.lexsort((points[:, 1], points[:, 0])):
         value, low = values[number], points[number] + (4.0, 3.0)
         box = np.array(text_size(figure, value, size))
         hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]
-        if any(other[2] == value for other in hidden):
+        if any(text == value and np.all(np.abs(low - place) < box) for place, text in wanted):
             continue
+        wanted.append((low, value))
         left = points[number] + (-4.0 - box[0], 3.0)
         if any(not other[2] for other in hidden) and not any(
                 np.all((left < other[1]) & (other[0] < left + box)) for other in written):
