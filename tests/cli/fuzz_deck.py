@@ -146,7 +146,7 @@ def run(command, decks, timeout):
 
 
 def complaint(status, lines, files, others=False):
-    """What the outcome of a run breaks, as text; empty if all is well. Also the number refused.
+    """Rules that the outcome of a run breaks, as text; empty if none. Also the number refused.
 
     With `others` a message may be about another file than these.
     """

@@ -95,7 +95,7 @@ def check_origin(table: Path) -> None:
 
 
 def changed_keys(old: str, new: str) -> str:
-    """What differs between two records: keys, "program" (another build), "name of the deck", "files"."""
+    """Differences between two records: keys, "program" (another build), "name of the deck", "files"."""
 
     def values(record: str) -> dict[str, list[str]]:
         lines = record.splitlines() or [""]

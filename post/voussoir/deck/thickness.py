@@ -72,7 +72,7 @@ def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
 
 
 def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
-    """What a deck says of one of its cases, whose row has what was swept, without live loads and moved supports."""
+    """Groups of a deck for one of its cases, with swept values, without live loads and moved supports."""
     groups: dict[str, Any] = {}
     for name in run.given:
         group, _, key = name.partition("%")

@@ -56,7 +56,7 @@ def roles_of(joints: Table, moved: bool = False) -> np.ndarray:
 
 
 def falling_roles(joints: Table, points_per_metre: float) -> np.ndarray:
-    """What each joint of falling blocks shows: a hinge where it touches at one corner, open where a gap is seen."""
+    """State of each joint of falling blocks: a hinge where it touches at one corner, open where a gap is seen."""
     gaps = np.fmax(joints["opening_intrados"], joints["opening_extrados"]) * points_per_metre
     roles = np.array(np.where(gaps > SEEN_GAP, joints["state"], "none"), dtype=object)
     length = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"])
