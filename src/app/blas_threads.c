@@ -3,11 +3,12 @@
 #include <dlfcn.h>
 #include <stddef.h>
 
-/* Restrict BLAS to one thread: OpenBLAS, MKL and FlexiBLAS */
+/* Restrict BLAS to one thread: OpenBLAS, MKL and FlexiBLAS. An OpenBLAS with OpenMP takes the number
+   of OpenMP at each call, whatever its own is. Parallel regions of the program state theirs */
 void voussoir_set_one_blas_thread(void)
 {
-    static const char *const name[] = {"openblas_set_num_threads", "MKL_Set_Num_Threads",
-                                       "flexiblas_set_num_threads"};
+    static const char *const name[] = {"openblas_set_num_threads", "omp_set_num_threads",
+                                       "MKL_Set_Num_Threads", "flexiblas_set_num_threads"};
     for (size_t i = 0; i < sizeof name / sizeof *name; ++i) {
         void (*set)(int);
         *(void **)&set = dlsym(RTLD_DEFAULT, name[i]);

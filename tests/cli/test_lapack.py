@@ -55,6 +55,23 @@ def test_two_threads_change_no_bit_of_a_wall(tmp_path: Path, case: str) -> None:
     assert run(tmp_path, "one") == run(tmp_path, "two", "--jobs", "2")
 
 
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="counts threads by Linux's /proc")
+def test_one_job_has_one_thread_whatever_openmp_may_take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # OpenBLAS 0.3.26 with OpenMP takes the number of OpenMP at each call
+    monkeypatch.setenv("OMP_NUM_THREADS", "4")
+    write(tmp_path, "path", 8)
+    command = [os.environ["DDA"], "run", "wall.nml", "--quiet"]
+    most = 0
+    with subprocess.Popen(command, cwd=tmp_path) as process:
+        while process.poll() is None:
+            try:
+                most = max(most, len(list(Path(f"/proc/{process.pid}/task").iterdir())))
+            except OSError:
+                break
+    assert process.returncode == 0
+    assert most == 1
+
+
 def other_kernels() -> list[str]:
     """OpenBLAS kernels that this processor can run and that differ in the length of their vectors."""
     flags = Path("/proc/cpuinfo").read_text()
