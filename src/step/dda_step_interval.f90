@@ -238,7 +238,9 @@ contains
       if (.not. settings%duration > 0.0_wp) return
       left = settings%duration - march%time
       ! what many rounded steps leave over is no step of its own
-      if (left > 0.0_wp .and. left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
+      if (.not. left > 0.0_wp .or. left >= march%dt*(2.0_wp - 1.0e-6_wp)) return
+      ! nor is a small rest, in which strain would follow rounding
+      march%dt = merge(left, left/2.0_wp, left < march%dt*(1.0_wp + 1.0e-6_wp))
    end subroutine fit_interval
 
    !> Check that a try has settled, that no block has entered another by what contact forces leave,
