@@ -11,7 +11,7 @@ module dda_curved_motion
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : near, run_t
+   use dda_step_context, only : near, near_gap, run_t
    implicit none
    private
 
@@ -116,7 +116,12 @@ contains
                step%curve(:, j) = 0.0_wp
                step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
             end associate
-            step%state%gap(:, j) = [gap(1:2, j), 0.0_wp] + step%curve(:, j)
+            step%state%gap(:, j) = [gap(1:2, j), 0.0_wp]
+            ! an impact keeps the forces up to it, and what they close in a short step is a speed
+            if (step%ends_at_event) where (abs(gap(1:2, j)) <= near_gap(run%system, &
+               & run%contacts%joint(j)%block)) step%state%gap(1:2, j) = gap(1:2, j) &
+               & *min(1.0_wp, step%dt/run%march%longest)
+            step%state%gap(:, j) = step%state%gap(:, j) + step%curve(:, j)
          end do
       end associate
    end subroutine take_turned_rows
