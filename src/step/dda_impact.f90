@@ -9,6 +9,7 @@
 module dda_impact
    use dda_block_inertia, only : kinetic_energy, packed_velocity
    use dda_contact_types, only : joint_springs_t
+   use dda_friction_cone, only : cone_t
    use dda_kinds, only : wp
    use dda_spring_products, only : add_forces, relative_displacement
    use dda_step_context, only : near_gap, run_t, step_outcome_t
@@ -190,25 +191,91 @@ contains
 
    !> Time at which the first joint that slides begins to slide back, for friction turns with it:
    !> its slip comes to rest under the forces of the last step, and the load on it then exceeds
-   !> friction the other way
+   !> friction the other way. A corner that alone carries its block rolls: there friction takes
+   !> little energy, but carries much between translation and rotation of the block
    pure real(wp) function earliest_reversal(run, acceleration) result(earliest)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: acceleration(:, :)  !! Of gaps and slips: (3, n_joint) [m/s2]
-      real(wp) :: back, least
-      integer :: j
+      real(wp), dimension(3, size(run%contacts%joint)) :: free, translation
+      real(wp) :: back, ease(3, 3), least, now, power, shear
+      real(wp) :: velocity(size(run%step%state%motion, 1), size(run%step%state%motion, 2))
+      integer :: corner(size(run%contacts%joint)), j
 
       earliest = huge(earliest)
       least = event_energy(run)
-      do j = 1, size(run%contacts%joint)
-         associate (slip => run%step%speed(3, j), now => acceleration(3, j))
-            if (.not. abs(run%contacts%force(3, j)) > 0.0_wp) cycle
-            if (abs(run%contacts%force(3, j)*slip)*run%step%dt < 2.0_wp*least) cycle
+      corner = lone_corners(run)
+      velocity = packed_velocity(run%system, size(velocity, 1))
+      ! blocks that turn change slips without a force
+      free = acceleration + 2.0_wp/run%step%dt*(relative_displacement(run%contacts%springs, &
+         & velocity) - run%step%speed)
+      velocity(3:, :) = 0.0_wp
+      translation = relative_displacement(run%contacts%springs, velocity)
+      do j = 1, size(corner)
+         associate (slip => run%step%speed(3, j), force => run%contacts%force(:, j), &
+            & cone => run%contacts%springs%cone(j))
+            ease = mobility(run, merge(3, 2, corner(j) > 0), j)
+            if (corner(j) > 0) then
+               free(:, j) = free(:, j) - matmul(ease, force)
+               call slide(cone, corner(j), ease, free(:, j), sign(1.0_wp, slip), back, shear)
+               call slide(cone, corner(j), ease, free(:, j), -sign(1.0_wp, slip), now, shear)
+               power = shear*abs(translation(3, j))
+            else
+               now = acceleration(3, j)
+               back = now - 2.0_wp*ease(3, 3)*force(3)
+               power = abs(force(3)*slip)
+            end if
+            if (.not. power > 0.0_wp .or. power*run%step%dt < 2.0_wp*least) cycle
             if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(now)*run%step%dt)) cycle
-            back = now - 2.0_wp*ease_of(run, 3, j)*run%contacts%force(3, j)
             if (slip*now < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/now)
          end associate
       end do
    end function earliest_reversal
+
+   !> Slip of a corner that stays on its edge, by friction in a given direction. Its normal force
+   !> keeps the gap: 0 = free + ease (normal, shear), shear = +-(limit + friction normal)
+   pure subroutine slide(cone, k, ease, free, way, acceleration, shear)
+      type(cone_t), intent(in) :: cone
+      integer, intent(in) :: k               !! Number of the contact in its joint
+      real(wp), intent(in) :: ease(3, 3)     !! Mobility of its two blocks [1/kg]
+      real(wp), intent(in) :: free(3)        !! Acceleration without its force [m/s2]
+      real(wp), intent(in) :: way            !! Direction of the friction, 1 or -1
+      real(wp), intent(out) :: acceleration  !! Acceleration of the slip [m/s2]
+      real(wp), intent(out) :: shear         !! Friction; 0 where no force keeps the corner [N/m]
+      real(wp) :: normal
+
+      normal = -(free(k) + way*cone%limit*ease(k, 3))/(ease(k, k) + way*cone%friction*ease(k, 3))
+      shear = 0.0_wp
+      if (normal > 0.0_wp) shear = cone%limit + cone%friction*normal
+      acceleration = free(3) + ease(3, k)*max(0.0_wp, normal) + way*shear*ease(3, 3)
+   end subroutine slide
+
+   !> Contact of each joint that alone carries one of its blocks; 0 where there is none
+   pure function lone_corners(run) result(corner)
+      type(run_t), intent(in) :: run
+      integer :: corner(size(run%contacts%joint))  !! Number of the contact: (n_joint)
+      integer :: e, j, n(size(run%equations%mass, 3)), side
+      logical :: touches(2, size(run%contacts%joint))
+
+      n = 0
+      do j = 1, size(corner)
+         associate (joint => run%contacts%joint(j))
+            touches(:, j) = run%contacts%gap(1:2, j) <= near_gap(run%system, joint%block)
+            touches(joint%n_contact + 1:, j) = .false.
+         end associate
+         do side = 1, 2
+            e = run%contacts%springs%equation(side, j)
+            if (e > 0) n(e) = n(e) + count(touches(:, j))
+         end do
+      end do
+      corner = 0
+      do j = 1, size(corner)
+         do side = 1, 2
+            e = run%contacts%springs%equation(side, j)
+            if (e == 0 .or. count(touches(:, j)) /= 1) cycle
+            if (n(e) == 1) corner(j) = findloc(touches(:, j), .true., dim=1)
+         end do
+      end do
+   end function lone_corners
 
    !> The first impact that is inside a step, by the gaps that the contacts would have at its end
    !> without it
@@ -266,23 +333,40 @@ contains
       fall_energy = sum(run%equations%mass(1, 1, :))*(run%step%slowest_impact/2.0_wp)**2/2.0_wp
    end function fall_energy
 
-   !> Mobility of two blocks at a contact that is hit; shear does not turn blocks that lie on
-   !> one another
+   !> Mobility of two blocks at a contact that is hit [1/kg]
    pure real(wp) function ease_of(run, k, j) result(ease)
       type(run_t), intent(in) :: run
-      integer, intent(in) :: k  !! Number of the contact in the joint, or 3 for shear
+      integer, intent(in) :: k  !! Number of the contact in the joint
       integer, intent(in) :: j  !! Number of the joint
-      integer :: e, i, side
+      real(wp) :: of_joint(3, 3)
 
-      ease = 0.0_wp
+      of_joint = mobility(run, 3, j)
+      ease = of_joint(k, k)
+   end function ease_of
+
+   !> Accelerations of gaps and slip of a joint by unit forces [1/kg]
+   pure function mobility(run, n, j)
+      type(run_t), intent(in) :: run
+      !> Number of unknowns that move: 3, or 2 where shear does not turn blocks that lie on one
+      !> another
+      integer, intent(in) :: n
+      integer, intent(in) :: j  !! Number of the joint
+      real(wp) :: mobility(3, 3)
+      integer :: e, i, k, side
+
+      mobility = 0.0_wp
       do side = 1, 2
          e = run%contacts%springs%equation(side, j)
          if (e == 0) cycle
-         do i = 1, merge(3, 2, k < 3)
-            ease = ease + run%contacts%springs%row(i, k, side, j)**2/run%equations%mass(i, i, e)
+         do i = 1, n
+            associate (row => run%contacts%springs%row(i, :, side, j))
+               do k = 1, 3
+                  mobility(:, k) = mobility(:, k) + row*row(k)/run%equations%mass(i, i, e)
+               end do
+            end associate
          end do
       end do
-   end function ease_of
+   end function mobility
 
    !> Time to cover a distance at constant acceleration
    pure real(wp) function falling_time(way, speed, acceleration)
