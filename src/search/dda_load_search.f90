@@ -278,6 +278,8 @@ contains
       type(critical_t), intent(inout) :: critical
       logical :: falls_left, falls_right, falls_at_once
 
+      if (allocated(right%proof%jump) .and. right%proof%share > 0.0_wp) &
+         & critical%jump = right%proof%jump/right%proof%share
       falls_right = right%end == path_end%collapsed
       falls_left = left%end == path_end%collapsed
       ! where forces balance what acts without the coefficient, it stands there

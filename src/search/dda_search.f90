@@ -68,6 +68,8 @@ module dda_search
       type(scene_t), allocatable :: scene  !! The scene of a value of the coefficient, whichever
       integer :: jumps = 0                 !! Jumps on the loading path, at fixed load
       real(wp) :: largest_jump = 0.0_wp    !! The largest of them [m]
+      !> Where the path to the right jumps in its last leg, over the way to its end: (n)
+      real(wp), allocatable :: jump(:)
       logical :: current = .false.         !! True if the blocks move
       integer :: decisions = 0             !! Number of decisions
       integer :: steps = 0                 !! Steps of all decisions

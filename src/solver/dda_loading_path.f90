@@ -77,8 +77,8 @@ module dda_loading_path
       real(wp) :: reached = 0.0_wp
       !> Joints that changed what they do
       integer :: n_event = 0
-      !> Jumps to another state at the same load
-      integer :: n_jump = 0
+      !> Its length up to each jump to another state at the same load: (n)
+      real(wp), allocatable :: jump(:)
       !> Largest displacement of a jump [m]
       real(wp) :: largest_jump = 0.0_wp
       !> Factorisations
@@ -166,6 +166,7 @@ contains
          path%softness = 0.0_wp
          return
       end if
+      allocate (result%jump(0))
       path%equations%most_factorisations = path%most_factorisations
       call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
          & jump, end)
@@ -191,6 +192,7 @@ contains
       type(path_rate_t) :: way
       real(wp) :: first(3, size(rate%load, 2)), strength
 
+      allocate (result%jump(0))
       path%equations%base%n_factorisation = 0
       path%equations%most_factorisations = path%most_factorisations
       if (.not. path%joints%has_weight) call set_force_unit(path%joints, rate%load)
@@ -222,6 +224,7 @@ contains
          call see_softness(path%joints, path%equations, way%load, state)
          call follow(path, first, way, strength*h_end, state, result)
          result%reached = result%reached/strength
+         result%jump = result%jump/strength
       end if
       if (result%end == path_end%reached) then
          result%reached = h_end
@@ -261,7 +264,7 @@ contains
       width = nudge
       do i = 1, least_patience + patience*size(state%slip)
          if (result%reached >= h_end) return
-         if (result%n_jump > max_jump) exit
+         if (size(result%jump) > max_jump) exit
          call find_rates(path%joints, path%equations, state, way%load, 0.0_wp, rates, found, &
             & way%opening)
          found = found .and. rates%unbalanced <= moves_unbalanced .and. standstill <= max_standstill
@@ -327,7 +330,7 @@ contains
       call nudge_to_balance(path%joints, path%equations, way%load, width, h_end - result%reached, &
          & state, jump, gained, end, way%opening)
       if (end == motion_end%balanced) then
-         result%n_jump = result%n_jump + 1
+         result%jump = [result%jump, result%reached]
          result%largest_jump = max(result%largest_jump, jump%way)
          result%reached = min(h_end, result%reached + gained)
          width = min(width, gained)

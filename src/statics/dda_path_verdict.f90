@@ -175,6 +175,7 @@ contains
          call count_up(result, verdict)
          verdict%station = i - 1
          verdict%share = result%reached
+         verdict%jump = result%jump
       end do
       verdict%state = state
       call conclude(result, verdict)
@@ -203,7 +204,7 @@ contains
       type(graph_verdict_t), intent(inout) :: verdict
 
       verdict%n_event = verdict%n_event + result%n_event
-      verdict%n_jump = verdict%n_jump + result%n_jump
+      verdict%n_jump = verdict%n_jump + size(result%jump)
       verdict%largest_jump = max(verdict%largest_jump, result%largest_jump)
       verdict%n_factorisation = verdict%n_factorisation + result%n_factorisation
    end subroutine count_up

@@ -55,6 +55,7 @@ module dda_scene_graph
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0
       real(wp) :: share = 0.0_wp         !! Likewise
+      real(wp), allocatable :: jump(:)   !! Shares of that leg at which the path jumps: (n)
       integer :: n_jump = 0              !! Jumps on the path
       real(wp) :: largest_jump = 0.0_wp  !! The largest of them [m]
       integer :: n_event = 0             !! Events on the path
