@@ -57,6 +57,16 @@ module dda_compute_case
       logical :: jump_backward = .false.  !! True if the vehicle drives the other way there
    end type least_factor_t
 
+   !> The path of a position
+   type :: trial_t
+      real(wp) :: place = 0.0_wp  !! The position [m]
+      !> Inverse of the factor of the first collapse, or of how far the path was followed
+      real(wp) :: inverse = 0.0_wp
+      !> Inverse of the factor of its first jump, or of its end where it has none
+      real(wp) :: jump = 0.0_wp
+      logical :: falls = .false.  !! True if it ends by a collapse
+   end type trial_t
+
    interface
 
       !> Prove the verdict of a case by limit analysis

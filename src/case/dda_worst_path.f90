@@ -6,6 +6,10 @@
 !> factor, which is nearly as smooth as the loads, may exceed its maximum: at either end, plus its
 !> change per interval. Neighbouring paths may take different branches, so that the factor jumps:
 !> the jump that would reduce the factor most is kept for the log.
+!>
+!> No path falls before the first place at which no rates go on, and up to there it changes little
+!> from position to position. There blocks fall at one position and find balance by a jump at the
+!> next. So positions are tried closely where paths jump before the least factor.
 submodule (dda_compute_case:dda_worst_position) dda_worst_path
    use dda_search, only : critical_t, search_t
    use dda_text, only : short_text
@@ -19,22 +23,15 @@ submodule (dda_compute_case:dda_worst_position) dda_worst_path
    real(wp), parameter :: no_smaller = 1.0e-7_wp
    !> Share of the least factor by which a jump may hide a smaller one without a remark
    real(wp), parameter :: hidden = 1.0e-2_wp
-   !> Least distance of positions over the total size
-   real(wp), parameter :: nearest = 1.0e-7_wp
-
-   !> Positions along a part of the road, from left to right
-   type :: trials_t
-      real(wp), allocatable :: place(:)    !! The positions: (n) [m]
-      real(wp), allocatable :: inverse(:)  !! Inverses of the factors: (n)
-      logical, allocatable :: falls(:)     !! True if the factor is that of a collapse: (n)
-   end type trials_t
+   !> Least distance of positions over the total size, and of those whose paths only jump
+   real(wp), parameter :: nearest = 1.0e-7_wp, close = 5.0e-3_wp
 
 contains
 
    !> Follow the paths of positions along the road
    module procedure follow_road
       type(stretch_t), allocatable :: stretch(:)
-      type(trials_t) :: trials
+      type(trial_t), allocatable :: trial(:)
       real(wp) :: step
       integer :: first, last
 
@@ -44,106 +41,117 @@ contains
       first = 1
       do while (first <= size(stretch) .and. least%factor > 0.0_wp)
          last = last_of_side(stretch, first)
-         call begin_trials(this, stretch(first)%from, stretch(last)%to, step, least, trials)
-         call close_in(this, nearest*bridge%road%size, least, trials)
-         call keep_jump(nearest*bridge%road%size, backward, trials, least)
+         call begin_trials(this, stretch(first)%from, stretch(last)%to, step, least, trial)
+         call close_in(this, bridge%road%size, least, trial)
+         call keep_jump(nearest*bridge%road%size, backward, trial, least)
          first = last + 1
       end do
       this%jump_note = note_of_jump(least)
    end procedure follow_road
 
    !> Try positions on a part of the road with the same fill to lean against
-   pure subroutine begin_trials(this, from, to, step, least, trials)
+   pure subroutine begin_trials(this, from, to, step, least, trial)
       type(case_t), intent(inout) :: this
       real(wp), intent(in) :: from, to  !! Its ends [m]
       real(wp), intent(in) :: step      !! Distance of positions at most [m]
       type(least_factor_t), intent(inout) :: least
-      type(trials_t), intent(out) :: trials
+      !> The paths, from left to right: (n)
+      type(trial_t), allocatable, intent(out) :: trial(:)
       integer :: k, n
 
       n = max(1, ceiling((to - from)/step))
-      trials%place = [(from + (to - from)*real(k, wp)/real(n, wp), k=0, n)]
-      allocate (trials%inverse(n + 1), trials%falls(n + 1))
+      allocate (trial(n + 1))
       do k = 1, n + 1
-         call try_place(this, trials%place(k), least, trials%inverse(k), trials%falls(k))
+         call try_place(this, from + (to - from)*real(k - 1, wp)/real(n, wp), least, trial(k))
       end do
    end subroutine begin_trials
 
    !> Try positions between others until none may have a smaller factor
-   pure subroutine close_in(this, near, least, trials)
+   pure subroutine close_in(this, size_of_road, least, trial)
       type(case_t), intent(inout) :: this
-      real(wp), intent(in) :: near  !! Positions so near are not divided [m]
+      real(wp), intent(in) :: size_of_road  !! Total size [m]
       type(least_factor_t), intent(inout) :: least
-      type(trials_t), intent(inout) :: trials
-      real(wp) :: inverse, middle
+      type(trial_t), allocatable, intent(inout) :: trial(:)
+      type(trial_t) :: middle
       logical, allocatable :: open(:)
-      logical :: falls
       integer :: k
 
       do
-         open = may_hide_more(near, least, trials)
+         open = may_hide_more(size_of_road, least, trial)
          if (.not. (any(open) .and. least%decided .and. least%factor > 0.0_wp)) return
          ! from the right, so that those to the left keep their numbers
          do k = size(open), 1, -1
             if (.not. open(k)) cycle
-            middle = 0.5_wp*(trials%place(k) + trials%place(k + 1))
-            call try_place(this, middle, least, inverse, falls)
-            trials%place = [trials%place(:k), middle, trials%place(k + 1:)]
-            trials%inverse = [trials%inverse(:k), inverse, trials%inverse(k + 1:)]
-            trials%falls = [trials%falls(:k), falls, trials%falls(k + 1:)]
+            call try_place(this, 0.5_wp*(trial(k)%place + trial(k + 1)%place), least, middle)
+            trial = [trial(:k), middle, trial(k + 1:)]
          end do
       end do
    end subroutine close_in
 
-   !> Between which positions and the next there may be a smaller factor than the least so far
-   pure function may_hide_more(near, least, trials) result(open)
-      real(wp), intent(in) :: near
+   !> Intervals in which there may be a smaller factor than the least so far. A factor beyond the
+   !> reach of paths counts as at its end, since paths may end there
+   pure function may_hide_more(size_of_road, least, trial) result(open)
+      real(wp), intent(in) :: size_of_road
       type(least_factor_t), intent(in) :: least
-      type(trials_t), intent(in) :: trials
+      type(trial_t), intent(in) :: trial(:)
       logical, allocatable :: open(:)  !! True for those: (n - 1)
-      real(wp) :: change(size(trials%place) - 1), most
+      real(wp) :: gap(size(trial) - 1), most
+
+      most = (1.0_wp + no_smaller)/least%factor
+      gap = trial(2:)%place - trial(:size(gap))%place
+      open = summit(max(trial%jump, most/reach)) > most .and. (gap > close*size_of_road &
+         & .or. gap > nearest*size_of_road .and. (summit(max(trial%inverse, most/reach)) > most &
+         & .or. summit_of_jumps(trial) > most))
+   end function may_hide_more
+
+   !> Largest inverse factor to expect between each position and the next
+   pure function summit(inverse)
+      real(wp), intent(in) :: inverse(:)         !! The factors: (n)
+      real(wp) :: summit(size(inverse) - 1)
+      real(wp) :: change(size(inverse) - 1)
       integer :: k, n
 
       n = size(change)
-      allocate (open(n))
-      associate (place => trials%place, inverse => trials%inverse)
-         change = abs(inverse(2:) - inverse(:n))
-         do k = 1, n
-            most = max(inverse(k), inverse(k + 1)) + max(jump_of(trials, k), &
-               & usual(change(max(1, k - 1):min(n, k + 1))))
-            open(k) = most > (1.0_wp + no_smaller)/least%factor .and. place(k + 1) - place(k) > near
-         end do
-      end associate
-   end function may_hide_more
+      change = abs(inverse(2:) - inverse(:n))
+      do k = 1, n
+         summit(k) = max(inverse(k), inverse(k + 1)) + usual(change(max(1, k - 1):min(n, k + 1)))
+      end do
+   end function summit
 
-   !> Change of the inverse factor from a collapse to a neighbour with a larger factor; of a
-   !> neighbour whose path was not followed to its end, at least that
-   pure real(wp) function jump_of(trials, k)
-      type(trials_t), intent(in) :: trials
-      integer, intent(in) :: k  !! Number of the position to the left
-
-      associate (pair => trials%inverse(k:k + 1))
-         jump_of = 0.0_wp
-         if (trials%falls(k - 1 + maxloc(pair, dim=1))) jump_of = maxval(pair) - minval(pair)
-      end associate
-   end function jump_of
-
-   !> Keep the jump that leads to the largest inverse factor if it occurs twice
-   pure subroutine keep_jump(near, backward, trials, least)
-      real(wp), intent(in) :: near
-      logical, intent(in) :: backward
-      type(trials_t), intent(in) :: trials
-      type(least_factor_t), intent(inout) :: least
+   !> Largest inverse factor to expect beside a jump from a position to the next: the larger one, if
+   !> it is that of a collapse, plus the jump. Of a neighbour whose path was not followed to its
+   !> end, the jump is at least that
+   pure function summit_of_jumps(trial) result(summit)
+      type(trial_t), intent(in) :: trial(:)
+      real(wp) :: summit(size(trial) - 1)
       integer :: k
 
-      do k = 1, size(trials%place) - 1
-         if (trials%place(k + 1) - trials%place(k) > near) cycle
-         associate (pair => trials%inverse(k:k + 1))
-            if (.not. maxval(pair) + jump_of(trials, k) > least%jump) cycle
-            least%jump = maxval(pair) + jump_of(trials, k)
+      do k = 1, size(summit)
+         associate (pair => trial(k:k + 1)%inverse)
+            summit(k) = maxval(pair)
+            if (trial(k - 1 + maxloc(pair, dim=1))%falls) &
+               & summit(k) = 2.0_wp*maxval(pair) - minval(pair)
+         end associate
+      end do
+   end function summit_of_jumps
+
+   !> Keep the jump that leads to the largest inverse factor if it occurs twice
+   pure subroutine keep_jump(near, backward, trial, least)
+      real(wp), intent(in) :: near
+      logical, intent(in) :: backward
+      type(trial_t), intent(in) :: trial(:)
+      type(least_factor_t), intent(inout) :: least
+      real(wp) :: summit(size(trial) - 1)
+      integer :: k
+
+      summit = summit_of_jumps(trial)
+      do k = 1, size(summit)
+         if (trial(k + 1)%place - trial(k)%place > near .or. .not. summit(k) > least%jump) cycle
+         least%jump = summit(k)
+         associate (pair => trial(k:k + 1)%inverse)
             least%jump_factor = 1.0_wp/[maxval(pair), minval(pair)]
          end associate
-         least%jump_place = trials%place(k)
+         least%jump_place = trial(k)%place
          least%jump_backward = backward
       end do
    end subroutine keep_jump
@@ -193,8 +201,14 @@ contains
       case default
          factor = critical%undecided_at
       end select
-      if (present(inverse)) inverse = 1.0_wp/max(factor, tiny(factor))
-      if (present(falls)) falls = critical%verdict == verdict%found
+      if (present(trial)) then
+         trial%place = place
+         trial%inverse = 1.0_wp/max(factor, tiny(factor))
+         trial%jump = trial%inverse
+         if (allocated(critical%jump)) trial%jump = trial%inverse &
+            & /max(minval([critical%jump, 1.0_wp]), tiny(factor))
+         trial%falls = critical%verdict == verdict%found
+      end if
       if (.not. factor < least%factor) return
       least%factor = factor
       least%place = place

@@ -55,13 +55,11 @@ submodule (dda_compute_case) dda_worst_position
       end subroutine follow_road
 
       !> Follow the loading path of a position
-      pure module subroutine try_place(this, place, least, inverse, falls)
+      pure module subroutine try_place(this, place, least, trial)
          type(case_t), intent(inout) :: this  !! Likewise
          real(wp), intent(in) :: place        !! The position [m]
          type(least_factor_t), intent(inout) :: least
-         !> Inverse of the factor of the first collapse, or of how far the path was followed
-         real(wp), intent(out), optional :: inverse
-         logical, intent(out), optional :: falls  !! True if there is a collapse
+         type(trial_t), intent(out), optional :: trial  !! Its path
       end subroutine try_place
 
    end interface

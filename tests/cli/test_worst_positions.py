@@ -102,6 +102,21 @@ def test_a_jump_of_the_factor_between_positions_is_named(tmp_path: Path) -> None
     assert "jumps with" not in (tmp_path / "x" / "log.txt").read_text()
 
 
+@pytest.mark.parametrize(("seed", "backward", "places"), [
+    (4720013, False, (-2.602, -2.59, -2.577)),
+    (9710222, True, (-8.378, -8.377)),
+])
+def test_positions_whose_paths_fall_early_are_found_between_others(
+        tmp_path: Path, seed: int, backward: bool, places: tuple[float, ...]) -> None:
+    """Bands of a hundredth of the road: their paths jump where those of others jump, and fall."""
+    bridge = random_bridge(seed)
+    (worst,) = run(DDA, tmp_path, "worst", bridge.deck("worst = .true."))
+    sweep = f"&sweep parameter = 'position', values = {', '.join(map(repr, places))} /\n"
+    fixed = run(DDA, tmp_path, "fixed", bridge.deck("position = 0", sweep, backward))
+    assert worst["verdict"] == "found"
+    assert float(worst["critical"]) <= min(float(row["critical"]) for row in fixed) * (1.0 + 1e-6)
+
+
 def test_a_bridge_whose_limits_are_not_found_is_undecided_at_once(tmp_path: Path) -> None:
     """Three spans on piers that crush: where no position has a limit, the road was halved for ever."""
     bridge = random_bridge(70016)
