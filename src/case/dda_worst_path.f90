@@ -189,6 +189,7 @@ contains
       if (least%factor < no_limit .and. reach*least%factor > search%low) &
          & search%high = min(search%high, reach*least%factor)
       search%start = min(search%start, search%high)
+      search%below_limit = search%high < least%limit
       call find_critical(this%family, search, critical)
       select case (critical%verdict)
       case (verdict%found)

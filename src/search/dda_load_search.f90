@@ -216,6 +216,8 @@ contains
       ! gravity and a push across it are gravity that tilts
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
+      side%limit%state = limit_state%unbounded
+      if (search%below_limit) return
       call find_limit(graph, dead, live, tolerance, side%limit%limit_load_t)
       side%limit%known = side%limit%state == limit_state%found
       if (side%limit%state == limit_state%no_dead_equilibrium) side%beyond = dead

@@ -28,6 +28,8 @@ module dda_search
       !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
       logical :: in_time = .false.  !! True if its runs are dynamic
+      !> True if the associated limit of a load coefficient is known to lie beyond the range
+      logical :: below_limit = .false.
       !> True if the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
