@@ -47,6 +47,9 @@ module dda_case
       logical :: misses_worst = .false.
       !> True if it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
+      !> True if the other direction of travel has the same least factor
+      logical :: either_direction = .false.
+      real(wp) :: other_place = 0.0_wp  !! Worst position in that direction [m]
       character(len=:), allocatable :: jump_note  !! Jump of the factor between positions, if any
       type(proof_t) :: proof            !! Proof of the verdict, if tables are written
       real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio

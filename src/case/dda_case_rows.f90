@@ -60,13 +60,30 @@ contains
          row%worst_position = some_number(this%family%deck%value(vehicle_position)%number)
          row%worst_direction = merge("backward", "forward ", this%drives_backward)
          remark = joined(remark, trim(merge("dead loads collapse", "least load factor  ", &
-            & row%verdict == "collapsed"))//" with the leftmost axle at "//short_text( &
-            & row%worst_position%value)//" m, driving "//trim(row%worst_direction)//this%jump_note)
+            & row%verdict == "collapsed"))//position_words(this, row)//this%jump_note)
       end if
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
    end subroutine tell_case
+
+   !> Worst position and direction of a vehicle, in words
+   pure function position_words(this, row) result(words)
+      type(case_t), intent(in) :: this
+      type(result_row_t), intent(in) :: row
+      character(len=:), allocatable :: words
+
+      words = " with the leftmost axle at "//short_text(row%worst_position%value)//" m"
+      if (.not. this%either_direction) then
+         words = words//", driving "//trim(row%worst_direction)
+      else if (abs(this%other_place - row%worst_position%value) > 0.0_wp) then
+         words = " in either direction,"//words//" ("//trim(row%worst_direction)//") or " &
+            & //short_text(this%other_place)//" m (" &
+            & //trim(merge("forward ", "backward", this%drives_backward))//")"
+      else
+         words = words//", in either direction"
+      end if
+   end function position_words
 
    !> Fill the columns of the proof
    pure subroutine tell_proof(proof, row)

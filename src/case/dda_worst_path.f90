@@ -216,4 +216,25 @@ contains
       least%decided = critical%verdict /= verdict%undecided
    end procedure try_place
 
+   !> Try the mirrored position of a bridge of equal halves, with the vehicle turned round. A
+   !> vehicle that is its own mirror image stands at the same position in both directions
+   module procedure try_other_direction
+      type(least_factor_t) :: other
+      type(trial_t) :: trial
+
+      associate (deck => this%family%deck)
+         this%either_direction = is_symmetric(deck)
+         this%other_place = least%place
+         if (this%either_direction .or. .not. least%factor > 0.0_wp) return
+         if (.not. least%backward) call turn_round(deck)
+         ! the length of the vehicle is the same in both directions
+         this%other_place = sum(bridge%road%reach + bridge%scene%origin(1)) - least%place &
+            & - maxval(bridge%vehicle%offset)
+         call try_place(this, this%other_place, other, trial)
+         if (.not. least%backward) call turn_round(deck)
+         this%either_direction = abs(trial%inverse*least%factor - 1.0_wp) &
+            & <= max(no_smaller, this%search%tolerance)
+      end associate
+   end procedure try_other_direction
+
 end submodule dda_worst_path

@@ -12,8 +12,7 @@ submodule (dda_compute_case) dda_worst_position
    use dda_deck_scene, only : deck_scene
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, live_total, press_side, side_changes
-   use dda_key_names, only : analysis_flow, fill_group, vehicle_axles, vehicle_both_directions, &
-      & vehicle_position, vehicle_spacings
+   use dda_key_names, only : analysis_flow, fill_group, vehicle_both_directions, vehicle_position
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, can_follow, full_loads, knows_no_order, &
       & with_coefficient
@@ -21,7 +20,8 @@ submodule (dda_compute_case) dda_worst_position
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
    use dda_submatrices, only : point_load
-   use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
+   use dda_vehicle, only : axle_loads, is_symmetric, passages, road_of, road_t, turn_round, &
+      & vehicle_of, vehicle_t
    implicit none
 
    !> Offset of an axle beside a passage, and resolution of the worst position, over the total size
@@ -62,6 +62,13 @@ submodule (dda_compute_case) dda_worst_position
          type(trial_t), intent(out), optional :: trial  !! Its path
       end subroutine try_place
 
+      !> Compare the least factor with that of the mirrored position in the other direction
+      pure module subroutine try_other_direction(this, bridge, least)
+         type(case_t), intent(inout) :: this  !! Likewise
+         type(bridge_t), intent(in) :: bridge
+         type(least_factor_t), intent(in) :: least
+      end subroutine try_other_direction
+
    end interface
 
 contains
@@ -99,6 +106,8 @@ contains
          this%has_worst = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
          if (.not. this%has_worst) least = least_factor_t(place=before)
          this%drives_backward = least%backward
+         if (this%has_worst .and. deck%value(vehicle_both_directions)%flag) &
+            & call try_other_direction(this, bridge, least)
          if (least%backward) call turn_round(deck)
          call put_vehicle(least%place, deck)
       end associate
@@ -180,28 +189,6 @@ contains
          last = last + 1
       end do
    end function last_of_side
-
-   !> True if the vehicle of a deck is its own mirror image
-   pure logical function is_symmetric(deck)
-      type(deck_t), intent(in) :: deck
-
-      associate (axle => deck%value(vehicle_axles)%numbers, &
-         & spacing => deck%value(vehicle_spacings)%numbers)
-         is_symmetric = .not. (any(abs(axle - axle(size(axle):1:-1)) > 0.0_wp) &
-            & .or. any(abs(spacing - spacing(size(spacing):1:-1)) > 0.0_wp))
-      end associate
-   end function is_symmetric
-
-   !> Turn the vehicle of a deck round
-   pure subroutine turn_round(deck)
-      type(deck_t), intent(inout) :: deck
-
-      associate (axle => deck%value(vehicle_axles)%numbers, &
-         & spacing => deck%value(vehicle_spacings)%numbers)
-         axle = axle(size(axle):1:-1)
-         spacing = spacing(size(spacing):1:-1)
-      end associate
-   end subroutine turn_round
 
    !> Put the vehicle of a deck at a position
    pure subroutine put_vehicle(place, deck)

@@ -10,7 +10,7 @@ module dda_vehicle
    implicit none
    private
 
-   public :: road_t, vehicle_t, axle_loads, passages, road_of, vehicle_of
+   public :: road_t, vehicle_t, axle_loads, is_symmetric, passages, road_of, turn_round, vehicle_of
 
    !> A vehicle
    type :: vehicle_t
@@ -64,6 +64,28 @@ contains
       vehicle%spread = fill%spread
       vehicle%surface = fill%surface
    end function vehicle_of
+
+   !> True if the vehicle of a deck is its own mirror image
+   pure logical function is_symmetric(deck)
+      type(deck_t), intent(in) :: deck
+
+      associate (axle => deck%value(vehicle_axles)%numbers, &
+         & spacing => deck%value(vehicle_spacings)%numbers)
+         is_symmetric = .not. (any(abs(axle - axle(size(axle):1:-1)) > 0.0_wp) &
+            & .or. any(abs(spacing - spacing(size(spacing):1:-1)) > 0.0_wp))
+      end associate
+   end function is_symmetric
+
+   !> Turn the vehicle of a deck round
+   pure subroutine turn_round(deck)
+      type(deck_t), intent(inout) :: deck
+
+      associate (axle => deck%value(vehicle_axles)%numbers, &
+         & spacing => deck%value(vehicle_spacings)%numbers)
+         axle = axle(size(axle):1:-1)
+         spacing = spacing(size(spacing):1:-1)
+      end associate
+   end subroutine turn_round
 
    !> Edges that may carry axles
    pure type(road_t) function road_of(system) result(road)

@@ -69,6 +69,28 @@ def test_the_log_names_position_and_direction(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("flow", ["coulomb", "associated"])
+def test_equal_directions_of_a_symmetric_bridge_are_both_named(tmp_path: Path, flow: str) -> None:
+    """By decks of both fixed positions; a bridge that is higher on its right has one direction only."""
+    groups = STEPPED.groups.replace(", right_rise = 2.5", "")
+    bridge = Bridge(groups, STEPPED.axles, STEPPED.spacings, STEPPED.length, flow)
+    row = row_of(tmp_path, bridge.deck("worst = .true."))
+    said = r"in either direction, with the leftmost axle at (\S+) m \((\w+)\) or (\S+) m \((\w+)\)"
+    place, way, other, turned = re.search(said, (tmp_path / "x" / "log.txt").read_text()).groups()
+    assert way == row["worst_direction"] and {way, turned} == {"forward", "backward"}
+    assert float(place) + float(other) == pytest.approx(-2.5, abs=2e-5)
+    for at, direction in ((place, way), (other, turned)):
+        fixed = row_of(tmp_path, bridge.deck(f"position = {at}", backward=direction == "backward"))
+        assert float(fixed["critical"]) == pytest.approx(float(row["critical"]), rel=1e-5)
+    row_of(tmp_path, bridge.deck("worst = .true., both_directions = .false."))
+    assert "driving forward" in (tmp_path / "x" / "log.txt").read_text()
+
+
+def test_equal_axles_stand_at_one_position_in_either_direction(tmp_path: Path) -> None:
+    row_of(tmp_path, Bridge(STEPPED.groups, [40e3, 40e3], [2.5], 0.3, "coulomb").deck("worst = .true."))
+    assert re.search(r"leftmost axle at \S+ m, in either direction", (tmp_path / "x" / "log.txt").read_text())
+
+
+@pytest.mark.parametrize("flow", ["coulomb", "associated"])
 def test_dead_loads_that_fall_with_the_vehicle_on_one_side_collapse(tmp_path: Path, flow: str) -> None:
     bridge = Bridge(LEANING.groups, LEANING.axles, LEANING.spacings, LEANING.length, flow)
     row = row_of(tmp_path, bridge.deck("worst = .true."))
