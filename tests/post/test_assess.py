@@ -13,7 +13,7 @@ pytest.importorskip("matplotlib")
 from voussoir.deck import assessment
 from voussoir.deck.run import run as run_deck
 from voussoir.plot.assess_drawing import axle_groups, draw_scheme
-from voussoir.plot.assess_text import assumptions_of, cases_of
+from voussoir.plot.assess_text import assumptions_of, cases_of, numbers_of
 from voussoir.plot.case_scene import scene_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.command.main import main
@@ -47,6 +47,31 @@ def test_the_page_holds_what_a_client_asks(tmp_path: Path) -> None:
     assert "A bridge &amp; its &lt;axle&gt;" in page
     assert hashlib.sha256(deck.read_bytes()).hexdigest() in page
     assert float(re.search(SAFETY, page)[1]) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "words"),
+    [
+        ("axles = 40e3", r"with the leftmost axle here, in either direction\."),
+        ("axles = 40e3, 60e3, spacings = 1.8",
+         r"leftmost axle here, driving (\w+); it is the same at (\S+) m, driving (\w+)\."),
+        ("axles = 40e3, 60e3, spacings = 1.8, both_directions = .false.", r"leftmost axle here, driving forward\."),
+    ],
+)
+def test_directions_of_equal_load_factor_are_both_on_the_page(tmp_path: Path, vehicle: str, words: str) -> None:
+    deck = tmp_path / "bridge.nml"
+    deck.write_text(BRIDGE.replace("axles = 40e3", vehicle))
+    found = re.search(words, " ".join(assess_numbers(deck)))
+    assert found
+    if found.groups():
+        own = assessment.assess(deck.read_text(), deck)
+        assert {found[1], found[3]} == {"forward", "backward"}
+        assert float(found[2]) == pytest.approx(-own.place - 1.8, abs=6e-3)
+
+
+def assess_numbers(deck: Path) -> list[str]:
+    """Meanings of the numbers of a deck."""
+    return [meaning for _, _, meaning in numbers_of(assessment.assess(deck.read_text(), deck))]
 
 
 def test_an_arch_that_falls_is_said_to(tmp_path: Path) -> None:
@@ -232,6 +257,18 @@ def test_positions_without_a_factor_have_a_mark_that_says_why(tmp_path: Path) ->
     marked = {line.get_label(): list(line.get_xdata()) for line in axes.lines if not line.get_label().startswith("_")}
     still = [row["position"] for row in run.cases.rows() if row["verdict"] == "stable"]
     assert still and marked["no multiple collapses it"] == still
+
+
+def test_the_chart_of_positions_has_axles_and_the_other_direction() -> None:
+    deck = (
+        "&arch shape = 'segmental', span = 6, rise = 1.5, thickness = 0.4, voussoirs = 21 /\n"
+        "&fill height = 0.3, unit_weight = 20e3 /\n&vehicle axles = 40e3, 60e3, spacings = 1.8 /\n"
+        "&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = -3.4, 1.6 /\n")
+    run = run_deck(deck)
+    axes, below = draw_positions(run, run.cases, -3.4, axles=[(-3.4, 40e3), (-1.6, 60e3)], other=(2.9, 1.6)).axes
+    assert "other direction: 2.9 at 1.6 m" in [text.get_text() for text in axes.texts]
+    top = max(y for shape in scene_of(run, 1).shapes(0.0) for _, y in shape)
+    assert [text.xy for text in below.texts] == [(-3.4, pytest.approx(top + 0.3)), (-1.6, pytest.approx(top + 0.3))]
 
 
 #: An arch whose right support moves

@@ -82,6 +82,8 @@ def test_no_position_in_either_direction_is_worse_than_the_worst(tmp_path: Path,
     turned = Vehicle("turned", LORRY.axles[::-1], LORRY.spacings[::-1], 1.8, 0.3, 0.3)
     one_way = [pass_over(deck, each, both=False, count=count, gap=1.5).factor for each in (LORRY, turned)]
     assert (worst.factor, worst.opposite) == pytest.approx(tuple(sorted(one_way)), rel=1e-8)
+    # the bridge is symmetric
+    assert worst.opposite_place == pytest.approx(mirrored, abs=1e-5)
 
 
 def test_a_second_vehicle_near_by_changes_the_factor_and_the_worst_gap_counts(tmp_path: Path) -> None:

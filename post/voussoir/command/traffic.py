@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 #: Heads of the table, and the columns of traffic.csv
 HEADS = ("vehicle", "weight [kN]", "width [m]", "load [kN/m]", "load factor", "position [m]", "direction", "opposite")
 COLUMNS = (
-    "vehicle,weight_kN,effective_width_m,load_kN_per_m,load_factor,verdict,position_m,direction,opposite_load_factor")
+    "vehicle,weight_kN,effective_width_m,load_kN_per_m,load_factor,verdict,position_m,direction,opposite_load_factor,"
+    "opposite_position_m")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -89,7 +90,9 @@ def run(arguments: argparse.Namespace) -> int:
         if cases is not None and "found" in cases["verdict"]:
             with house_style(arguments.font, arguments.min_font):
                 place = worst.found.place
-                figure = draw_positions(worst.found.own, cases, None if math.isnan(place) else place, sheet)
+                other = (worst.opposite, worst.opposite_place) if math.isfinite(worst.opposite_place) else None
+                figure = draw_positions(
+                    worst.found.own, cases, None if math.isnan(place) else place, sheet, worst.found.axles, other)
                 files += save(figure, out, stem, tuple(arguments.format))
     files.append(write_text(out / "traffic.csv", "\n".join(everything) + "\n"))
     widths = [max(len(row[place]) for row in rows) for place in range(len(HEADS))]
@@ -124,5 +127,5 @@ def csv_of(passage: Passage) -> str:
     numbers = [total, passage.width, total / passage.width, passage.factor]
     cells = ["" if math.isnan(number) else repr(number) for number in numbers]
     place = "" if math.isnan(passage.found.place) else repr(float(passage.found.place))
-    other = "" if math.isnan(passage.opposite) else repr(passage.opposite)
-    return ",".join([name, *cells, str(row.get("verdict", "")), place, str(row.get("worst_direction", "")), other])
+    others = ["" if math.isnan(number) else repr(number) for number in (passage.opposite, passage.opposite_place)]
+    return ",".join([name, *cells, str(row.get("verdict", "")), place, str(row.get("worst_direction", "")), *others])

@@ -15,6 +15,7 @@ from voussoir.deck.run import run as run_deck
 from voussoir.deck.supports import FACTOR, displacements, movement
 from voussoir.deck.text import deck_text, merged
 from voussoir.deck.thickness import dead_groups, thickness_safety
+from voussoir.files import read_text
 from voussoir.results import Results, Table
 
 Row = dict[str, Any]
@@ -30,6 +31,8 @@ _LIST = re.compile(r"(\blist\s*=\s*)('[^']*'|\"[^\"]*\")", re.IGNORECASE)
 _SPREAD = re.compile(
     r"&search\b[^/]*?\bparameter\s*=\s*['\"](support%|load%)?(displacement_factor|(left|right)_(dx|dy|rotation_deg))",
     re.IGNORECASE)
+#: Remark of a search whose load factor is the same in both directions of travel
+_EITHER = re.compile(r"in either direction(?:, with the leftmost axle at \S+ m \(\w+\) or (\S+) m)?")
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
@@ -58,6 +61,14 @@ class Assessment:
     def place(self) -> float:
         """The worst position [m], NaN where none is sought."""
         return math.nan if self.factor is None else float(self.factor.get("worst_position", math.nan))
+
+    @property
+    def other_place(self) -> float:
+        """The worst position in the other direction [m], NaN where the load factor is larger there."""
+        if self.found is None or self.place != self.found.case(1)["worst_position"]:
+            return math.nan
+        remark = _EITHER.search(read_text(self.found.folder / "log.txt"))
+        return math.nan if remark is None else float(remark[1] or self.place)
 
     @property
     def movements(self) -> list[str]:

@@ -58,6 +58,7 @@ class Passage:
     text: str  #: The deck that was computed
     found: Assessment  #: Its worst position, its factor, and the factors along the road
     opposite: float = math.nan  #: Least load factor of the better direction of travel, NaN where only one is tried
+    opposite_place: float = math.nan  #: The worst position in that direction [m], NaN where there is none
 
     @property
     def factor(self) -> float:
@@ -148,11 +149,12 @@ def pass_over(
     if not both:
         return passage
     if (vehicle.axles, vehicle.spacings) == (vehicle.axles[::-1], vehicle.spacings[::-1]):
-        return replace(passage, opposite=passage.factor)
+        return replace(passage, opposite=passage.factor, opposite_place=found.place)
     if (found.factor or {}).get("worst_direction") != "backward":
         keys |= replace(vehicle, axles=vehicle.axles[::-1], spacings=vehicle.spacings[::-1]).keys(count, gap)
     other = {"vehicle": keys | {"worst": True, "both_directions": False}, "search": {"parameter": "load_factor"}}
-    return replace(passage, opposite=factor_of(run_deck(bare + deck_text(other)).case(1)))
+    row = run_deck(bare + deck_text(other)).case(1)
+    return replace(passage, opposite=factor_of(row), opposite_place=float(row["worst_position"]))
 
 
 def _limited_width(bare: str, keys: dict[str, Any], rule: str, barrel: float) -> float | None:

@@ -89,7 +89,7 @@ def figures_of(found: Assessment) -> list[str]:
         cases = found.positions
         if cases is not None and "found" in cases["verdict"]:
             place = found.place
-            chart = draw_positions(found.own, cases, None if place != place else place, sheet)
+            chart = draw_positions(found.own, cases, None if place != place else place, sheet, found.axles)
             parts.append(figure_of(chart, "Position of the vehicle", _POSITIONS[slides(found.own)]))
         falls = found.movements and found.row["verdict"] == "collapsed"
         words = "Collapse" if falls else "Thrust under the loads given"

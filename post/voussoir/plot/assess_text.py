@@ -133,10 +133,19 @@ def factor_rows(found: Assessment) -> list[tuple[str, str, str]]:
             "Load factor by limit analysis", digits(high) if same else f"{digits(low)} to {digits(high)}",
             "Certified for joints that open as they slide; real joints may collapse below it."))
     if not math.isnan(found.place):
-        rows.append((
-            "Worst position", quantity(found.place, "m"),
-            f"The load factor is least with the leftmost axle here, driving {factor['worst_direction']}."))
+        rows.append(("Worst position", quantity(found.place, "m"), position_of(found, factor["worst_direction"])))
     return rows
+
+
+def position_of(found: Assessment, way: str) -> str:
+    """The meaning of the worst position, and that of the other direction if the load factor is the same there."""
+    least, other = "The load factor is least with the leftmost axle here", found.other_place
+    if math.isnan(other):
+        return f"{least}, driving {way}."
+    if other == found.place:
+        return f"{least}, in either direction."
+    turned = "forward" if way == "backward" else "backward"
+    return f"{least}, driving {way}; it is the same at {quantity(other, 'm')}, driving {turned}."
 
 
 def cases_of(found: Assessment) -> list[tuple[str, ...]]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir.plot.case_picture import draw_blocks, draw_supports
@@ -15,6 +18,10 @@ from voussoir.results import Results, Table
 HEADROOM = 6.0
 #: Height of the diagram, least and greatest height of the blocks, over the width
 HEIGHT, LOWEST, HIGHEST = 0.5, 0.1, 0.55
+#: Height of the arrows of axles, over that of the blocks and the fill
+AXLES = 0.35
+#: Colour of the other direction of travel
+DARK = "#555555"
 #: Cases without a factor in the diagram, by their verdicts
 _OTHERS = {
     "stable": ("^", "white", 0.97, "no multiple collapses it"),
@@ -22,10 +29,15 @@ _OTHERS = {
 }
 
 
-def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet: Sheet = Sheet()) -> Figure:
+def draw_positions(
+    run: Results, cases: Table, worst: float | None = None, sheet: Sheet = Sheet(),
+    axles: Sequence[tuple[float, float]] = (), other: tuple[float, float] | None = None
+) -> Figure:
     """Draw the load factor against the position of the leftmost axle, and the blocks of case 1 below it.
 
     A case without a factor has a mark that says why; the worst position is by default that of the least factor [m].
+    Axles, by place [m] and weight [N/m], stand above the blocks. `other` has load factor and worst position of the
+    other direction of travel.
     """
     cases = cases.take(np.argsort(cases["position"], kind="stable"))
     place_of = cases["position"]
@@ -36,7 +48,10 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
     shapes = scene.shapes(0.0)
     corners = np.vstack([*shapes, *(block.corners for block in scene.supports)])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    left, right = min(low[0], place_of.min()), max(high[0], place_of.max())
+    left = min([low[0], place_of.min(), *(at for at, _ in axles)])
+    right = max([high[0], place_of.max(), *(at for at, _ in axles)])
+    road = float(high[1]) + float(run.setting("fill%height") or 0.0)
+    high[1] = road + (AXLES * (road - low[1]) if axles else 0.0)
     # as wide as the diagram, and as high as that makes them
     tall = float(np.clip(0.85 * (high[1] - low[1]) / (right - left), LOWEST, HIGHEST))
     width, pen = sheet.width, (sheet.width / WIDTH) ** 0.5
@@ -60,11 +75,12 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
         each.axvline(place, color=INK[2], linewidth=pen, linestyle="--")
     text = f"worst: leftmost axle at {place:.3g} m"
     text = text if worst is not None else f"least: {factor[least]:.3g} at {place:.3g} m"
-    beyond = place > 0.5 * (left + right)
-    axes.annotate(
-        text, (place, 0.8), xycoords=("data", "axes fraction"), xytext=(-3 if beyond else 3, 0),
-        ha="right" if beyond else "left", textcoords="offset points", color=INK[2], fontsize=type_of(SMALL),
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8})
+    middle = 0.5 * (left + right)
+    note_place(axes, (place, 0.8), text, INK[2], place > middle)
+    if other is not None:
+        axes.axvline(other[1], color=DARK, linewidth=pen, linestyle=":")
+        words = f"other direction: {other[0]:.3g} at {other[1]:.3g} m"
+        note_place(axes, (other[1], 0.67), words, DARK, other[1] > middle)
     axes.set_ylim(0.0, top)
     axes.set_ylabel("load factor [-]")
     if sheet.legend and axes.get_legend_handles_labels()[0]:
@@ -72,6 +88,10 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
                     handletextpad=0.2, columnspacing=1.0)
     draw_supports(below, [block.corners for block in scene.supports], pen)
     draw_blocks(below, scene, shapes, (), pen)
+    for at, _ in axles:
+        tip = {"arrowstyle": "-|>", "color": INK[2], "linewidth": 1.2 * pen, "shrinkA": 0, "shrinkB": 0,
+               "mutation_scale": 7.0 * pen}
+        below.annotate("", (at, road), (at, high[1]), arrowprops=tip)
     below.set_ylim(low[1], high[1] + 0.05 * (high[1] - low[1]))
     below.set_xlim(left, right)
     below.set_yticks([])
@@ -79,3 +99,11 @@ def draw_positions(run: Results, cases: Table, worst: float | None = None, sheet
     below.spines["left"].set_visible(False)
     below.set_xlabel("position of the leftmost axle [m]")
     return figure
+
+
+def note_place(axes: Axes, place: tuple[float, float], words: str, color: str, leftwards: bool) -> None:
+    """Write words beside a vertical line, at its abscissa [m] and a share of the height, to its left or right."""
+    axes.annotate(
+        words, place, xycoords=("data", "axes fraction"), xytext=(-3 if leftwards else 3, 0),
+        ha="right" if leftwards else "left", textcoords="offset points", color=color, fontsize=type_of(SMALL),
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.8})
