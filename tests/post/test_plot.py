@@ -13,11 +13,13 @@ np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+from matplotlib.colors import to_hex  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.case_joints import roles_of, thrust_points  # noqa: E402
+from voussoir.plot.case_marks import LIVE  # noqa: E402
 from voussoir.plot.case_picture import draw_case, row_with_safety  # noqa: E402
 from voussoir.plot.case_scene import scene_of  # noqa: E402
 from voussoir.plot.case_title import title_of  # noqa: E402
@@ -723,6 +725,24 @@ def test_labels_of_close_axles_leave_their_arrows_free(tmp_path: Path) -> None:
     for label in labels:
         box = label.get_window_extent(render)
         assert not any(box.overlaps(arrow.get_window_extent(render)) for arrow in arrows), label.get_text()
+
+
+def test_values_of_flat_loads_stand_behind_their_arrows(tmp_path: Path) -> None:
+    (tmp_path / "w.blocks").write_text(
+        "block fixed\n-2 -1\n3 -1\n3 0\n-2 0\nblock\n0 0\n1 0\n1 2\n0 2\nlive 0 0.5 9e3 0\nlive 1 1.5 -1e3 0\n")
+    run = compute(
+        tmp_path, "&scene kind = 'blocks', geometry = 'w.blocks' /\n&search parameter = 'load_factor' /\n")
+    with house_style(8.0):
+        figure = draw_case(run, 1, sheet=Sheet(80 / 25.4))
+        figure.draw_without_rendering()
+    axes, render = figure.axes[0], renderer_of(figure)
+    found = {text.get_text(): text.get_window_extent(render) for text in axes.texts if "kN/m" in text.get_text()}
+    drawn = [text.arrow_patch for text in axes.texts if getattr(text, "arrow_patch", None)]
+    ends = [patch.get_window_extent(render) for patch in drawn if to_hex(patch.get_edgecolor()) == LIVE]
+    left, right = sorted(ends, key=lambda box: box.x0)
+    assert found["9 kN/m"].x1 < left.x0 and found["1 kN/m"].x0 > right.x1
+    for label, arrow in (("9 kN/m", left), ("1 kN/m", right)):
+        assert arrow.y0 < found[label].y1 and found[label].y0 < arrow.y1
 
 
 def test_a_contour_has_one_label_although_cells_break_it(tmp_path: Path) -> None:

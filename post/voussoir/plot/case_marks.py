@@ -56,27 +56,30 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
         if len(source.loads) <= MOST_VALUES:
             values = [force_text(float(np.hypot(*source.loads[number][1]))) for number in chosen]
-            draw_values(axes, tails[chosen], values, color, (tails, tips))
+            draw_values(axes, chosen, values, color, (tails, tips))
         if chosen:
             entries.append(entry(words, marker=r"$\downarrow$", markersize=type_of(SMALL), color=color))
     return entries
 
 
 def draw_values(
-    axes: Axes, places: np.ndarray, values: list[str], color: str, arrows: tuple[np.ndarray, np.ndarray]
+    axes: Axes, chosen: list[int], values: list[str], color: str, arrows: tuple[np.ndarray, np.ndarray]
 ) -> None:
-    """Write values beside their places: equal neighbours once, others above values and arrows that they would hide."""
+    """Write values of arrows: behind flat ones, beside others, equal neighbours once, above what they would hide."""
     figure: Any = axes.figure
     size = type_of(SMALL)
     axes.apply_aspect()
-    points = axes.transData.transform(places) * POINTS / figure.dpi
     tails, tips = (axes.transData.transform(ends) * POINTS / figure.dpi for ends in arrows)
+    points, way = tails[chosen], (tips - tails)[chosen]
+    places = arrows[0][chosen]
     written: list[tuple[np.ndarray, np.ndarray, str]] = [
         (np.minimum(tail, tip) - 3.0, np.maximum(tail, tip) + 3.0, "") for tail, tip in zip(tails, tips)]
     wanted: list[tuple[np.ndarray, str]] = []
     for number in np.lexsort((points[:, 1], points[:, 0])):
         value, low = values[number], points[number] + (4.0, 3.0)
         box = np.array(text_size(figure, value, size))
+        if abs(way[number, 0]) > abs(way[number, 1]):
+            low = points[number] + (-4.0 - box[0] if way[number, 0] > 0.0 else 4.0, -0.5 * box[1])
         hidden = [other for other in written if np.all((low < other[1]) & (other[0] < low + box))]
         if any(text == value and np.all(np.abs(low - place) < box) for place, text in wanted):
             continue
