@@ -274,24 +274,23 @@ contains
       logical, intent(in) :: lower              !! True if those above the diagonal are omitted
       real(wp), intent(in) :: share(below, *)
       real(wp), intent(inout) :: panel(height, *)    !! The panel
-      integer :: c, first, i, j, last, length, r
+      integer :: c, first, i, j, last(size(row)), length, r
 
+      last = size(row)
+      do i = size(row) - 1, 1, -1
+         last(i) = merge(last(i + 1), i, row(i + 1) == row(i) + 1)
+      end do
       do j = 1, size(column)
          first = merge(j, 1, lower)
          do while (first <= size(row))
-            last = first
-            do while (last < size(row))
-               if (row(last + 1) /= row(last) + 1) exit
-               last = last + 1
-            end do
-            length = nd*(last + 1 - first)
+            length = nd*(last(first) + 1 - first)
             r = nd*row(first)
             i = nd*(first - 1)
             do c = 1, nd
                panel(r + 1:r + length, nd*column(j) + c) = share(i + 1:i + length, nd*(j - 1) + c) &
                   & + panel(r + 1:r + length, nd*column(j) + c)
             end do
-            first = last + 1
+            first = last(first) + 1
          end do
       end do
    end subroutine add_share
