@@ -209,7 +209,7 @@ contains
       else
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(graph, springs%length, motion, rate)
-         call part_openings(graph, springs, real(motion, rk), rate)
+         if (size(springs%strip) > 0) call part_openings(graph, springs, real(motion, rk), rate)
       end if
    end subroutine solve_springs
 
