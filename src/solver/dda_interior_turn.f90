@@ -238,16 +238,15 @@ contains
    end function aimed_product
 
    !> Change of x that a correction aims at on the rays of a joint
-   pure function change_of_aim(path, wish, point, turn, dx, j) result(change)
+   pure function change_of_aim(path, wish, point, turn, j) result(change)
       type(load_path_t), intent(in) :: path
       type(centring_t), intent(in) :: wish
       type(interior_point_t), intent(in) :: point
-      type(turn_t), intent(in) :: turn         !! Has the direction of s before, and the aim
-      real(wp), intent(in) :: dx(n_side)       !! The direction of x before
+      type(turn_t), intent(in) :: turn         !! Has the direction before, and its aim
       integer, intent(in) :: j                 !! Number of the joint
       real(wp) :: change(n_side)
 
-      associate (x => point%x(:, j), s => point%s(:, j), ds => turn%ds(:, j))
+      associate (x => point%x(:, j), s => point%s(:, j), dx => turn%dx(:, j), ds => turn%ds(:, j))
          select case (wish%kind)
          case (centring%equal)
             change = (wish%product - dx*ds)/s
@@ -272,7 +271,8 @@ contains
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
-      real(wp) :: change(n_side), dx(n_side, size(turn%dx, 2)), more(n_side, 2, size(springs%strip))
+      real(wp), dimension(n_side, size(turn%dx, 2)) :: change, dx
+      real(wp) :: more(n_side, 2, size(springs%strip)), other(n_side)
       real(wp) :: dv(3, 0:graph%n_block), dfactor, share, steps(2, n_share)
       integer :: i, j, best
 
@@ -280,7 +280,8 @@ contains
       dv = turn%dv
       dfactor = turn%dfactor
       do j = 1, size(dx, 2)
-         turn%dx(:, j) = dx(:, j) + change_of_aim(path, wish, point, turn, dx(:, j), j) &
+         change(:, j) = change_of_aim(path, wish, point, turn, j)
+         turn%dx(:, j) = dx(:, j) + change(:, j) &
             & *(1.0_wp - path%compliance*springs%stiffness(:, j))
       end do
       call see_yielding(springs, dx, turn, more)
@@ -289,9 +290,9 @@ contains
       call add_yielding(springs, more, turn)
       ! the rates are not needed any more and make room for what s would change by
       do j = 1, size(dx, 2)
-         change = turn%dx(:, j) - dx(:, j)
+         other = turn%dx(:, j) - dx(:, j)
          turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*turn%rate(:, j)
-         turn%rate(:, j) = turn%ds(:, j) + path%compliance*change &
+         turn%rate(:, j) = turn%ds(:, j) + path%compliance*other &
             & + (1.0_wp - path%compliance*springs%stiffness(:, j))*turn%rate(:, j)
       end do
       steps = steps_of_shares(path, point, turn, dx)
@@ -301,10 +302,7 @@ contains
       end do
       reach = steps(:, best)
       share = real(best, wp)/real(n_share, wp)
-      do j = 1, size(dx, 2)
-         turn%aim(:, j) = turn%aim(:, j) &
-            & + share*change_of_aim(path, wish, point, turn, dx(:, j), j)
-      end do
+      turn%aim = turn%aim + share*change
       call take_share(size(dx), 1.0_wp - share, dx, turn%dx)
       call take_share(size(dx), share, turn%rate, turn%ds)
       call take_share(size(dv), 1.0_wp - share, dv, turn%dv)
