@@ -137,15 +137,17 @@ contains
       real(wp), intent(out) :: beyond        !! Rounding error of the digits
       logical, intent(out) :: known          !! True if the digits were found
       real(wp) :: high, low, product, rest
+      integer :: k
+      real(wp), parameter :: power(0:22) = [(10.0_wp**k, k=0, 22)]
 
       digits = 0
       beyond = 0.0_wp
       exponent = floor(log10(max(value, tiny(value))))
       known = exponent <= 16 .and. exponent >= 16 - 44
       if (.not. known) return
-      high = 10.0_wp**min(16 - exponent, 22)
+      high = power(min(16 - exponent, 22))
       low = 0.0_wp
-      if (16 - exponent > 22) call exact_product(1.0e22_wp, 10.0_wp**(-6 - exponent), high, low)
+      if (16 - exponent > 22) call exact_product(1.0e22_wp, power(-6 - exponent), high, low)
       call exact_product(value, high, product, rest)
       rest = rest + value*low
       ! above 2**53 the product is an integer; its rounding error decides the last digit, except in
@@ -251,13 +253,13 @@ contains
       character(len=*), intent(inout) :: text
       integer, intent(inout) :: n
       character(len=20) :: digits
+      integer(int64), parameter :: power(5) = 10_int64**[16, 8, 4, 2, 1]
       integer(int64) :: rest
-      integer :: n_digits, whole
+      integer :: i, n_digits, whole
 
       rest = number
-      do while (rest > 9)
-         if (mod(rest, 10_int64) /= 0) exit
-         rest = rest/10_int64
+      do i = 1, 5
+         if (mod(rest, power(i)) == 0 .and. rest > 9) rest = rest/power(i)
       end do
       call put_digits(rest, digits, n_digits)
       if (exponent < 0 .and. exponent > -5) then
@@ -285,13 +287,11 @@ contains
    !> Number of decimal digits of an integer
    pure integer function count_digits(number)
       integer(int64), intent(in) :: number  !! The integer, not negative
-      integer(int64) :: rest
+      integer :: k
+      integer(int64), parameter :: power(18) = [(10_int64**k, k=1, 18)]
 
-      rest = number
-      count_digits = 1
-      do while (rest > 9)
-         rest = rest/10_int64
-         count_digits = count_digits + 1
+      do count_digits = 1, 18
+         if (number < power(count_digits)) exit
       end do
    end function count_digits
 
@@ -300,19 +300,16 @@ contains
       integer(int64), intent(in) :: number
       character(len=20), intent(out) :: digits  !! The digits, left-aligned, followed by zeros
       integer, intent(out) :: n                 !! Number of digits
-      character(len=20) :: right
       integer(int64) :: rest
       integer :: i
 
+      n = count_digits(number)
+      digits = "00000000000000000000"
       rest = number
-      do i = len(right), 1, -1
-         right(i:i) = achar(iachar("0") + int(mod(rest, 10_int64)))
+      do i = n, 1, -1
+         digits(i:i) = achar(iachar("0") + int(mod(rest, 10_int64)))
          rest = rest/10_int64
-         if (rest == 0) exit
       end do
-      n = len(right) - i + 1
-      digits = repeat("0", len(digits))
-      digits(:n) = right(i:)
    end subroutine put_digits
 
    !> Decimal text of an integer
@@ -353,7 +350,8 @@ contains
          longer(:lines%length) = lines%text(:lines%length)
          call move_alloc(longer, lines%text)
       end if
-      lines%text(lines%length + 1:room) = line//new_line("a")
+      lines%text(lines%length + 1:room - 1) = line
+      lines%text(room:room) = new_line("a")
       lines%length = room
    end subroutine add_line
 
