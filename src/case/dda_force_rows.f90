@@ -154,9 +154,8 @@ contains
       do j = 1, n
          associate (joint => proof%scene%contacts%joint(j), &
             & place => joint_place(proof%scene%system, proof%scene%contacts, j))
-            call add_line(rows, start//"contact,"//to_text(joint%block(1))//"," &
-               & //to_text(joint%block(2))//","//fields([place%point(:, 1) &
-               & + proof%scene%origin, place%point(:, joint%n_contact) &
+            call add_line(rows, start//"contact,"//fields([real(joint%block, wp), &
+               & place%point(:, 1) + proof%scene%origin, place%point(:, joint%n_contact) &
                & + proof%scene%origin, proof%force(:, j)]))
          end associate
       end do

@@ -144,8 +144,8 @@ contains
          common = to_text(number)//","//to_text(b)//","//trim(blocks%state(b))//","
          do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
             if (allocated(blocks%displacement)) then
-               call add_line(rows, common//to_text(v - blocks%first_vertex(b) + 1)//"," &
-                  & //fields(blocks%corner(:, v))//","//fields(blocks%displacement(:, v)))
+               call add_line(rows, common//fields([real(v - blocks%first_vertex(b) + 1, wp), &
+                  & blocks%corner(:, v), blocks%displacement(:, v)]))
             else
                call add_line(rows, common//to_text(v - blocks%first_vertex(b) + 1)//"," &
                   & //fields(blocks%corner(:, v))//",,")
@@ -248,13 +248,11 @@ contains
       type(joint_row_t), intent(in) :: row
       character(len=:), allocatable :: line
 
-      line = to_text(row%number)//","//to_text(row%joint)//"," &
-         & //number_fields([row%angle_deg])//"," &
-         & //fields([row%intrados, row%extrados, row%normal_force, row%shear_force])//"," &
-         & //number_fields([row%eccentricity_ratio])//","//to_text(row%opening_intrados)//"," &
-         & //number_fields([row%opening_extrados])//","//to_text(row%slip)//","//trim(row%state) &
-         & //","//to_text(row%block(1))//","//to_text(row%block(2))//"," &
-         & //fields([row%point, row%force])//","//trim(row%mechanism)//"," &
+      line = number_fields([some_number(real([row%number, row%joint], wp)), row%angle_deg, &
+         & some_number([row%intrados, row%extrados, row%normal_force, row%shear_force]), &
+         & row%eccentricity_ratio, some_number(row%opening_intrados), row%opening_extrados, &
+         & some_number(row%slip)])//","//trim(row%state)//"," &
+         & //fields([real(row%block, wp), row%point, row%force])//","//trim(row%mechanism)//"," &
          & //number_fields(row%slides)
    end function joint_line
 
