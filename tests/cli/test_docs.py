@@ -136,7 +136,7 @@ def run_console(block: Block, folder: Path, shell: dict[str, str]) -> str:
     all_printed = ""
     for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
         command, _, expected = part.partition("\n")
-        while command.count('"') % 2:  # an argument of several lines
+        while command.count('"') % 2 or command.endswith("\\"):  # several lines
             line, _, expected = expected.partition("\n")
             command += "\n" + line
         printed = run_script(command, folder, shell)
@@ -146,8 +146,8 @@ def run_console(block: Block, folder: Path, shell: dict[str, str]) -> str:
 
 
 def check_messages(block: Block, folder: Path) -> None:
-    """A deck and the message about it; a comment alone stands for a deck that is not there."""
-    *deck, message = block.text.rstrip("\n").split("\n")
+    """A deck and the message about it, which may go on in indented lines; a comment stands for no deck."""
+    *deck, message = re.sub("\n {4}", " ", block.text.rstrip("\n")).split("\n")
     name = message.split(":")[0]
     if not deck[0].startswith("!"):
         (folder / name).write_text("\n".join(deck) + "\n")
