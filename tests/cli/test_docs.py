@@ -96,7 +96,7 @@ def blocks_of(page: Path) -> list[Block]:
 
 def installs(block: Block) -> bool:
     """Whether all commands of a block install packages or build."""
-    return all(INSTALL.match(line) for line in block.text.splitlines() if line.strip())
+    return all(INSTALL.match(line) for line in block.text.replace("\\\n", "").splitlines() if line.strip())
 
 
 def prepare(folder: Path) -> dict[str, str]:
