@@ -25,8 +25,9 @@ module dda_graph_report
 contains
 
    !> Openings, slips and faces of the joints in a mechanism. Under the associated rule a joint that
-   !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
-   !> on the loading path is open whatever it does in the end
+   !> slides opens by its friction; what it opens beyond that is a hinge. A joint that crushes turns
+   !> about the edge of its strip: one corner opens, and both press. A corner that has opened on the
+   !> loading path is open whatever it does in the end
    pure subroutine show_mechanism(settings, system, verdict, contacts)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -35,7 +36,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(joint_graph_t) :: graph
       real(wp), allocatable :: rate(:, :)
-      real(wp) :: dilatancy, least, share
+      real(wp) :: dilatancy, least, pressed, share
       integer :: j
 
       call scene_graph(settings, system, contacts, graph)
@@ -56,7 +57,13 @@ contains
       do j = 1, size(contacts%joint)
          dilatancy = 0.0_wp
          if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
-         contacts%face(j)%open = rate(1:2, j) - dilatancy > max(least, share*contacts%force(1:2, j))
+         pressed = 0.0_wp
+         if (allocated(graph%crush)) then
+            if (graph%crush(j) < huge(1.0_wp)) &
+               & pressed = sum(contacts%force(1:2, j))**2/(2.0_wp*graph%crush(j))
+         end if
+         contacts%face(j)%open = rate(1:2, j) - dilatancy &
+            & > max(least, share*(contacts%force(1:2, j) - pressed))
          if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
             & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
          if (contacts%joint(j)%n_contact == 1) contacts%face(j)%open(2) = .true.
@@ -66,8 +73,8 @@ contains
          contacts%gap(:, j) = merge(rate(:, j), 0.0_wp, [contacts%face(j)%open, &
             & contacts%face(j)%slip /= 0])
          ! interior points leave a trace of force there
-         where (contacts%face(j)%open) contacts%force(1:2, j) = 0.0_wp
-         if (all(contacts%face(j)%open)) contacts%force(3, j) = 0.0_wp
+         where (contacts%face(j)%open) contacts%force(1:2, j) = pressed
+         if (all(contacts%face(j)%open)) contacts%force(:, j) = 0.0_wp
       end do
    end subroutine show_mechanism
 

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import run_dda
+from dda_command import rows_of, run_dda
 from test_live_loads import SEARCH, rows
 
 ASSOCIATED = "&analysis flow = 'associated' /\n"
@@ -38,6 +38,18 @@ def test_a_block_turns_over_about_the_strip_that_bears_it(tmp_path: Path, streng
     exact = 2.0 * (1.0 - 2.0 / strength) / 2.0 / 1.5
     assert low <= exact * (1 + 1e-12) and exact * (1 - 1e-12) <= high
     assert high - low <= 1e-10 * exact + 1e-11
+
+
+@pytest.mark.parametrize("flow", ["associated", "coulomb"])
+@pytest.mark.parametrize("strength", [2.1, 3.0, 5.0, 1e3])
+def test_a_joint_that_crushes_is_a_hinge_of_the_mechanism(tmp_path: Path, strength: float, flow: str) -> None:
+    """The block turns about the edge of the strip: the mechanism is a rotation at any strength."""
+    deck = f"&joint friction_deg = 85 /\n&analysis flow = '{flow}' /\n" + SEARCH + material(strength)
+    (row,) = rows(tmp_path, deck, BLOCK + "live 0 1.5 1 0\n")
+    assert (row["verdict"], row["collapse_mode"], float(row["sliding_share"])) == ("found", "rotational", 0.0)
+    (joint,) = rows_of(tmp_path / "x" / "joints.csv")
+    assert joint["mechanism"] == ("hinge_intrados" if float(joint["x_intrados"]) == 1.0 else "hinge_extrados")
+    assert float(joint["normal_force"]) == pytest.approx(2.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("place", [0.5, 0.6, 0.7, 0.9])
