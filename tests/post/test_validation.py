@@ -133,7 +133,7 @@ def test_command_writes_table_and_page(tmp_path: Path, capsys) -> None:
     assert float(rows[0]["error_2"]) < 1e-12
     page = (tmp_path / "out" / "validation.md").read_text()
     assert "2 decks, 8 values, **0 missed**" in page
-    assert "### Stack of ten cubes\n\nDeck: [`stack`](../input/benchmarks/stack.nml).\nExact: weight above." in page
+    assert "### Stack of ten cubes\n\n[`stack`](../input/benchmarks/stack.nml).\nExact: weight above." in page
     assert "| normal force of joint 1 [N/m] | 250000 | 250000 |" in page
 
 

@@ -16,6 +16,16 @@ Measure = Callable[[Outcome], float]
 _STORED = ("kinetic", "elastic", "contact", "gravity")
 
 
+def result(column: str) -> Callable[[Outcome], float | str]:
+    """Measure of a column of results.csv, a number or a word."""
+
+    def measure(outcome: Outcome) -> float | str:
+        text = outcome.rows("results")[0][column]
+        return text if text.isalpha() else float(text)
+
+    return measure
+
+
 def end(axis: int, point: int = 1) -> Measure:
     """Measure of a displacement at the end [m]."""
     return lambda outcome: float(outcome.end(point)[axis])

@@ -33,6 +33,7 @@ class Scene:
     settings: tuple[str, ...] = ()  #: Values of --set
     rate: bool = False  #: Whether it is run again in shorter steps
     slow: bool = False  #: Whether one run takes longer than two seconds
+    after: str = ""  #: Benchmark from whose end it continues
 
     @property
     def has_lean_plan(self) -> bool:

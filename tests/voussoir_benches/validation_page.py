@@ -29,6 +29,8 @@ HEADS = {
     "buttresses_2_stand": "Semicircle on buttresses 2 R high",
     "buttresses_3_stand": "Semicircle on buttresses 3 R high",
     "arch_pulse_100": "Arch of seven voussoirs in rectangular pulses",
+    "bounce_first": "Rebounds of two runs, the second from the end of the first",
+    "worst_rings_2": "Arches of rings under an axle at its worst position",
 }
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
 
@@ -45,9 +47,9 @@ Problems with exact answers, one entry per problem: model, input, exact value an
   errors below 1e-9.
 - **Sketch**: fixed blocks dark, movable blocks light, small displacements and mechanisms enlarged and dashed.
 - **Plot**: displacement of the monitoring point against time, u solid and v dashed; or computed against exact
-  values, where the dashed line is the exact answer. Single critical values have their mechanism in the sketch.
-- **Current**: the same deck with `--set analysis%geometry=current`, that is, large displacements and deformable
-  blocks. Its error includes the elastic shift.
+  values, where the dashed line is exact. Single critical values have their mechanism in the sketch.
+- **Current**: the same deck with `--set analysis%geometry=current` (large displacements, deformable blocks). Its
+  error includes the elastic shift.
 """
 
 _TAIL = """
@@ -172,14 +174,14 @@ def _entry(lines: list[Line], titles: Mapping[str, str]) -> list[str]:
     exact = f"Exact: {lines[0].scene.note}.{_accepted(plain, moved.values())}"
     first = lines[0].scene.benchmark
     if len(decks) == 1:
-        about = [f"### {titles[first]}", "", f"Deck: {links[first]}.", exact]
+        about = [f"### {titles[first]}", "", f"{links[first]}.", exact]
     else:
         listed = [f"- {link}:\n  {titles[deck]}" for deck, link in links.items()]
         about = [f"### {HEADS.get(first, titles[first])}", "", *listed, "", exact]
     if lines[0].shapes:
         about += ["", f"![{lines[0].scene.benchmark}]({SKETCHES}/{lines[0].scene.benchmark}.svg)"]
         if _plot(lines):
-            about.append(f"![result of {lines[0].scene.benchmark}]({SKETCHES}/{lines[0].scene.benchmark}_result.svg)")
+            about.append(f"![{lines[0].scene.benchmark}_result]({SKETCHES}/{lines[0].scene.benchmark}_result.svg)")
     return ["", *about, "", *markdown(list(columns), "l" * len(columns), cells)]
 
 

@@ -78,7 +78,11 @@ def run_scene(decks: Path, scene: Scene, halvings: int) -> list[Line]:
     track = np.empty((3, 0))
     for k in range(1 + (halvings if scene.rate else 0)):
         with tempfile.TemporaryDirectory() as folder:
-            finished = run_deck(deck, Path(folder), settings=[*scene.settings, *_step(deck, k)])
+            settings = [*scene.settings, *_step(deck, k)]
+            if scene.after:
+                begun = run_deck(decks / f"{scene.after}.nml", Path(folder) / "begun").folder
+                settings.append(f"analysis%restart='{begun.resolve() / 'case_1.restart'}'")
+            finished = run_deck(deck, Path(folder), settings=settings)
             if finished.status != 0:
                 raise DdaError(finished.message or f"dda run ended with status {finished.status}", finished.status or 3)
             outcomes = {case: Outcome(finished.folder, case) for case in {check.case for check in checks}}
