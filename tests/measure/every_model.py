@@ -48,8 +48,11 @@ def is_used(key: str, mode: str, geometry: str) -> bool:
     return mode in USED.get(key, (mode,))
 
 
-def variant(text: str, folder: Path, mode: str, geometry: str, quick: bool) -> str:
+def variant(text: str, source: Path, mode: str, geometry: str, quick: bool) -> str:
     """A deck with another mode and geometry, and all that it can write."""
+    folder = source.resolve().parent
+    blocks = source.with_suffix(".blocks")
+    has_stages = blocks.exists() and re.search(r"^(remove|add) ", blocks.read_text(), re.M) is not None
     groups = [(name, dict(KEY.findall(body))) for name, body in GROUP.findall(re.sub(r"^!.*$", "", text, flags=re.M))]
     own: dict[str, str] = {}
     kept = []
@@ -76,7 +79,8 @@ def variant(text: str, folder: Path, mode: str, geometry: str, quick: bool) -> s
     steps = {"static": 400, "dynamic": 30 if quick else 100, "limerick": 100 if quick else 500}[mode]
     kept.append(("analysis", own | {"mode": f"'{mode}'", "geometry": f"'{geometry}'", "steps": str(steps)}))
     kept.append(("output", {"blocks": "T"} | ({"condition": "T"} if mode != "limerick" else {})
-                 | ({"energy": "T", "restart": "T"} if mode == "dynamic" else {})
+                 | ({"restart": "T"} if mode == "dynamic" else {})
+                 | ({"energy": "T"} if mode == "dynamic" and not has_stages else {})
                  | ({"frames": "3"} if geometry == "current" and mode != "limerick" else {})))
     return "".join(f"&{name} {', '.join(f'{key} = {value}' for key, value in keys.items())} /\n" for name, keys in kept)
 
@@ -123,7 +127,7 @@ def main() -> int:
             kind = re.search(r"kind *= *'(\w+)'", text)
             for mode, geometry in allowed_models(args.dda, kind[1] if kind else "arch"):
                 deck = Path(folder) / f"{source.stem}_{mode}_{geometry}.nml"
-                deck.write_text(variant(text, source.resolve().parent, mode, geometry, args.quick))
+                deck.write_text(variant(text, source, mode, geometry, args.quick))
                 decks.append((deck, is_own(text, mode, geometry)))
         for (deck, _), wrong in zip(decks, pool.map(lambda one: finding(args.dda, *one, args.quick), decks)):
             if not wrong:

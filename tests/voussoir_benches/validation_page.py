@@ -55,14 +55,14 @@ Problems with exact answers, one entry per problem: model, input, exact value an
 _TAIL = """
 ## Convergence rates
 
-- Free flight is exact at any step. Bounces with restitution are exact too, since a step ends at each impact.
-- Rocking converges with second order, also without restitution. Housner's blocks are rigid; the decks use a modulus
-  of 5e12 Pa, since 5e9 Pa changes the period by 1e-5. Errors below 1e-6 may not decrease, because they depend on
-  where the reversal lies in its step.
-- `upslope_returns`: the error arises in the step of the reversal, and varies with its position in the step.
-- A rate near 0 means an error that does not depend on the step. On slopes it is the elastic strain under
-  self-weight, 1e-7 to 1e-6 m. Newmark's decks sample the ground motion every 4 to 5 ms; samples every 1 ms reduce
-  their error to 1e-4. In `toppling_onset` above the critical angle it is the strain of the block.
+- Free flight is exact at any step, and so are bounces with restitution, since a step ends at each impact.
+- Rocking converges with second order, also without restitution. Housner's blocks are rigid; the decks use 5e12 Pa,
+  since 5e9 Pa changes the period by 1e-5. Errors below 1e-6 depend on where the reversal lies in its step, and may not
+  decrease.
+- `upslope_returns`: the error varies with the position of the reversal in its step.
+- A rate near 0 means an error that does not depend on the step: on slopes the elastic strain under self-weight, 1e-7
+  to 1e-6 m; in `toppling_onset` above the critical angle the strain of the block. Newmark's decks sample the ground
+  motion every 4 to 5 ms; samples every 1 ms reduce their error to 1e-4.
 
 ## Dry walls
 
