@@ -70,6 +70,8 @@ contains
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
+            if (abs(critical%stands - critical%falls) > 2.0001_wp*proposal%half) &
+               & critical%half = 0.5_wp*abs(critical%stands - critical%falls)
             critical%stop = proposal%value
             critical%stops = proposal%usable .and. .not. critical%current
             return
@@ -194,15 +196,20 @@ contains
          & - proposal%half) < 1.0e-3_wp*proposal%half
    end function proved
 
-   !> True if the bracket is as narrow as the proposal asks for
+   !> True if the bracket is as narrow as the proposal asks for, or as decisions can make it
    pure logical function closed(search, critical, proposal)
       type(search_t), intent(in) :: search
       type(critical_t), intent(in) :: critical
       type(proposal_t), intent(in) :: proposal
 
-      closed = allocated(critical%standing) &
-         & .and. abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half &
-         & .and. 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
+      closed = allocated(critical%standing)
+      if (.not. closed) return
+      associate (width => abs(critical%stands - critical%falls))
+         closed = width <= search%least
+         if (closed) return
+         closed = width <= 2.0001_wp*proposal%half .and. 2.0_wp*proposal%half &
+            & <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
+      end associate
    end function closed
 
    !> Decide one value and keep the decision on its side of the bracket

@@ -26,6 +26,8 @@ submodule (dda_critical) dda_load_search
       real(wp), allocatable :: beyond(:, :)
       logical :: stands_upright = .true.  !! True if the path leads further than its dead loads
       logical :: falls_dead = .false.     !! True if no forces balance the dead loads
+      !> Coefficient of a live load that is none beside the dead loads
+      real(wp) :: least = 0.0_wp
       type(graph_verdict_t) :: proof      !! Collapse, or equilibrium at the end of the range
    end type side_t
 
@@ -33,6 +35,8 @@ submodule (dda_critical) dda_load_search
    real(wp), parameter :: nudge = 1.0e-2_wp
    !> Relative accuracy of a loading path
    real(wp), parameter :: path_resolution = 1.0e-9_wp
+   !> Largest live load over the largest dead load that is none: a decision does not see it
+   real(wp), parameter :: unseen = 1.0e-10_wp
    !> Least relative gap of both bounds of a limit
    real(wp), parameter :: least_gap = 1.0e-13_wp
 
@@ -76,11 +80,21 @@ contains
       ! what does not stand upright may do so under gravity that acts another way from the beginning
       done = family%load /= searched_load%tilt .or. .not. rest &
          & .or. right%stands_upright .and. left%stands_upright
+      ! where the two proofs of a limit do not meet, decisions of single values close a bracket
+      if (done) done = .not. (lacks_limit(right) .or. lacks_limit(left))
+      search%least = max(right%least, left%least)*(search%high - search%low)/(high - low)
       if (done) call conclude(search, low, high, scene, right, left, critical)
       if (done) call move_alloc(scene, critical%scene)
       search%low = search%low + (origin - low)*(search%high - search%low)/(high - low)
       search%start = search%low
    end procedure find_critical_load
+
+   !> True if a side is undecided because its limit is not known
+   pure logical function lacks_limit(side)
+      type(side_t), intent(in) :: side
+
+      lacks_limit = side%end == path_end%undecided .and. side%proof%flow == flow_rule%associated
+   end function lacks_limit
 
    !> Seek values that stand where no forces balance the dead loads: limit analysis starts from
    !> there
@@ -215,6 +229,7 @@ contains
       dead = full_loads(with_coefficient(scene%settings, load, origin), scene, graph)
       ! gravity and a push across it are gravity that tilts
       live = sign(1.0_wp, last)*added_loads(load, scene%settings, scene, graph, origin)
+      side%least = unseen*maxval(abs(dead))/max(maxval(abs(live)), tiny(1.0_wp))
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       side%limit%state = limit_state%unbounded
       if (search%below_limit) return
@@ -258,7 +273,6 @@ contains
             side%end = path_end%reached
          case default
             side%end = path_end%undecided
-            proof%reason = "the two proofs of the limit do not meet"
          end select
          if (limit%state == limit_state%found .and. abs(side%value) > abs(last)) &
             & side%end = path_end%reached

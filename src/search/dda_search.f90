@@ -22,6 +22,7 @@ module dda_search
       real(wp) :: high = 1.0_wp          !! Largest value of the parameter
       real(wp) :: start = 0.0_wp         !! Where to begin, from low to high
       real(wp) :: tolerance = 1.0e-8_wp  !! Width of the bracket over the critical value
+      real(wp) :: least = 0.0_wp         !! Width of a bracket that decisions do not narrow
       !> Relative change of the critical value that rounded coordinates can make, if it is known
       real(wp) :: resolution = 0.0_wp
       !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0

@@ -61,13 +61,31 @@ def test_decisions_on_both_sides_of_a_limit_are_proven(tmp_path: Path, seed: int
             assert run(tmp_path, seed, flow, f"&load load_factor = {max(factor, 0.0)!r}")["verdict"] == verdict
 
 
-def compare_with_programme(folder: Path, row: dict[str, str]) -> None:
-    """The associated limit is that of a linear programme of the joints that the checker finds."""
+@pytest.mark.parametrize("flow", ["associated", "coulomb"])
+@pytest.mark.parametrize(("seed", "verdict"), [(51032, "found"), (51273, "found"), (51340, "collapsed")])
+def test_smooth_joints_without_two_proofs_of_a_limit_are_bracketed(
+    tmp_path: Path, seed: int, verdict: str, flow: str
+) -> None:
+    """Smooth joints leave no forces inside their law: decisions bracket a limit of nothing, and one of 2.64."""
+    row = run(tmp_path, seed, flow, f"&search parameter = 'load_factor', low = 0, high = {MOST}")
+    assert row["verdict"] == verdict
+    if verdict == "found":
+        low, high, limit = float(row["critical_low"]), float(row["critical_high"]), programme_of(tmp_path)
+        assert limit is not None and low - 1e-12 <= limit <= high
+        assert high - low <= max(1e-10, 1e-6 * limit)
+
+
+def programme_of(folder: Path) -> float | None:
+    """The limit by a linear programme of the joints that the checker finds."""
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
     tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in verify_command.TABLES}
     deck = read_deck(folder / "x").with_value("load_factor", "1")
-    scene = verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding())
-    limit = programme(scene)
+    return programme(verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding()))
+
+
+def compare_with_programme(folder: Path, row: dict[str, str]) -> None:
+    """The associated limit is that of a linear programme."""
+    limit = programme_of(folder)
     if row["verdict"] == "found" and float(row["critical"]) > 0.0:
         assert limit == pytest.approx(float(row["critical"]), rel=1e-7, abs=1e-9)
     elif row["verdict"] == "stable":
