@@ -29,8 +29,7 @@ class Drawn:
     areas: list[tuple[float, float]] = field(default_factory=list)  #: Exact area, length of its curves [m2, m]
     box: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)  #: Around all blocks, from the beginning [m]
     refused: str = ""  #: Instead: words of the refusal, a regular expression
-    place: Point = ()  #: Place that the refusal names, from the beginning [m]
-    in_metres: bool = False  #: Whether it is named in metres, else in units of the file
+    place: Point = ()  #: Place that the refusal names in units of the file, from the beginning [m]
 
 
 @dataclass(frozen=True)
@@ -219,7 +218,7 @@ def open_ends(pen: Pen) -> Drawn:
     end = on_circle(3.592, turn)
     ring.entities[6] = pen.line("arch", on_circle(3.0, turn), end)
     return Drawn(ring.entities, refused=r"an end that stops at most 0\.008 m short of another line, on layer arch",
-                 place=end, in_metres=True)
+                 place=end)
 
 
 def crossing(pen: Pen) -> Drawn:

@@ -49,9 +49,8 @@ def test_public_drawings_are_imported_right_or_refused_with_their_place(
         assert status == 2
         said = re.search(drawn.refused + r".*? at \((\S+), (\S+)\)", printed)
         assert said, printed
-        unit = 1.0 if drawn.in_metres else pen.metre
         for word, value, start in zip(said.groups(), drawn.place, pen.at):
-            assert float(word) == pytest.approx((value + start) * unit, abs=0.01 * unit)
+            assert float(word) == pytest.approx((value + start) * pen.metre, abs=0.01 * pen.metre)
         return
     assert status == 0 and "dropped" not in printed, printed
     found = polygons(tmp_path / "a.blocks")

@@ -161,7 +161,7 @@ def _short_ends(content: Content, scale: float) -> str:
     count = "an end that stops" if len(gaps) == 1 else f"{len(gaps)} ends that stop"
     return (
         f"expected lines that meet, got {count} at most {max(gaps):.3g} m short of another line, on {layer} at "
-        f"({end.real * scale:.10g}, {end.imag * scale:.10g}); join them with --snap {1.01 * max(gaps):.3g}, "
+        f"({end.real:.10g}, {end.imag:.10g}) of the drawing; join them with --snap {1.01 * max(gaps):.3g}, "
         "or drop them with --allow-dropped")
 
 
