@@ -13,7 +13,6 @@ from voussoir.plot.case_picture import draw_supports
 from voussoir.plot.case_scene import scene_of
 from voussoir.plot.figure_style import STONE, house_style
 from voussoir.plot.motion import motion_of
-from voussoir.plot.thrust_path import thrust_pairs
 
 #: Title, then keys of each
 SHAPES = {
@@ -44,7 +43,7 @@ def main() -> None:
             axes.add_collection(PolyCollection(scene.shapes(0.0), facecolor=STONE, edgecolor="#777777", linewidth=0.6))
             joints = run.joints_of(1)
             marks = JointMarks(scene, joints, motion_of(scene.blocks, scene.supports, 0.0, 0.0), 1.0, 0.5)
-            marks.draw_thrust(axes, thrust_pairs(scene, joints))
+            marks.draw_thrust(axes)
             axes.autoscale_view()
             axes.set_aspect("equal")
             axes.set_axis_off()

@@ -10,6 +10,7 @@ module dda_block_rows
    use dda_mechanism, only : largest_of, mechanism_of, mechanism_t, role_of_joint, slides
    use dda_scene, only : build_once, scene_t, searched_load
    use dda_search, only : critical_t, decision_t
+   use dda_vector, only : cross
    use dda_write_frames, only : frame_joint_row_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
@@ -142,7 +143,8 @@ contains
          row(j)%slip = contacts%gap(3, j)
          row(j)%state = "locked"
          if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
-         if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
+         if (contacts%face(j)%open(1) .or. is_second_end(system, contacts%joint(j))) &
+            & row(j)%state = "hinge_extrados"
          if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
          if (all(contacts%face(j)%open)) row(j)%state = "open"
          if (row(j)%state /= "sliding") cycle
@@ -153,6 +155,19 @@ contains
          row(j)%slides = some_number(way*place%tangent)
       end do
    end function joint_rows
+
+   !> True if the only corner of a joint is where joints of two corners have their second end: left
+   !> of the way from the first block to the second, in the reference shape
+   pure logical function is_second_end(system, joint)
+      type(block_system_t), intent(in) :: system
+      type(joint_t), intent(in) :: joint
+      real(wp) :: middle(2, 2), corner(2)
+
+      middle = system%centroid(:, joint%block)
+      corner = system%vertex(:, joint%contact(1)%vertex)
+      is_second_end = joint%n_contact == 1 &
+         & .and. cross(middle(:, 2) - middle(:, 1), corner - middle(:, 1)) > 0.0_wp
+   end function is_second_end
 
    !> Where a joint is, and the force that its first block puts on its second
    pure subroutine tell_forces(joint, place, force, origin, row)

@@ -185,14 +185,17 @@ def test_search_along_a_path_is_drawn_where_the_blocks_come_to_rest(tmp_path: Pa
 
 
 def test_an_arch_that_has_spread_to_its_collapse_shows_four_hinges(tmp_path: Path) -> None:
-    """Three of them bear the arch in its last equilibrium, the fourth makes it a mechanism."""
-    run = compute(tmp_path, "&arch voussoirs = 9, half_angle_deg = 75, thickness_ratio = 0.16 /\n"
-                            "&support right_dx = 1 /\n&joint friction_deg = 60 /\n&analysis geometry = 'current' /\n"
-                            "&search parameter = 'displacement_factor', low = 0, high = 4, tolerance = 1e-2 /\n")
-    with house_style():
-        axes = draw_case(run, 1).axes[0]
-    hinges = sum(len(line.get_xdata()) for line in axes.lines if line.get_marker() == "o")
-    assert (run.case(1)["collapse_mode"], hinges) == ("rotational", 4)
+    """Three of them bear the arch in its last equilibrium, one at the extrados; the fourth makes it a mechanism."""
+    deck = ("&arch voussoirs = 9, half_angle_deg = 75, thickness_ratio = 0.16 /\n"
+            "&support right_dx = 1 /\n&joint friction_deg = 60 /\n&analysis geometry = 'current' /\n")
+    search = "&search parameter = 'displacement_factor', low = 0, high = 4, tolerance = 1e-2 /\n"
+    for number, text, mode, count in ((1, deck, "none", 3), (2, deck + search, "rotational", 4)):
+        (folder := tmp_path / str(number)).mkdir()
+        run = compute(folder, text)
+        with house_style():
+            axes = draw_case(run, 1).axes[0]
+        hinges = {mark: sum(len(line.get_xdata()) for line in axes.lines if line.get_marker() == mark) for mark in "os"}
+        assert (run.case(1)["collapse_mode"], hinges) == (mode, {"o": count - 1, "s": 1})
 
 
 def test_ways_of_measured_points_end_where_the_points_are(rocking: results.Results) -> None:

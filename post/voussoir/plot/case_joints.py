@@ -93,8 +93,10 @@ class JointMarks:
         if scene.is_falling:
             self.roles = falling_roles(joints, motion.shown * points_per_metre)
         long = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
-        # a joint of one corner turns about it always: it is marked in a collapse only
-        self.marked = long | (joints["mechanism"] != "none") | (self.collapses and scene.moves)
+        self.pairs = thrust_pairs(scene, joints)
+        self.turns = self.collapses or scene.moves and bool(self.pairs)
+        # a joint of one corner turns about it always: it is marked in a collapse and in arches that have moved
+        self.marked = long | (joints["mechanism"] != "none") | (self.turns and scene.moves)
         self.slides = np.isfinite(joints["slides_x"])
         self.opens = np.isin(self.roles, ("hinge_intrados", "hinge_extrados", "hinge", "open")) & self.marked
         lengths = np.hypot(*(self._middle("out") - self._middle("in")).T)
@@ -115,9 +117,8 @@ class JointMarks:
 
     def draw(self, axes: Axes, with_forces: bool | None) -> list[Artist]:
         """Draw all; gives the entries of the legend."""
-        pairs = thrust_pairs(self.scene, self.joints)
-        entries = self.draw_thrust(axes, pairs) if pairs and not self.scene.is_falling else []
-        if with_forces or with_forces is None and not pairs and len(self.joints) <= MOST_FORCES:
+        entries = self.draw_thrust(axes) if self.pairs and not self.scene.is_falling else []
+        if with_forces or with_forces is None and not self.pairs and len(self.joints) <= MOST_FORCES:
             entries += self.draw_forces(axes)
         if self.crowded:
             return entries + self.draw_states(axes)
@@ -127,11 +128,11 @@ class JointMarks:
         """Where the forces act in the picture: (n, 2) [m]; NaN where a joint carries nothing."""
         return np.where(np.isnan(thrust_points(self.joints)), np.nan, self._middle("at"))
 
-    def draw_thrust(self, axes: Axes, pairs: list[tuple[int, int]]) -> list[Artist]:
+    def draw_thrust(self, axes: Axes) -> list[Artist]:
         """Draw the thrust line; gives the entries of the legend."""
         points = self.thrust_points()
         width = float(np.clip(0.22 * self.thickness, THINNEST_THRUST, 2.4 * self.pen))
-        lines = [points[list(pair)] for pair in pairs if np.isfinite(points[list(pair)]).all()]
+        lines = [points[list(pair)] for pair in self.pairs if np.isfinite(points[list(pair)]).all()]
         axes.add_collection(
             LineCollection(lines, colors=INK[1], linewidths=width, capstyle="round", joinstyle="round", zorder=4))
         return [entry("thrust line", linestyle="-", color=INK[1], linewidth=width)]
@@ -175,11 +176,12 @@ class JointMarks:
         entries: list[Artist] = []
         kinds = (("intrados", "hinge_intrados", "in"), ("extrados", "hinge_extrados", "out"), ("hinge", "hinge", "at"),
                  ("open", "open", "at"))
-        marks, words = (MARKS, MEANINGS) if self.collapses else (TOUCH_MARKS, TOUCHES)
+        marks, words = (MARKS, MEANINGS) if self.turns else (TOUCH_MARKS, TOUCHES)
+        has_names = self.scene.is_arch or self.scene.moves and self.scene.voussoirs > 0
         seen = set()
         for kind, role, at in kinds:
             mask = (self.roles == role) & self.marked
-            mark = "hinge" if kind != "open" and not self.scene.is_arch else kind
+            mark = "hinge" if kind != "open" and not has_names else kind
             if not mask.any():
                 continue
             style: dict[str, Any] = {"markersize": self.mark_size, "markeredgewidth": 0.9 * self.pen, **marks[mark]}
