@@ -45,9 +45,9 @@ def test_every_kind_of_fault_is_put_in_where_something_is_computed(tmp_path: Pat
             ("sign", "c = max(a, 2.0_wp)*d - f(e - 1)")} <= found[7]
 
 
-def test_same_seed_draws_the_same_faults_from_all_rooms() -> None:
-    rooms = ["geometry", "contact", "step"]
-    faults = draw_faults(REPOSITORY, rooms, 30, 7)
-    assert faults == draw_faults(REPOSITORY, rooms, 30, 7) != draw_faults(REPOSITORY, rooms, 30, 8)
-    assert [sum(fault.path.parts[1] == room for fault in faults) for room in rooms] == [10, 10, 10]
+def test_same_seed_draws_the_same_faults_from_all_packages() -> None:
+    packages = ["geometry", "contact", "step"]
+    faults = draw_faults(REPOSITORY, packages, 30, 7)
+    assert faults == draw_faults(REPOSITORY, packages, 30, 7) != draw_faults(REPOSITORY, packages, 30, 8)
+    assert [sum(fault.path.parts[1] == package for fault in faults) for package in packages] == [10, 10, 10]
     assert len({(fault.path, fault.line, fault.after) for fault in faults}) == 30

@@ -122,26 +122,26 @@ def faults_of(path: Path, root: Path) -> list[Fault]:
     return found
 
 
-def draw_faults(root: Path, rooms: list[str], count: int, seed: int) -> list[Fault]:
-    """As many faults, every room and in it every kind in turn, for the same seed the same."""
+def draw_faults(root: Path, packages: list[str], count: int, seed: int) -> list[Fault]:
+    """As many faults, every package and in it every kind in turn, for the same seed the same."""
     chance = random.Random(seed)
     drawn: list[Fault] = []
-    by_room = {}
-    for room in rooms:
+    by_package = {}
+    for package in packages:
         kinds: dict[str, list[Fault]] = {}
-        for path in sorted((root / "src" / room).glob("*.f90")):
+        for path in sorted((root / "src" / package).glob("*.f90")):
             for fault in faults_of(path, root):
                 kinds.setdefault(fault.kind, []).append(fault)
         for faults in kinds.values():
             chance.shuffle(faults)
         names = sorted(kinds)
         chance.shuffle(names)
-        by_room[room] = [kinds[name] for name in names]
-    while len(drawn) < count and any(by_room.values()):
-        for room in rooms:
-            if by_room[room] and len(drawn) < count:
-                faults = by_room[room].pop(0)
+        by_package[package] = [kinds[name] for name in names]
+    while len(drawn) < count and any(by_package.values()):
+        for package in packages:
+            if by_package[package] and len(drawn) < count:
+                faults = by_package[package].pop(0)
                 drawn.append(faults.pop())
                 if faults:
-                    by_room[room].append(faults)
+                    by_package[package].append(faults)
     return drawn

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Put single faults into src/, one after the other, and tell which test finds each.
 
-The tree is copied and built once, each room as a shared library. A fault seldom changes what a module offers: then
-one object is compiled and its room linked again, and every program meets the fault without being linked itself;
-else the build sees to it. The unit tests of the fault's room run first, then those of the other rooms, those whose
-tests name the module before the others. What survives these is judged several at a time: with all of them put in,
+The tree is copied and built once, each package as a shared library. A fault seldom changes what a module offers: then
+one object is compiled and its package linked again, and every program meets the fault without being linked itself;
+else the build sees to it. The unit tests of the fault's package run first, then those of the others, those whose
+tests name the module first. What survives these is judged several at a time: with all of them put in,
 the physics and what ctest counts as such run, then, if asked, all other tests; what fails is asked of each fault
 alone, until nothing fails of those that are left. A test that fails without a fault finds none, and the next one is
 asked. A process may take five times the processor time that it takes without a fault. The table is written whenever
@@ -35,8 +35,8 @@ from faults import Fault, draw_faults
 
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
          "README.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "CHANGELOG.md")
-COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
-LEVELS = ("room", "unit", "physics", "suite")
+COLUMNS = ("number", "package", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
+LEVELS = ("package", "unit", "physics", "suite")
 #: What ctest runs at the levels that are asked of several faults at once
 PROGRAMS = {"physics": ("command_unit", "physics", "command_physics"),
             "suite": ("every_model", "cli", "post", "fuzz_blocks", "fuzz_restart", "fuzz")}
@@ -112,7 +112,7 @@ class Copy:
         objects = {path: self.compile_alone(path) for path in sound}
         compiles = () not in objects.values()
         others_depend = compiles and None in objects.values()
-        rooms: list[Path] = []
+        packages: list[Path] = []
         if not others_depend:  # the build may not see that anything was changed
             for path, (text, at) in sound.items():
                 path.write_text(text)
@@ -122,14 +122,14 @@ class Copy:
                 compiles = self.make()
             elif compiles:
                 for name in {path.parent.name for path in sound}:
-                    room = self.build / f"src/libvoussoir_{name}.so"
-                    room.rename(room.with_suffix(".sound"))
-                    rooms.append(room)
-                    self.link_room(room.name, [objects[path] for path in sound if path.parent.name == name])
+                    package = self.build / f"src/libvoussoir_{name}.so"
+                    package.rename(package.with_suffix(".sound"))
+                    packages.append(package)
+                    self.link_package(package.name, [objects[path] for path in sound if path.parent.name == name])
             yield compiles
         finally:
-            for room in rooms:
-                room.with_suffix(".sound").replace(room)
+            for package in packages:
+                package.with_suffix(".sound").replace(package)
             if others_depend:
                 for path, (text, _) in sound.items():
                     path.write_text(text)
@@ -153,8 +153,8 @@ class Copy:
         same = all(filecmp.cmp(new, self.build / modules / new.name, shallow=False) for new in scratch.glob("*.*mod"))
         return (output, scratch / "faulty.o") if same else None
 
-    def link_room(self, name: str, objects: list[tuple[str, Path]]) -> None:
-        """Link a room with faulty objects in the place of the sound ones."""
+    def link_package(self, name: str, objects: list[tuple[str, Path]]) -> None:
+        """Link a package with faulty objects in the place of the sound ones."""
         steps = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "-s", f"src/{name}"], check=True,
                                capture_output=True, text=True).stdout
         command = next(line for line in steps.splitlines() if f"-o src/{name}" in line)
@@ -163,17 +163,17 @@ class Copy:
         subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
 
     def programs(self, level: str, fault: Fault) -> list[str]:
-        """The unit programs of a level that hold the faulty room, the likely and the short ones first."""
+        """The unit programs of a level that hold the faulty package, the likely and the short ones first."""
         own = f"unit_{fault.path.parts[1]}"
-        if level == "room":
+        if level == "package":
             return [own] if own in self.units else []
         others = [name for name in self.units if name != own and self.holds(name, fault.path.parts[1])]
         return sorted(others, key=lambda name: (f"use {fault.path.stem}," not in self.units[name], self.usual[name]))
 
-    def holds(self, program: str, room: str) -> bool:
-        """Whether a program is linked with a room."""
+    def holds(self, program: str, package: str) -> bool:
+        """Whether a program is linked with a package."""
         linked = subprocess.run(["ldd", self.build / "tests" / "bin" / program], capture_output=True, text=True).stdout
-        return f"libvoussoir_{room}.so" in linked
+        return f"libvoussoir_{package}.so" in linked
 
     def run(self, program: str, tests: Iterable[str] = ()) -> list[str]:
         """Run a program, or tests of it that failed before: the tests that fail."""
@@ -299,7 +299,7 @@ def read_faults(path: Path, root: Path) -> list[Fault]:
     with path.open(newline="") as lines:
         for row in csv.DictReader(lines):
             places = [(other.relative_to(root), number)
-                      for other in sorted((root / "src" / row["room"]).glob("*.f90"))
+                      for other in sorted((root / "src" / row["package"]).glob("*.f90"))
                       for number, line in enumerate(other.read_text().splitlines(), 1) if line.strip() == row["before"]]
             # lines move, and modules are joined
             places = [place for place in places if place == (Path(row["file"]), int(row["line"]))] or places
@@ -309,13 +309,13 @@ def read_faults(path: Path, root: Path) -> list[Fault]:
 
 
 def report(rows: list[dict[str, object]]) -> str:
-    """One line a room: how many faults, found where."""
-    lines = ["room          faults   room   unit  physics suite  survived"]
-    for room in [*sorted({str(row["room"]) for row in rows}), "all"]:
-        mine = [row for row in rows if room in ("all", row["room"]) and row["result"] != "does not compile"]
+    """One line a package: how many faults, found where."""
+    lines = ["package       faults  package   unit  physics suite  survived"]
+    for package in [*sorted({str(row["package"]) for row in rows}), "all"]:
+        mine = [row for row in rows if package in ("all", row["package"]) and row["result"] != "does not compile"]
         count = [sum(row.get("level") == level for row in mine) for level in LEVELS]
         survived = sum(row["result"] == "survived" for row in mine)
-        lines.append(f"{room:12}{len(mine):8}{count[0]:7}{count[1]:7}{count[2]:9}{count[3]:6}{survived:10}")
+        lines.append(f"{package:12}{len(mine):8}{count[0]:9}{count[1]:7}{count[2]:9}{count[3]:6}{survived:10}")
     return "\n".join(lines)
 
 
@@ -327,7 +327,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--work", type=Path, required=True, help="folder of the copy and of the table")
     parser.add_argument("--count", type=int, default=400, help="number of faults [400]")
     parser.add_argument("--seed", type=int, default=1, help="where the random numbers begin [1]")
-    parser.add_argument("--rooms", nargs="*", help="folders of src/ [all but app and files]")
+    parser.add_argument("--packages", nargs="*", help="folders of src/ [all but app and files]")
     parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
     parser.add_argument("--levels", nargs="*", default=LEVELS[:3], choices=LEVELS, help="what runs [all but suite]")
     parser.add_argument("--table", type=Path, help="the table [mutants.csv in the folder of the copy]")
@@ -340,7 +340,7 @@ def arguments() -> argparse.Namespace:
 
 def run_without_faults(copy: Copy, levels: list[str]) -> None:
     """Run once what judges, and keep the time that it takes."""
-    units = copy.units if "room" in levels or "unit" in levels else []
+    units = copy.units if "package" in levels or "unit" in levels else []
     for name in [*units, *(["physics"] if "physics" in levels else [])]:
         test = copy.run(name)
         if test:
@@ -351,14 +351,14 @@ def main() -> int:
     """Put in, build, test, take out; write the table."""
     asked = arguments()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what is faulty is put back
-    rooms = asked.rooms or sorted(path.name for path in (asked.source / "src").iterdir()
-                                  if path.is_dir() and path.name not in ("app", "files"))
+    packages = asked.packages or sorted(path.name for path in (asked.source / "src").iterdir()
+                                        if path.is_dir() and path.name not in ("app", "files"))
     faults = (read_faults(asked.again, asked.source) if asked.again
-              else draw_faults(asked.source, rooms, asked.count, asked.seed))
+              else draw_faults(asked.source, packages, asked.count, asked.seed))
     asked.work.mkdir(parents=True, exist_ok=True)
     copy = Copy((asked.work / "tree").resolve(), asked.jobs)
     rows: list[dict[str, object]] = [
-        {"number": number, "room": fault.path.parts[1], "file": fault.path.as_posix(), "line": fault.line,
+        {"number": number, "package": fault.path.parts[1], "file": fault.path.as_posix(), "line": fault.line,
          "kind": fault.kind, "before": fault.before.strip(), "after": fault.after.strip()}
         for number, fault in enumerate(faults, 1)]
     table = asked.table or asked.work / "mutants.csv"
