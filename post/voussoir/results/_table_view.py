@@ -10,6 +10,8 @@ from voussoir.html_page import cell, escape, table
 
 #: Rows that are shown of a long table, and the width of its text
 MOST_ROWS, WIDTH = 12, 100
+#: Columns of the deck, which leave their place to results
+LAST = ("deck", "mode", "geometry")
 
 
 def cell_text(cell: Any) -> str:
@@ -27,7 +29,7 @@ def _shown(columns: dict[str, np.ndarray], rows: int) -> tuple[list[str], list[l
     if rows > MOST_ROWS:
         places = places[: MOST_ROWS // 2] + places[-(MOST_ROWS // 2) :]
     names, texts = [], []
-    for name, column in columns.items():
+    for name, column in sorted(columns.items(), key=lambda item: item[0] in LAST):
         cells = [cell_text(column[place]) for place in places]
         if any(cells):
             if rows > MOST_ROWS:
