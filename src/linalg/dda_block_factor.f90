@@ -5,8 +5,7 @@
 !> Only blocks that are not zero are stored, in panels of columns with the same rows, which are
 !> eliminated one after the other. The chain of an arch is eliminated from both ends, so that its
 !> mirror images have the same rounding and the processor has two panels to work on. A panel whose
-!> numbers and whose predecessors have not changed keeps its factor. Rows change places, where a
-!> matrix is not symmetric, within three unknowns of a block alone.
+!> numbers and whose predecessors have not changed keeps its factor.
 !>
 !> A panel holds w columns in a matrix of w rows on the diagonal and m rows below it. Where the
 !> matrix is not symmetric, w rows with the m columns to the right of the diagonal follow. When its
@@ -77,7 +76,7 @@ contains
       integer :: below, n, p, step, width
 
       n = size(factor%plan%first) - 1
-      call take_blocks(size(x, 1), factor%plan%block, x, y)
+      call take_blocks(size(x, 1), size(x, 2), factor%plan%block, x, y)
       do step = 1, 2*n
          p = min(step, 2*n + 1 - step)
          associate (plan => factor%plan, nd => size(x, 1), first => factor%plan%first(p), &
@@ -85,7 +84,7 @@ contains
             width = nd*(plan%first(p + 1) - first)
             below = nd*size(row)
             if (step > n) then
-               call take_blocks(nd, row, y, rest)
+               call take_blocks(nd, size(row), row, y, rest)
                call substitute_up(plan%symmetric, width, below, factor%number(plan%start(p)), &
                   & rest, y(1, first))
             else if (any(abs(y(:, first:plan%first(p + 1) - 1)) > 0.0_wp)) then
@@ -93,12 +92,12 @@ contains
                rest(:below) = 0.0_wp
                call substitute_down(plan%symmetric, width, below, factor%number(plan%start(p)), &
                   & factor%exchange(nd*(first - 1) + 1), y(1, first), rest)
-               call add_blocks(nd, row, rest, y)
+               call add_blocks(nd, size(row), row, rest, y)
             end if
          end associate
       end do
       x = 0.0_wp
-      call add_blocks(size(x, 1), factor%plan%block, y, x)
+      call add_blocks(size(x, 1), size(x, 2), factor%plan%block, y, x)
    end subroutine substitute
 
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the
@@ -195,9 +194,8 @@ contains
 
    !> Add a block to a panel
    pure subroutine add_block(nd, block, height, sum)
-      integer, intent(in) :: nd                     !! Unknowns of one block
+      integer, intent(in) :: nd, height             !! Unknowns of one block, rows of the panel
       real(wp), intent(in) :: block(nd, nd)         !! The block
-      integer, intent(in) :: height                 !! Rows of the panel
       real(wp), intent(inout) :: sum(height, *)     !! The panel from the block's first number on
       integer :: c
 
@@ -296,28 +294,28 @@ contains
    end subroutine add_share
 
    !> Unknowns of some blocks; three at a time, since calls of the library for each would cost more
-   pure subroutine take_blocks(nd, block, x, some)
-      integer, intent(in) :: nd, block(:)     !! 3 or 6 unknowns of a block; numbers of blocks
+   pure subroutine take_blocks(nd, n, block, x, some)
+      integer, intent(in) :: nd, n, block(n)  !! 3 or 6 unknowns of a block; numbers of blocks
       real(wp), intent(in) :: x(nd, *)        !! Unknowns of all blocks
       real(wp), intent(inout) :: some(nd, *)  !! Unknowns of those blocks
       integer :: c, i
 
-      do i = 1, size(block)
-         do c = 1, nd, 3
+      do c = 1, nd, 3
+         do i = 1, n
             some(c:c + 2, i) = x(c:c + 2, block(i))
          end do
       end do
    end subroutine take_blocks
 
    !> Add to the unknowns of some blocks
-   pure subroutine add_blocks(nd, block, some, x)
-      integer, intent(in) :: nd, block(:)   !! 3 or 6 unknowns of a block; numbers of blocks
+   pure subroutine add_blocks(nd, n, block, some, x)
+      integer, intent(in) :: nd, n, block(n)
       real(wp), intent(in) :: some(nd, *)   !! Addends of those blocks
       real(wp), intent(inout) :: x(nd, *)   !! Unknowns of all blocks
       integer :: c, i
 
-      do i = 1, size(block)
-         do c = 1, nd, 3
+      do c = 1, nd, 3
+         do i = 1, n
             x(c:c + 2, block(i)) = x(c:c + 2, block(i)) + some(c:c + 2, i)
          end do
       end do

@@ -46,8 +46,7 @@ contains
    pure subroutine set_pattern(matrix, n_dof, n_block, pair, symmetric)
       !> The matrix; its numbers are not set
       type(block_matrix_t), intent(out) :: matrix
-      integer, intent(in) :: n_dof       !! Unknowns of one block
-      integer, intent(in) :: n_block     !! Number of blocks
+      integer, intent(in) :: n_dof, n_block  !! Unknowns of one block, and number of blocks
       integer, intent(in) :: pair(:, :)  !! Coupled blocks, both between 1 and n_block: (2, n_entry)
       !> True if the numbers will be symmetric; the default
       logical, intent(in), optional :: symmetric

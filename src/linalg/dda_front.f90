@@ -22,8 +22,7 @@ contains
    !> Factor a panel
    pure subroutine factor_front(symmetric, width, below, front, exchange, info)
       logical, intent(in) :: symmetric                     !! True if the matrix is
-      integer, intent(in) :: width                         !! Columns of the panel
-      integer, intent(in) :: below                         !! Rows below its diagonal
+      integer, intent(in) :: width, below                  !! Columns, and rows below the diagonal
       real(wp), intent(inout) :: front(width + below, *)   !! The panel
       integer, intent(inout) :: exchange(width)            !! Exchanges of its rows
       integer, intent(out) :: info                         !! 0 if it has a factor
@@ -44,19 +43,19 @@ contains
       end if
    end subroutine factor_front
 
-   !> Factor a narrow panel into L D L', column by column
+   !> Factor a narrow panel into L D L', three columns at a time
    pure subroutine factor_narrow(width, height, front, info)
       integer, intent(in) :: width, height  !! Columns and rows of the panel
       real(wp), intent(inout) :: front(height, *)  !! The panel
       integer, intent(out) :: info
-      real(wp) :: factor(narrow)
       integer :: c, k
 
       do k = 1, width
-         do c = 1, k - 1
-            factor(c) = front(k, c)*front(c, c)
+         if (modulo(k, 3) == 1) call subtract_square(height + 1 - k, k - 1, height, front(k, 1), &
+            & front, height, front(k, k))
+         do c = k - modulo(k - 1, 3), k - 1
+            front(k:height, k) = front(k:height, k) - front(k:height, c)*(front(k, c)*front(c, c))
          end do
-         call subtract_product(height + 1 - k, k - 1, height, front(k, 1), factor, front(k, k))
          info = k
          if (.not. front(k, k) > 0.0_wp) return
          front(k + 1:height, k) = front(k + 1:height, k)/front(k, k)
@@ -135,8 +134,7 @@ contains
       integer, intent(in) :: omitted  !! First columns of the product that are not needed
       real(wp), intent(in) :: front(width + below, *)
       real(wp), intent(inout) :: share(below, *)  !! The product: (below, below)
-      real(wp) :: factor(narrow)
-      integer :: c, height, k
+      integer :: height, k
 
       height = width + below
       if (.not. symmetric) then
@@ -146,12 +144,9 @@ contains
          call dsyrk("L", "N", below, width, -1.0_wp, front(width + 1, 1), height, 0.0_wp, share, &
             & below)
       else
-         do k = omitted + 1, below
-            do c = 1, width
-               factor(c) = front(width + k, c)*front(c, c)
-            end do
-            share(k:below, k) = 0.0_wp
-            call subtract_product(below + 1 - k, width, height, front(width + k, 1), factor, &
+         do k = omitted + 1, below, 3
+            share(k:below, k:k + 2) = 0.0_wp
+            call subtract_square(below + 1 - k, width, height, front(width + k, 1), front, below, &
                & share(k, k))
          end do
       end if
@@ -216,7 +211,28 @@ contains
       end if
    end subroutine substitute_up
 
-   !> x - a b, of few columns inline
+   !> x - a D a', three columns of x. Three columns of both are in the registers at a time
+   pure subroutine subtract_square(n, m, ld, a, front, ldx, x)
+      integer, intent(in) :: n, m, ld, ldx    !! Rows, columns of a, distances of columns of a and x
+      real(wp), intent(in) :: a(ld, *)        !! Rows of the panel: (n, m)
+      real(wp), intent(in) :: front(ld, *)    !! The panel, with D on its diagonal
+      real(wp), intent(inout) :: x(ldx, 3)    !! Columns that the product is taken from: (n, 3)
+      real(wp) :: b(3, 3)
+      integer :: c, i, k
+
+      do c = 1, m, 3
+         do k = 1, 3
+            b(:, k) = a(:3, c + k - 1)*front(c + k - 1, c + k - 1)
+         end do
+         do i = 1, n
+            x(i, 1) = x(i, 1) - (a(i, c)*b(1, 1) + a(i, c + 1)*b(1, 2) + a(i, c + 2)*b(1, 3))
+            x(i, 2) = x(i, 2) - (a(i, c)*b(2, 1) + a(i, c + 1)*b(2, 2) + a(i, c + 2)*b(2, 3))
+            x(i, 3) = x(i, 3) - (a(i, c)*b(3, 1) + a(i, c + 1)*b(3, 2) + a(i, c + 2)*b(3, 3))
+         end do
+      end do
+   end subroutine subtract_square
+
+   !> x - a b, of few columns inline, three at a time
    pure subroutine subtract_product(n, m, ld, a, b, x)
       integer, intent(in) :: n, m, ld         !! Rows, columns, and the distance of two columns
       real(wp), intent(in) :: a(ld, *)        !! Matrix: (n, m)
@@ -228,14 +244,9 @@ contains
          call dgemv("N", n, m, -1.0_wp, a, ld, b, 1, 1.0_wp, x, 1)
          return
       end if
-      do c = 1, m - 2, 3
+      do c = 1, m, 3
          do i = 1, n
             x(i) = x(i) - (a(i, c)*b(c) + a(i, c + 1)*b(c + 1) + a(i, c + 2)*b(c + 2))
-         end do
-      end do
-      do c = m - modulo(m, 3) + 1, m
-         do i = 1, n
-            x(i) = x(i) - a(i, c)*b(c)
          end do
       end do
    end subroutine subtract_product
@@ -249,9 +260,7 @@ contains
       integer :: i
 
       do i = 1, n
-         x(1) = x(1) - a(i, 1)*b(i)
-         x(2) = x(2) - a(i, 2)*b(i)
-         x(3) = x(3) - a(i, 3)*b(i)
+         x = x - a(i, :3)*b(i)
       end do
    end subroutine subtract_rows
 end module dda_front

@@ -10,10 +10,9 @@ module dda_lapack
       !> Least squares by factors that show the rank
       pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
          import :: wp
-         integer, intent(in) :: m                   !! Rows
-         integer, intent(in) :: n                   !! Columns, or order of a matrix
-         integer, intent(in) :: nrhs                !! Right-hand sides
-         integer, intent(in) :: lda, ldb, lwork     !! Rows of a and b, size of the work space
+         integer, intent(in) :: m, n                !! Rows; columns, or order of a matrix
+         !> Right-hand sides, rows of a and b, size of the work space
+         integer, intent(in) :: nrhs, lda, ldb, lwork
          real(wp), intent(inout) :: a(lda, *)       !! Matrix in, its factors out: (lda, n)
          real(wp), intent(inout) :: b(ldb, *)       !! Loads in, solutions out: (ldb, nrhs)
          integer, intent(inout) :: jpvt(*)          !! 0 for columns that may change places: (n)
@@ -29,8 +28,7 @@ module dda_lapack
          import :: wp
          character, intent(in) :: transa, transb    !! "T": the transpose
          integer, intent(in) :: m, n, lda, ldb
-         integer, intent(in) :: k                   !! Columns of the first factor
-         integer, intent(in) :: ldc                 !! Rows of c
+         integer, intent(in) :: k, ldc              !! Columns of the first factor, rows of c
          real(wp), intent(in) :: alpha, beta        !! Factors
          real(wp), intent(in) :: a(lda, *)          !! First factor: (lda, k)
          real(wp), intent(in) :: b(ldb, *)          !! Second factor: (ldb, n)
@@ -62,8 +60,7 @@ module dda_lapack
       pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          character, intent(in) :: trans
-         integer, intent(in) :: n, lda, ldb
-         integer, intent(in) :: nrhs
+         integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(in) :: a(lda, *)
          integer, intent(in) :: ipiv(*)
          real(wp), intent(inout) :: b(ldb, *)       !! Loads in, solutions out: (ldb, nrhs)
@@ -86,11 +83,9 @@ module dda_lapack
       !> Exchange rows as a factorisation did
       pure subroutine dlaswp(n, a, lda, k1, k2, ipiv, incx)
          import :: wp
-         integer, intent(in) :: n, lda
+         integer, intent(in) :: n, lda, incx, ipiv(*)
          real(wp), intent(inout) :: a(lda, *)
          integer, intent(in) :: k1, k2              !! First and last exchange
-         integer, intent(in) :: ipiv(*)
-         integer, intent(in) :: incx
       end subroutine dlaswp
 
       !> Factor a symmetric, positive definite matrix
