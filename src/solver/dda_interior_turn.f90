@@ -14,8 +14,7 @@ module dda_interior_turn
    implicit none
    private
 
-   public :: lift
-   public :: begin_turns, see_residuals, predict, correct, move
+   public :: lift, begin_turns, see_residuals, predict, correct, move
 
    !> Relative shift of diagonal entries
    real(wp), parameter :: lift = 1.0e-14_wp
@@ -237,29 +236,24 @@ contains
       product = share*turn%barrier
    end function aimed_product
 
-   !> Change of x that a correction aims at on the rays of a joint
-   pure function change_of_aim(path, wish, point, turn, j) result(change)
-      type(load_path_t), intent(in) :: path
+   !> Change of x that a correction aims at. Arrays are flat here and below, so that a loop is one
+   pure subroutine change_aim(n, wish, x, s, dx, ds, aim, change)
+      integer, intent(in) :: n                    !! Number of rays
       type(centring_t), intent(in) :: wish
-      type(interior_point_t), intent(in) :: point
-      type(turn_t), intent(in) :: turn         !! Has the direction before, and its aim
-      integer, intent(in) :: j                 !! Number of the joint
-      real(wp) :: change(n_side)
+      real(wp), intent(in) :: x(n), s(n), dx(n), ds(n), aim(n)  !! Point, direction before, its aim
+      real(wp), intent(out) :: change(n)          !! The change
 
-      associate (x => point%x(:, j), s => point%s(:, j), dx => turn%dx(:, j), ds => turn%ds(:, j))
-         select case (wish%kind)
-         case (centring%equal)
-            change = (wish%product - dx*ds)/s
-         case (centring%within)
-            change = (x + wish%further(1)*dx)*(s + wish%further(2)*ds)
-            change = max(-largest_product*wish%product, min(max(change, &
-               & least_product*wish%product), largest_product*wish%product) - change)/s
-         case default
-            change = wish%product/s - x - turn%aim(:, j)
-         end select
-      end associate
-      if (path%has_others) change = change*path%bounded(:, j)
-   end function change_of_aim
+      select case (wish%kind)
+      case (centring%equal)
+         change = (wish%product - dx*ds)/s
+      case (centring%within)
+         change = (x + wish%further(1)*dx)*(s + wish%further(2)*ds)
+         change = max(-largest_product*wish%product, min(max(change, &
+            & least_product*wish%product), largest_product*wish%product) - change)/s
+      case default
+         change = wish%product/s - x - aim
+      end select
+   end subroutine change_aim
 
    !> Change the aim of a direction, and take as much of that as makes the steps longest
    !> (Colombo and Gondzio 2008)
@@ -272,29 +266,22 @@ contains
       type(turn_t), intent(inout) :: turn
       real(wp), intent(out) :: reach(2)
       real(wp), dimension(n_side, size(turn%dx, 2)) :: change, dx
-      real(wp) :: more(n_side, 2, size(springs%strip)), other(n_side)
+      real(wp) :: more(n_side, 2, size(springs%strip))
       real(wp) :: dv(3, 0:graph%n_block), dfactor, share, steps(2, n_share)
-      integer :: i, j, best
+      integer :: i, best
 
       dx = turn%dx
       dv = turn%dv
       dfactor = turn%dfactor
-      do j = 1, size(dx, 2)
-         change(:, j) = change_of_aim(path, wish, point, turn, j)
-         turn%dx(:, j) = dx(:, j) + change(:, j) &
-            & *(1.0_wp - path%compliance*springs%stiffness(:, j))
-      end do
+      call change_aim(size(dx), wish, point%x, point%s, dx, turn%ds, turn%aim, change)
+      if (path%has_others) change = change*path%bounded
+      turn%dx = dx + change*(1.0_wp - path%compliance*springs%stiffness)
       call see_yielding(springs, dx, turn, more)
       call see_rest(graph, path, turn)
       call find_balance(graph, path, point, springs, turn)
       call add_yielding(springs, more, turn)
-      ! the rates are not needed any more and make room for what s would change by
-      do j = 1, size(dx, 2)
-         other = turn%dx(:, j) - dx(:, j)
-         turn%dx(:, j) = turn%dx(:, j) - springs%stiffness(:, j)*turn%rate(:, j)
-         turn%rate(:, j) = turn%ds(:, j) + path%compliance*other &
-            & + (1.0_wp - path%compliance*springs%stiffness(:, j))*turn%rate(:, j)
-      end do
+      call follow_rates(size(dx), path%compliance, springs%stiffness, dx, turn%ds, turn%dx, &
+         & turn%rate)
       steps = steps_of_shares(path, point, turn, dx)
       best = n_share
       do i = n_share - 1, 1, -1
@@ -309,11 +296,26 @@ contains
       turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
    end subroutine add_correction
 
+   !> Change the direction of x by the rates, and put that of s in their place
+   pure subroutine follow_rates(n, compliance, stiffness, before, ds, dx, rate)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: compliance, stiffness(n)  !! Those of the path and of the springs
+      real(wp), intent(in) :: before(n), ds(n)          !! The direction before
+      real(wp), intent(inout) :: dx(n), rate(n)         !! The directions out
+      real(wp) :: other
+      integer :: i
+
+      do i = 1, n
+         other = dx(i) - before(i)
+         dx(i) = dx(i) - stiffness(i)*rate(i)
+         rate(i) = ds(i) + compliance*other + (1.0_wp - compliance*stiffness(i))*rate(i)
+      end do
+   end subroutine follow_rates
+
    !> Go a share of the way to other numbers
    pure subroutine take_share(n, share, other, number)
       integer, intent(in) :: n              !! Number of values
-      real(wp), intent(in) :: share         !! The share
-      real(wp), intent(in) :: other(n)      !! The others
+      real(wp), intent(in) :: share, other(n)  !! The share, and the others
       real(wp), intent(inout) :: number(n)  !! The numbers
 
       number = number + share*(other - number)

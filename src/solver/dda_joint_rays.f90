@@ -93,7 +93,7 @@ contains
    pure function joint_spring(kind, friction, stiffness) result(spring)
       integer, intent(in) :: kind           !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction      !! Coefficient of friction
-      real(wp), intent(in) :: stiffness(:)  !! Stiffness of each ray: (n_side)
+      real(wp), intent(in) :: stiffness(n_side)  !! Stiffness of each ray
       real(wp) :: spring(3, 3)              !! Opening 1, opening 2, slip: (3, 3)
       real(wp) :: part(2)
       integer :: shape
@@ -115,7 +115,7 @@ contains
    pure function sum_of_rays(kind, friction, x) result(force)
       integer, intent(in) :: kind       !! Its kind, one of joint_kind
       real(wp), intent(in) :: friction  !! Coefficient of friction
-      real(wp), intent(in) :: x(:)      !! Their factors: (n_side)
+      real(wp), intent(in) :: x(n_side) !! Their factors
       real(wp) :: force(3)              !! N1, N2, T: (3)
       real(wp) :: part(2)
       integer :: shape
@@ -168,8 +168,8 @@ contains
    pure subroutine ray_rates(graph, length, v, rate)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: length                   !! Unit of length [m]
-      real(wp), intent(in), contiguous :: v(:, 0:)     !! Motion: (3, 0:n_block)
-      real(wp), intent(out), contiguous :: rate(:, :)  !! Rates: (n_side, n_joint)
+      real(wp), intent(in) :: v(3, 0:graph%n_block)    !! Motion
+      real(wp), intent(out) :: rate(n_side, size(graph%kind))  !! Rates
       real(wp) :: arm, opening(3), part(2), p(3), q(3)
       integer :: i, j, shape
 
@@ -199,10 +199,9 @@ contains
    pure subroutine add_ray_forces(graph, length, x, load)
       type(joint_graph_t), intent(in) :: graph
       real(wp), intent(in) :: length  !! Unit of length [m]
-      !> Their factors: (n_side, n_joint)
-      real(wp), intent(in), contiguous :: x(:, :)
-      !> Loads, to which theirs are added; what falls to 0 is lost: (3, 0:n_block)
-      real(wp), intent(inout), contiguous :: load(:, 0:)
+      real(wp), intent(in) :: x(n_side, size(graph%kind))  !! Their factors
+      !> Loads, to which theirs are added; what falls to 0 is lost
+      real(wp), intent(inout) :: load(3, 0:graph%n_block)
       real(wp) :: arm, f(3)
       integer :: b, j, side
 

@@ -140,7 +140,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: pushed(3, 3, 2), row(3, 3, 2), spring(3, 3)
       real(rk) :: soft(3, 3)
-      integer :: j, next, side
+      integer :: c, j, next, side
 
       next = 1
       springs%matrix%diagonal = 0.0_wp
@@ -154,14 +154,22 @@ contains
          end if
          do side = 1, 2
             if (graph%block(side, j) == 0) cycle
-            pushed(:, :, side) = matmul(row(:, :, side), spring)
+            do c = 1, 3
+               pushed(:, c, side) = row(:, 1, side)*spring(1, c) + row(:, 2, side)*spring(2, c) &
+                  & + row(:, 3, side)*spring(3, c)
+            end do
             call add_lower(pushed(:, :, side), row(:, :, side), &
                & springs%matrix%diagonal(:, :, graph%block(side, j)))
          end do
          if (springs%entry(j) == 0) cycle
          side = merge(1, 2, springs%entry(j) > 0)
-         springs%matrix%coupling(:, :, abs(springs%entry(j))) = &
-            & matmul(pushed(:, :, side), transpose(row(:, :, 3 - side)))
+         associate (coupling => springs%matrix%coupling(:, :, abs(springs%entry(j))), &
+            & push => pushed(:, :, side), other => row(:, :, 3 - side))
+            do c = 1, 3
+               coupling(:, c) = push(:, 1)*other(c, 1) + push(:, 2)*other(c, 2) &
+                  & + push(:, 3)*other(c, 3)
+            end do
+         end associate
       end do
    end subroutine assemble
 
