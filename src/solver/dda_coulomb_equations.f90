@@ -26,7 +26,7 @@ module dda_coulomb_equations
    !> Maximum number of stored unit responses; more cost a new factor
    integer, parameter :: max_answer = 32
    !> Maximum number of stored values of unit responses
-   integer, parameter :: most_numbers = 40000
+   integer, parameter :: most_numbers = 160000
    !> Least number of stored unit responses
    integer, parameter :: least_answers = 7
 
