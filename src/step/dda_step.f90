@@ -12,7 +12,7 @@ module dda_step
    use dda_step_at_rest, only : rest
    use dda_step_check, only : check_motion, check_speeds, retry
    use dda_step_interval, only : largest_motion
-   use dda_step_motion, only : assemble_step, place_contacts, predict_step, solve_contacts
+   use dda_step_motion, only : assemble_step, predict_step, renew_try, solve_contacts
    use dda_step_reach, only : next_reach
    use dda_velocity, only : solve_impacts
    use dda_verdict, only : measure_step
@@ -47,7 +47,7 @@ contains
       type(error_t), allocatable, intent(inout) :: error
       type(step_outcome_t) :: outcome
       character(len=12) :: time
-      logical :: still
+      logical :: repeats, still
       integer :: attempt
 
       call rest(run, still)
@@ -55,11 +55,14 @@ contains
       call predict_step(run)
       do attempt = 0, max_retries
          if (is_too_short(run)) exit
-         if (run%step%renews) call place_contacts(run)
-         call assemble_step(run)
+         repeats = .false.
+         if (run%step%renews) call renew_try(run, attempt > 0, repeats)
          outcome = step_outcome_t(accepted=.true.)
-         if (in_time(run)) outcome = foresee_event(run)
-         if (outcome%accepted) call solve_contacts(run)
+         if (.not. repeats) then
+            call assemble_step(run)
+            if (in_time(run)) outcome = foresee_event(run)
+            if (outcome%accepted) call solve_contacts(run)
+         end if
          if (outcome%accepted) outcome = check_motion(run)
          if (outcome%accepted .and. in_time(run)) then
             call solve_impacts(run)

@@ -3,7 +3,7 @@ module dda_step_motion
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_contact_transfer, only : renew_contacts
-   use dda_contacts, only : follow_contacts
+   use dda_contacts, only : contacts_t, follow_contacts
    use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -14,7 +14,7 @@ module dda_step_motion
    implicit none
    private
 
-   public :: assemble_step, begin_step, place_contacts, predict_step, solve_contacts
+   public :: assemble_step, begin_step, place_contacts, predict_step, renew_try, solve_contacts
 
 contains
 
@@ -42,6 +42,39 @@ contains
       run%march%reach = first_reach(run%system, run%settings, run%march)
       call reach_like_neighbours(run%contacts%joint, run%system%equation, run%march%reach)
    end subroutine predict_step
+
+   !> Place the contacts for a try. Where a try of the same length has had the same ones, its
+   !> motion is the answer to the same equations and stands
+   pure subroutine renew_try(run, has_motion, repeats)
+      type(run_t), intent(inout) :: run
+      logical, intent(in) :: has_motion  !! True if a try of this step has been solved
+      logical, intent(out) :: repeats    !! True if its motion stands
+      type(contacts_t) :: before
+
+      repeats = has_motion .and. .not. abs(run%march%dt - run%step%dt) > 0.0_wp
+      if (repeats) before = run%contacts
+      call place_contacts(run)
+      if (repeats) repeats = has_same_corners(before, run%contacts)
+      if (repeats) run%contacts = before
+   end subroutine renew_try
+
+   !> True if joints join the same blocks at the same corners and edges
+   pure logical function has_same_corners(one, other) result(same)
+      type(contacts_t), intent(in) :: one, other
+      integer :: j, n
+
+      same = size(one%joint) == size(other%joint)
+      if (.not. same) return
+      do j = 1, size(one%joint)
+         n = one%joint(j)%n_contact
+         associate (a => one%joint(j)%contact(:n), b => other%joint(j)%contact)
+            same = n == other%joint(j)%n_contact &
+               & .and. all(one%joint(j)%block == other%joint(j)%block)
+            if (same) same = all(a%vertex == b(:n)%vertex .and. a%edge == b(:n)%edge)
+            if (.not. same) return
+         end associate
+      end do
+   end function has_same_corners
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
    pure subroutine place_contacts(run)
