@@ -42,8 +42,7 @@ contains
       gap = huge(gap)
       do j = 1, size(closed, 2)
          do k = 1, run%contacts%joint(j)%n_contact
-            gap(k, j) = run%contacts%gap(k, j) + run%step%state%increment(k, j) &
-               & + run%step%curve(k, j) - near_gap(run%system, run%contacts%joint(j)%block)
+            gap(k, j) = run%step%end_gap(k, j) - near_gap(run%system, run%contacts%joint(j)%block)
             closed(k, j) = .not. run%step%state%face(j)%open(k)
          end do
       end do
