@@ -29,7 +29,7 @@ HEADS = {
     "buttresses_2_stand": "Semicircle on buttresses 2 R high",
     "buttresses_3_stand": "Semicircle on buttresses 3 R high",
     "arch_pulse_100": "Arch of seven voussoirs in rectangular pulses",
-    "bounce_first": "Rebounds of two runs, the second from the end of the first",
+    "bounce_first": "Rebounds in two runs",
     "worst_rings_2": "Arches of rings under an axle at its worst position",
 }
 _COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
