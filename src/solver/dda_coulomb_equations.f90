@@ -13,7 +13,8 @@
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : add_springs, damped_mass, joint_stiffness
+   use dda_coulomb_law, only : add_springs, coulomb_state_t, damped_mass, joint_stiffness
+   use dda_crushed_joint, only : place_strips
    use dda_joint_graph, only : joint_motion
    use dda_joint_matrix, only : factor_joints, joint_matrix_t, lay_out_joints
    use dda_kinds, only : small, wp
@@ -21,7 +22,8 @@ module dda_coulomb_equations
    implicit none
    private
 
-   public :: coulomb_equations_t, new_coulomb_equations, path_damping, solve_equations, use_faces
+   public :: bend_joints, coulomb_equations_t, new_coulomb_equations, path_damping, &
+      & solve_equations, use_faces
 
    !> Maximum number of stored unit responses; more cost a new factor
    integer, parameter :: max_answer = 32
@@ -84,7 +86,6 @@ module dda_coulomb_equations
 
    !> Maximum number of new unit responses per update
    integer, parameter :: max_new = 16
-
 contains
 
    !> Pattern of the equations
@@ -134,6 +135,17 @@ contains
       if (few) call factor_capacity(equations, few)
       if (.not. few) call factor_faces(equations, joints)
    end subroutine use_faces
+
+   !> Place the strips of a state; a factor that includes one that moves is lost
+   pure subroutine bend_joints(equations, joints, state)
+      type(coulomb_equations_t), intent(inout) :: equations
+      type(coulomb_joints_t), intent(inout) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      logical :: lost
+
+      call place_strips(joints, state%force, state%gap, equations%base_face, lost)
+      if (lost) equations%usable = .false.
+   end subroutine bend_joints
 
    !> Factor the matrix of the faces
    pure subroutine factor_faces(equations, joints)

@@ -4,7 +4,7 @@
 !> of a joint and the mean mass of a block are 1, so that every threshold of a path is a plain
 !> number. An elastic displacement is of order 1.
 module dda_coulomb_joints
-   use dda_joint_graph, only : breaks, joint_graph_t, joint_kind, take_over
+   use dda_joint_graph, only : breaks, crushes, joint_graph_t, joint_kind, take_over
    use dda_kinds, only : small, wp
    implicit none
    private
@@ -43,6 +43,9 @@ module dda_coulomb_joints
       real(wp) :: arm_unit = 1.0_wp           !! Unit of arms [m]
       real(wp) :: motion_unit = 1.0_wp        !! Unit of displacements and gaps [m]
       logical :: has_weight = .false.         !! True if a load has set the unit of force
+      !> Normal force over the strength, and opening beyond the springs, of joints that crush, where
+      !> a state has them; unallocated if there are none: (n_joint)
+      real(wp), allocatable :: share(:), slack(:)
    end type coulomb_joints_t
 
    !> Least strength over the weight of a block
@@ -87,6 +90,9 @@ contains
          scaled%mass(3:, :) = scaled%mass(3:, :)/joints%arm_unit**2
       end associate
       call set_force_unit(joints, load)
+      if (crushes(joints%graph)) &
+         & allocate (joints%share(size(joints%graph%kind)), joints%slack(size(joints%graph%kind)), &
+         & source=0.0_wp)
       call drop_faint_strength(joints)
       call set_roles(joints)
       ! roles replace the kinds
@@ -117,6 +123,10 @@ contains
       if (breaks(joints%graph)) then
          joints%graph%pull = joints%graph%pull*(joints%force_unit/unit)
          joints%graph%cohesion = joints%graph%cohesion*(joints%force_unit/unit)
+      end if
+      if (crushes(joints%graph)) then
+         where (joints%graph%crush < huge(1.0_wp)) &
+            & joints%graph%crush = joints%graph%crush*(joints%force_unit/unit)
       end if
       joints%motion_unit = joints%motion_unit*(unit/joints%force_unit)
       joints%force_unit = unit

@@ -13,6 +13,7 @@
 !> Equation (M4) of docs/method.md
 module dda_coulomb_law
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
+   use dda_crushed_joint, only : can_crush, is_crushed, weight_of
    use dda_joint_graph, only : add_joint_forces, breaks, push_blocks
    use dda_kinds, only : small, wp
    implicit none
@@ -20,7 +21,7 @@ module dda_coulomb_law
 
    public :: coulomb_state_t, face, face_enum, break_joint, damped_mass, strength
    public :: unloaded_state, add_springs, apply_law, force_faces, imbalance, joint_stiffness
-   public :: shear_face, spring_forces
+   public :: crush_joint, normal_forces, shear_face, spring_forces, yield_joint
 
    !> State of a corner or a joint: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
@@ -52,6 +53,28 @@ module dda_coulomb_law
       !> Load that it carries: (3, n_block)
       real(wp), allocatable :: load(:, :)
    end type coulomb_state_t
+
+   interface
+
+      !> Normal forces, gaps and corners of a joint that crushes after an increment of openings
+      pure module subroutine crush_joint(joints, j, opening, state)
+         type(coulomb_joints_t), intent(in) :: joints
+         integer, intent(in) :: j            !! Number of the joint
+         real(wp), intent(in) :: opening(2)  !! Increments of opening 1 and opening 2
+         type(coulomb_state_t), intent(inout) :: state
+      end subroutine crush_joint
+
+      !> Normal forces and gaps of a joint that crushes after increments of its openings, while its
+      !> corners stay open and closed
+      pure module subroutine yield_joint(joints, j, ends, opening, state)
+         type(coulomb_joints_t), intent(in) :: joints
+         integer, intent(in) :: j               !! Number of the joint
+         integer(small), intent(in) :: ends(2)  !! States of its corners
+         real(wp), intent(in) :: opening(2)     !! Increments of opening 1 and opening 2
+         type(coulomb_state_t), intent(inout) :: state
+      end subroutine yield_joint
+
+   end interface
 
 contains
 
@@ -117,7 +140,7 @@ contains
          shear_face = face%free
       else if (joints%shear_role(j) == shear_role%tied) then
          shear_face = face%stuck
-      else if (all(ends == face%open)) then
+      else if (all(ends == face%open) .and. .not. is_crushed(joints, j)) then
          shear_face = face%free
       end if
    end function shear_face
@@ -154,6 +177,12 @@ contains
                end select
             end associate
          end do
+         if (can_crush(joints, j)) then
+            after%force(:2, j) = before%force(:2, j)
+            after%gap(:, j) = before%gap(:, j)
+            after%face(:2, j) = before%face(:2, j)
+            call crush_joint(joints, j, opening(:2, j), after)
+         end if
          trial = before%force(3, j) - opening(3, j)/joints%graph%compliance(j)
          after%face(3, j) = face%stuck
          after%force(3, j) = trial
@@ -237,21 +266,46 @@ contains
       integer, intent(in) :: j
       integer(small), intent(in) :: faces(3)  !! Its states: (3)
       real(wp) :: stiffness(3, 3)      !! Rows N1, N2, T; columns opening 1, opening 2, slip
+      real(wp) :: unit(2)
       integer :: i
 
       stiffness = 0.0_wp
       do i = 1, 2
          if (faces(i) == face%closed) stiffness(i, i) = 1.0_wp/joints%graph%compliance(j)
+         if (.not. allocated(joints%share)) cycle
+         unit = 0.0_wp
+         unit(i) = -1.0_wp
+         stiffness(:2, i) = normal_forces(joints, j, faces(:2), unit)
       end do
       select case (faces(3))
       case (face%slides, face%slides_back)
          do i = 1, 2
-            stiffness(3, i) = real(faces(3), wp)*joints%graph%friction(j)*stiffness(i, i)
+            stiffness(3, i) = real(faces(3), wp)*joints%graph%friction(j)*sum(stiffness(:2, i))
          end do
       case (face%stuck)
          stiffness(3, 3) = 1.0_wp/joints%graph%compliance(j)
       end select
    end function joint_stiffness
+
+   !> Normal forces by which the springs of a joint answer openings while its corners stay: where
+   !> one of a joint that crushes is open, at the edge of its strip
+   pure function normal_forces(joints, j, ends, opening) result(force)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j               !! Number of the joint
+      integer(small), intent(in) :: ends(2)  !! States of its corners
+      real(wp), intent(in) :: opening(2)     !! Opening 1, opening 2
+      real(wp) :: force(2)                   !! N1, N2
+      real(wp) :: weight(2)
+
+      force = 0.0_wp
+      if (ends(1) == face%closed) force(1) = -opening(1)/joints%graph%compliance(j)
+      if (ends(2) == face%closed) force(2) = -opening(2)/joints%graph%compliance(j)
+      if (.not. allocated(joints%share) .or. ends(1) == ends(2)) return
+      if (.not. can_crush(joints, j)) return
+      weight = weight_of(joints, j, merge(1, 2, ends(1) == face%closed))
+      force = -weight*sum(weight*opening)/(joints%graph%compliance(j)*sum(weight**2) &
+         & + joints%slack(j)/joints%graph%crush(j))
+   end function normal_forces
 
    !> Forces by which the springs of a joint answer its openings while the faces stay
    pure function spring_force(joints, j, faces, opening) result(force)
@@ -260,12 +314,9 @@ contains
       integer(small), intent(in) :: faces(3)
       real(wp), intent(in) :: opening(3)  !! Opening 1, opening 2, slip
       real(wp) :: force(3)                !! N1, N2, T
-      integer :: i
 
-      do i = 1, 2
-         force(i) = 0.0_wp
-         if (faces(i) == face%closed) force(i) = -opening(i)/joints%graph%compliance(j)
-      end do
+      force(:2) = merge(-opening(:2)/joints%graph%compliance(j), 0.0_wp, faces(:2) == face%closed)
+      if (allocated(joints%share)) force(:2) = normal_forces(joints, j, faces(:2), opening(:2))
       select case (faces(3))
       case (face%stuck)
          force(3) = -opening(3)/joints%graph%compliance(j)

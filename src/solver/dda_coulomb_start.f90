@@ -18,8 +18,6 @@ submodule (dda_loading_path) dda_coulomb_start
    real(wp), parameter :: balance = 1.0e-10_wp
    !> Largest share of the load that damping may take at rest
    real(wp), parameter :: unseen = 1.0e-5_wp
-   !> Least damping above round-off
-   real(wp), parameter :: least_damping = 1.1e-14_wp
 
 contains
 

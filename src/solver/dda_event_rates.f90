@@ -12,7 +12,7 @@ module dda_event_rates
    implicit none
    private
 
-   public :: find_rates, pivot_to_load, rates_t, undamp_rates
+   public :: find_rates, pivot_to_load, rates_t, solve_rates, undamp_rates
    public :: rate_law_t, set_rate_law, weak_force
 
    !> Undetermined faces of a state

@@ -21,8 +21,9 @@ module dda_joint_strips
    private
 
    public :: joint_strip_t
-   public :: add_strips, bear_strips, keep_inside, list_strips, never_crush, see_strips
-   public :: part_opening, renew_strips, soften_spring, strip_hurry, strip_lack, strip_power
+   public :: add_strips, bear_strips, beyond_parabola, keep_inside, list_strips, never_crush
+   public :: see_strips, part_opening, renew_strips, soften_spring
+   public :: strip_hurry, strip_lack, strip_power
    public :: subtract_crushing, yield_strip
 
    !> A joint that crushes
@@ -127,6 +128,20 @@ contains
       force = sum_of_rays(strip%kind, strip%friction, x(:, strip%joint))
       share = (force(1) + force(2))/strip%strength
    end function part_of_strip
+
+   !> Excess of the forces of a joint over its crushing limit [N/m]
+   elemental real(wp) function beyond_parabola(strength, n1, n2) result(beyond)
+      !> Strength over the whole length; huge where it does not crush [N/m]
+      real(wp), intent(in) :: strength
+      !> Normal force at the first corner [N/m]
+      real(wp), intent(in) :: n1
+      !> Normal force at the second corner [N/m]
+      real(wp), intent(in) :: n2
+
+      beyond = 0.0_wp
+      if (strength < huge(strength)) &
+         & beyond = max(0.0_wp, (n1 + n2)*((n1 + n2)/strength)/2.0_wp - min(n1, n2))
+   end function beyond_parabola
 
    !> Values of z1 and z2 by the forces of the joint
    pure function bear_strips(strip, x) result(z)

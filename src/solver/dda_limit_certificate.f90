@@ -7,7 +7,7 @@ module dda_limit_certificate
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : add_joint_forces, crushes, joint_graph_t, joint_kind, &
       & joint_motion, unit_of_length
-   use dda_joint_layers, only : beyond_parabola
+   use dda_joint_strips, only : beyond_parabola
    use dda_kinds, only : wp
    implicit none
    private

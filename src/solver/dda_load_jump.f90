@@ -4,7 +4,7 @@
 !> Where a load has grown by a little and no state in balance is near, the blocks move until gaps
 !> close or joints stick, and forces balance again: a jump. If nothing stops them they fall.
 module dda_load_jump
-   use dda_coulomb_equations, only : coulomb_equations_t
+   use dda_coulomb_equations, only : bend_joints, coulomb_equations_t
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
    use dda_event_rates, only : find_rates, rates_t, weak_force
@@ -87,7 +87,7 @@ contains
    !> where it leads beyond, a smaller one may end there
    pure subroutine nudge_to_balance(joints, equations, load_rate, width, left, state, jump, &
       & gained, end, opening_rate)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       !> Growing part of the load: (3, n_block)
       real(wp), intent(in) :: load_rate(:, :)
@@ -138,7 +138,7 @@ contains
 
    !> Remove the unbalanced part of the load, beyond rounding
    pure subroutine balance_rest(joints, equations, state)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_state_t), intent(inout) :: state
       integer, parameter :: max_turn = 3
@@ -151,6 +151,7 @@ contains
       do turn = 1, max_turn
          call imbalance(joints, state%load, state%force, rest)
          if (.not. maxval(abs(rest)) > exact) return
+         call bend_joints(equations, joints, state)
          call find_rates(joints, equations, state, rest, 0.0_wp, rates, found)
          if (.not. found .or. rates%unbalanced > moves_unbalanced) return
          event = next_event(joints, state, rates, 1.0_wp)
@@ -160,7 +161,7 @@ contains
 
    !> Redistribute the force that a joint has ceased to carry, at the same load
    pure subroutine share_anew(joints, equations, far, state, jump, end)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: far  !! A motion beyond this is far
       type(coulomb_state_t), intent(inout) :: state
@@ -175,7 +176,7 @@ contains
    !> Let the blocks move at a load that is somewhat larger
    pure subroutine try_nudge(joints, equations, load_rate, more, state, jump, moved, end, &
       & opening_rate)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: load_rate(:, :)
       real(wp), intent(in) :: more  !! Its growth
@@ -185,7 +186,9 @@ contains
       integer, intent(out) :: end
       real(wp), intent(in), optional :: opening_rate(:, :)
 
-      jump%tolerance = max(rounding*max(1.0_wp, maxval(abs(state%force))), nudge_left*more)
+      jump%tolerance = rounding*max(1.0_wp, maxval(abs(state%force)))
+      ! where joints crush the path goes on from balance
+      if (.not. allocated(joints%share)) jump%tolerance = max(jump%tolerance, nudge_left*more)
       moved = state
       moved%load = state%load + more*load_rate
       if (present(opening_rate)) then
@@ -203,7 +206,7 @@ contains
    !> load do not count: far from the moving blocks, joints at their limits change their faces by
    !> rounding alone, without end
    pure subroutine jump_to_balance(joints, equations, start, state, jump, end)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: start(:, :)  !! Motion of the state as it begins: (3, n_block)
       !> The state, which may not carry its load yet
@@ -231,6 +234,7 @@ contains
          i = i + 1
          call renew_patience(maxval(abs(state%motion - start)), most, way, i)
          call imbalance(joints, state%load, state%force, rest)
+         call bend_joints(equations, joints, state)
          if (i > most/brief) far = driven*jump%far
          call see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
          if (end /= motion_end%unsettled) return
@@ -324,7 +328,7 @@ contains
    !> Check if a motion has come to balance, or far. If a far one has no proof of being endless, the
    !> blocks have collapsed by its distance
    pure subroutine see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
-      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       real(wp), intent(in) :: rest(:, :)
       real(wp), intent(in) :: start(:, :)  !! Motion where it began: (3, n_block)

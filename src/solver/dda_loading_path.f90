@@ -19,12 +19,10 @@ module dda_loading_path
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, set_force_unit, take_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, unloaded_state
-   use dda_event_rates, only : find_rates, rates_t, undamp_rates
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_jump, only : balance_rest, far_factor, jump_t, motion_end, moves_unbalanced, &
-      & nudge, nudge_to_balance, share_anew
-   use dda_path_event, only : event_kind, event_t, go_back, move_on, next_event, path_end
+   use dda_load_jump, only : balance_rest, far_factor, jump_t, motion_end, moves_unbalanced
+   use dda_path_event, only : path_end
    implicit none
    private
 
@@ -88,20 +86,8 @@ module dda_loading_path
       real(wp), allocatable :: mechanism(:, :)
    end type path_result_t
 
-   !> Factor of progress within which jumps increase the nudge
-   real(wp), parameter :: slow_factor = 10.0_wp
-   !> Largest nudge
-   real(wp), parameter :: largest_nudge = 1.0e-3_wp
-   !> Unbalanced share of the load at rest without damping
-   real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
-   !> Distance to an event below which it makes no progress
-   real(wp), parameter :: no_way = 1.0e-13_wp
-   !> Maximum number of events without progress
-   integer, parameter :: max_standstill = 60
-   !> Maximum number of events and jumps, and per joint
-   integer, parameter :: least_patience = 2000, patience = 100
-   !> Maximum number of jumps
-   integer, parameter :: max_jump = 1000
+   !> Least damping above round-off
+   real(wp), parameter :: least_damping = 1.1e-14_wp
    !> Maximum number of factorisations, plus one per joint
    integer, parameter :: least_factorisations = 10000
 
@@ -119,13 +105,39 @@ module dda_loading_path
 
       !> State under a load that is applied at once
       pure module subroutine load_at_once(joints, equations, load, state, jump, end)
-         type(coulomb_joints_t), intent(in) :: joints
+         type(coulomb_joints_t), intent(inout) :: joints
          type(coulomb_equations_t), intent(inout) :: equations
          real(wp), intent(in) :: load(:, :)   !! The load: (3, n_block)
          type(coulomb_state_t), intent(out) :: state
          type(jump_t), intent(inout) :: jump  !! Output of a motion, where one was needed
          integer, intent(out) :: end          !! Its end, one of motion_end
       end subroutine load_at_once
+
+      !> From event to event, with jumps, which have rates of their own, where no rates go on
+      pure module subroutine follow(path, first, way, h_end, state, result)
+         type(loading_path_t), intent(inout) :: path
+         real(wp), intent(in) :: first(:, :)  !! Load at the beginning: (3, n_block)
+         !> Growing load, in units of the joints; the largest force is one
+         type(path_rate_t), intent(in) :: way
+         real(wp), intent(in) :: h_end        !! Required multiple of it
+         type(coulomb_state_t), intent(inout) :: state
+         type(path_result_t), intent(inout) :: result
+      end subroutine follow
+
+      !> Result of a path that ends by a collapse, or by a motion that did not converge
+      pure module subroutine note_fall(end, jump, result)
+         integer, intent(in) :: end  !! End of the motion
+         type(jump_t), intent(in) :: jump
+         type(path_result_t), intent(inout) :: result
+      end subroutine note_fall
+
+      !> A state whose joints do not crush, at a share of its load at which they crush by little
+      pure module subroutine begin_to_crush(path, state, share, settled)
+         type(loading_path_t), intent(inout) :: path
+         type(coulomb_state_t), intent(inout) :: state
+         real(wp), intent(out) :: share   !! The share of its load
+         logical, intent(out) :: settled  !! True if forces balance that
+      end subroutine begin_to_crush
 
    end interface
 
@@ -153,9 +165,12 @@ contains
       type(coulomb_state_t), intent(out) :: state
       !> Its result; "reached" is 1 for the whole load
       type(path_result_t), intent(out) :: result
+      type(coulomb_joints_t) :: joints
       type(jump_t) :: jump
       type(path_rate_t) :: rate
+      real(wp) :: share
       integer :: end
+      logical :: settled
 
       if (breaks(path%joints%graph)) then
          ! what breaks, and when, depends on how the load grows
@@ -168,14 +183,25 @@ contains
       end if
       allocate (result%jump(0))
       path%equations%most_factorisations = path%most_factorisations
-      call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
-         & jump, end)
+      ! without strength they have no unit of force, so that all of the load is one way
+      joints = path%joints
+      if (allocated(joints%share)) deallocate (joints%share)
+      call load_at_once(joints, path%equations, in_units(path%joints, dead_load), state, jump, end)
       result%end = path_end%reached
       result%reason = path_reason%none
       result%reached = 1.0_wp
+      share = 1.0_wp
+      if (end == motion_end%balanced .and. allocated(path%joints%share)) then
+         call begin_to_crush(path, state, share, settled)
+         if (.not. settled) end = motion_end%unsettled
+      end if
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
       if (result%end == path_end%reached) call balance_rest(path%joints, path%equations, state)
       call finish(path, state, result)
+      if (result%end /= path_end%reached .or. .not. share < 1.0_wp) return
+      rate%load = dead_load - state%load
+      call follow_path(path, state, rate, 1.0_wp, result)
+      path%softness = 0.0_wp
    end subroutine apply_dead_load
 
    !> Follow a load, or supports that move, from a state in balance
@@ -240,122 +266,6 @@ contains
 
       plain = anint(x*2.0_wp**40)*2.0_wp**(-40)
    end function plain
-
-   !> From event to event, with jumps, which have rates of their own, where no rates go on
-   pure subroutine follow(path, first, way, h_end, state, result)
-      type(loading_path_t), intent(inout) :: path
-      real(wp), intent(in) :: first(:, :)  !! Load at the beginning: (3, n_block)
-      !> Growing load, in units of the joints; the largest force is one
-      type(path_rate_t), intent(in) :: way
-      real(wp), intent(in) :: h_end
-      type(coulomb_state_t), intent(inout) :: state
-      type(path_result_t), intent(inout) :: result
-      type(coulomb_state_t) :: last
-      type(event_t) :: event
-      type(rates_t) :: rates
-      real(wp) :: last_jump, width
-      type(jump_t) :: jump
-      integer :: end, standstill, i
-      logical :: found, slow
-
-      end = motion_end%balanced
-      standstill = 0
-      last_jump = -1.0_wp
-      width = nudge
-      do i = 1, least_patience + patience*size(state%slip)
-         if (result%reached >= h_end) return
-         if (size(result%jump) > max_jump) exit
-         call find_rates(path%joints, path%equations, state, way%load, 0.0_wp, rates, found, &
-            & way%opening)
-         found = found .and. rates%unbalanced <= moves_unbalanced .and. standstill <= max_standstill
-         if (found) call undamp_rates(path%joints, path%equations, way%load, rates)
-         if (found .and. rates%unbalanced <= rests_unbalanced) then
-            event = next_event(path%joints, state, rates, h_end - result%reached)
-            standstill = merge(standstill + 1, 0, event%distance < no_way)
-            if (allocated(state%whole)) last = state
-            call move_on(path%joints, rates, event, state)
-            result%reached = merge(h_end, result%reached + event%distance, &
-               & event%kind == event_kind%none)
-            result%n_event = result%n_event + 1
-            if (allocated(state%whole)) then
-               state%load = first + result%reached*way%load
-               if (any(last%whole .neqv. state%whole)) call share_anew(path%joints, &
-                  & path%equations, far_of(path, state), state, jump, end)
-               if (end /= motion_end%balanced) then
-                  call note_fall(end, jump, result)
-                  call go_back(path%joints, rates, event, last, state)
-                  return
-               end if
-            end if
-         else
-            slow = result%reached - last_jump < slow_factor*width
-            width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
-            last_jump = result%reached
-            standstill = 0
-            rates = rates_t()
-            call jump_on(path, state, way, width, h_end, result)
-            if (result%end /= path_end%reached) return
-         end if
-         state%load = first + result%reached*way%load
-      end do
-      result%end = path_end%undecided
-      result%reason = path_reason%too_many
-   end subroutine follow
-
-   !> A motion beyond this is far
-   pure real(wp) function far_of(path, state)
-      type(loading_path_t), intent(in) :: path
-      type(coulomb_state_t), intent(in) :: state
-
-      far_of = far_factor*max(path%softness*max(1.0_wp, maxval(abs(state%force))), path%given)
-   end function far_of
-
-   !> Go on by a jump
-   pure subroutine jump_on(path, state, way, width, h_end, result)
-      type(loading_path_t), intent(inout) :: path
-      !> The state, unchanged unless another one in balance is found
-      type(coulomb_state_t), intent(inout) :: state
-      type(path_rate_t), intent(in) :: way
-      !> Growth of the load by which the blocks are set in motion; out: the growth that was reached
-      real(wp), intent(inout) :: width
-      !> Where the path ends
-      real(wp), intent(in) :: h_end
-      !> Receives the jump, or how the blocks fall
-      type(path_result_t), intent(inout) :: result
-      type(jump_t) :: jump
-      real(wp) :: gained
-      integer :: end
-
-      jump%far = far_of(path, state)
-      call nudge_to_balance(path%joints, path%equations, way%load, width, h_end - result%reached, &
-         & state, jump, gained, end, way%opening)
-      if (end == motion_end%balanced) then
-         result%jump = [result%jump, result%reached]
-         result%largest_jump = max(result%largest_jump, jump%way)
-         result%reached = min(h_end, result%reached + gained)
-         width = min(width, gained)
-      else
-         call note_fall(end, jump, result)
-      end if
-   end subroutine jump_on
-
-   !> Result of a path that ends by a collapse, or by a motion that did not converge
-   pure subroutine note_fall(end, jump, result)
-      integer, intent(in) :: end  !! End of the motion
-      type(jump_t), intent(in) :: jump
-      type(path_result_t), intent(inout) :: result
-
-      result%end = path_end%collapsed
-      if (end == motion_end%endless) then
-         result%reason = path_reason%mechanism
-      else if (end == motion_end%far) then
-         result%reason = path_reason%far_motion
-      else
-         result%end = path_end%undecided
-         result%reason = path_reason%unsettled_motion
-      end if
-      if (allocated(jump%mechanism)) result%mechanism = jump%mechanism
-   end subroutine note_fall
 
    !> Counts and SI units
    pure subroutine finish(path, state, result)

@@ -1,14 +1,16 @@
 !> The next event on a path, at which a joint changes its state
 module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength
+   use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength, &
+      & crush_joint, yield_joint
+   use dda_crushed_joint, only : can_crush, reserve, strip_gap_rate
    use dda_event_rates, only : rates_t, weak_force
    use dda_kinds, only : small, wp
    implicit none
    private
 
    public :: event_t, event_kind, event_kind_enum, path_end
-   public :: go_back, hold_forces, move_on, next_event
+   public :: go_ahead, go_back, hold_forces, left_to_event, move_on, next_event
 
    !> Events of a joint
    type :: event_kind_enum
@@ -77,8 +79,9 @@ contains
       !> Force by which an event must lead beyond zero at that distance to count; any if absent
       real(wp), intent(in), optional :: minor
       type(least_t) :: least
-      real(wp) :: bond(3), bound(2)
+      real(wp) :: bond(3), bound(2), quantity(2)
       integer :: i, j
+      logical :: crushes
 
       event%distance = longest
       least = least_t(longest=longest, slow=no_change/max(longest, tiny(1.0_wp)))
@@ -86,18 +89,22 @@ contains
       bond = 0.0_wp
       do j = 1, size(rates%face, 2)
          if (allocated(state%whole)) bond = strength(joints, state, j)
+         crushes = allocated(joints%share)
+         if (crushes) crushes = can_crush(joints, j)
          do i = 1, 2
             if (joints%end_role(i, j) /= end_role%contact) cycle
-            associate (c => joints%graph%compliance(j))
-               least%still = rates%still/c
-               if (rates%face(i, j) == face%closed) then
-                  call meet(state%force(i, j) + bond(i), rates%force(i, j), least, &
-                     & event_kind%opens, j, i, event)
-               else
-                  call meet(state%gap(i, j)/c, rates%opening(i, j)/c, least, event_kind%closes, j, &
-                     & i, event)
-               end if
-            end associate
+            least%still = rates%still/joints%graph%compliance(j)
+            if (rates%face(i, j) == face%closed) then
+               quantity = [state%force(i, j), rates%force(i, j)]
+               if (crushes) quantity = force_left(joints, state, rates, j, i)
+               quantity(1) = quantity(1) + bond(i)
+               if (crushes) quantity(2) = mean_rate(joints, rates, j, i, quantity)
+               call meet(quantity(1), quantity(2), least, event_kind%opens, j, i, event)
+            else
+               quantity = [state%gap(i, j), rates%opening(i, j)]/joints%graph%compliance(j)
+               if (crushes) quantity = gap_left(joints, state, rates, j, i)
+               call meet(quantity(1), quantity(2), least, event_kind%closes, j, i, event)
+            end if
          end do
          if (rates%face(3, j) /= face%stuck) cycle
          if (joints%shear_role(j) /= shear_role%frictional) cycle
@@ -111,6 +118,94 @@ contains
             & event_kind%slides_back, j, 0, event)
       end do
    end function next_event
+
+   !> Rest to an event, and its rate
+   pure function left_to_event(joints, state, rates, event) result(left)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      type(rates_t), intent(in) :: rates
+      type(event_t), intent(in) :: event
+      real(wp) :: left(2)  !! As a force, and its rate; nothing where there is no event
+
+      select case (event%kind)
+      case (event_kind%opens)
+         left = force_left(joints, state, rates, event%joint, event%corner)
+      case (event_kind%closes)
+         left = gap_left(joints, state, rates, event%joint, event%corner)
+      case (event_kind%slides)
+         left = shear_left(joints, state, rates, event%joint, 1)
+      case (event_kind%slides_back)
+         left = shear_left(joints, state, rates, event%joint, -1)
+      case default
+         left = 0.0_wp
+      end select
+   end function left_to_event
+
+   !> Rest of a closed corner until it opens, and its rate
+   pure function force_left(joints, state, rates, j, corner) result(left)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      type(rates_t), intent(in) :: rates
+      integer, intent(in) :: j       !! Number of the joint
+      integer, intent(in) :: corner  !! The corner
+      real(wp) :: left(2)            !! As a force, and its rate
+
+      left = [state%force(corner, j), rates%force(corner, j)]
+      if (.not. can_crush(joints, j)) return
+      if (rates%face(3 - corner, j) /= face%closed) then
+         ! the whole of it opens or is crushed
+         left = [sum(state%force(:2, j)), sum(rates%force(:2, j))]
+         if (left(1) > 0.5_wp*joints%graph%crush(j)) left = [joints%graph%crush(j) - left(1), &
+            & -left(2)]
+         return
+      end if
+      left(1) = reserve(joints, j, corner, state%force(:2, j))
+      left(2) = left(2) - joints%share(j)*sum(rates%force(:2, j))
+   end function force_left
+
+   !> Mean rate of what a closed corner has left, until it opens
+   pure real(wp) function mean_rate(joints, rates, j, corner, left) result(rate)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(rates_t), intent(in) :: rates
+      integer, intent(in) :: j        !! Number of the joint
+      integer, intent(in) :: corner   !! The corner
+      real(wp), intent(in) :: left(2) !! Rest as a force, and its rate
+      real(wp) :: bend
+
+      rate = left(2)
+      if (rates%face(3 - corner, j) /= face%closed .or. .not. left(1) > 0.0_wp) return
+      ! the force that is left is a parabola over the distance
+      bend = 0.5_wp*sum(rates%force(:2, j))*(sum(rates%force(:2, j))/joints%graph%crush(j))
+      rate = 0.5_wp*(rate - sqrt(rate**2 + 4.0_wp*bend*left(1)))
+   end function mean_rate
+
+   !> Gap of an open corner as a force, and its rate
+   pure function gap_left(joints, state, rates, j, corner) result(left)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      type(rates_t), intent(in) :: rates
+      integer, intent(in) :: j       !! Number of the joint
+      integer, intent(in) :: corner  !! The corner
+      real(wp) :: left(2)            !! As a force, and its rate
+
+      left = [state%gap(corner, j), strip_gap_rate(joints, j, corner, &
+         & rates%face(3 - corner, j) == face%closed, rates%opening(:2, j), rates%force(:2, j))] &
+         & /joints%graph%compliance(j)
+   end function gap_left
+
+   !> Rest of the shear force of a joint until it slides by friction, and its rate
+   pure function shear_left(joints, state, rates, j, sense) result(left)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      type(rates_t), intent(in) :: rates
+      integer, intent(in) :: j      !! Number of the joint
+      integer, intent(in) :: sense  !! 1 against a positive shear force, -1 against a negative one
+      real(wp) :: left(2)           !! As a force, and its rate
+
+      left = joints%graph%friction(j) &
+         & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)] &
+         & - real(sense, wp)*[state%force(3, j), rates%force(3, j)]
+   end function shear_left
 
    !> Take an event that comes before the others: something positive falls to zero
    pure subroutine meet(rest, rate, least, kind, joint, corner, event)
@@ -142,23 +237,28 @@ contains
       integer :: i, j
 
       state%motion = state%motion + event%distance*rates%motion
-      state%face = rates%face
+      state%face(3, :) = rates%face(3, :)
       bond = 0.0_wp
       do j = 1, size(rates%face, 2)
          if (allocated(state%whole)) bond = strength(joints, state, j)
-         do i = 1, 2
-            if (joints%end_role(i, j) == end_role%tied) then
-               state%force(i, j) = state%force(i, j) + event%distance*rates%force(i, j)
-            else if (rates%face(i, j) == face%open) then
-               state%force(i, j) = 0.0_wp
-               if (joints%end_role(i, j) == end_role%contact) state%gap(i, j) = &
-                  & max(0.0_wp, state%gap(i, j) + event%distance*rates%opening(i, j))
-            else
-               state%force(i, j) = max(0.0_wp - bond(i), state%force(i, j) &
-                  & + event%distance*rates%force(i, j))
-               state%gap(i, j) = 0.0_wp
-            end if
-         end do
+         if (can_crush(joints, j)) then
+            call crush_joint(joints, j, event%distance*rates%opening(:2, j), state)
+         else
+            state%face(:2, j) = rates%face(:2, j)
+            do i = 1, 2
+               if (joints%end_role(i, j) == end_role%tied) then
+                  state%force(i, j) = state%force(i, j) + event%distance*rates%force(i, j)
+               else if (rates%face(i, j) == face%open) then
+                  state%force(i, j) = 0.0_wp
+                  if (joints%end_role(i, j) == end_role%contact) state%gap(i, j) = &
+                     & max(0.0_wp, state%gap(i, j) + event%distance*rates%opening(i, j))
+               else
+                  state%force(i, j) = max(0.0_wp - bond(i), state%force(i, j) &
+                     & + event%distance*rates%force(i, j))
+                  state%gap(i, j) = 0.0_wp
+               end if
+            end do
+         end if
          shear = state%force(3, j)
          call take_shear(joints, j, state%face(3, j), shear + event%distance*rates%force(3, j), &
             & state)
@@ -166,28 +266,92 @@ contains
             & + joints%graph%compliance(j)*(state%force(3, j) - shear)
          if (allocated(state%whole)) call break_joint(joints, j, state)
       end do
-      j = event%joint
-      select case (event%kind)
-      case (event_kind%opens)
-         ! what a tensile force has stretched is a gap
-         state%gap(event%corner, j) = max(0.0_wp, -state%force(event%corner, j) &
-            & *joints%graph%compliance(j))
-         state%force(event%corner, j) = 0.0_wp
-         state%face(event%corner, j) = face%open
-         state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
-         call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
-      case (event_kind%closes)
-         state%gap(event%corner, j) = 0.0_wp
-         state%face(event%corner, j) = face%closed
-         state%face(3, j) = shear_face(joints, j, state%face(:2, j), &
-            & merge(face%stuck, state%face(3, j), state%face(3, j) == face%free))
-      case (event_kind%slides, event_kind%slides_back)
-         state%face(3, j) = merge(face%slides, face%slides_back, event%kind == event_kind%slides)
-         call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
-      end select
-      if (allocated(state%whole) .and. event%kind /= event_kind%none) &
-         & call break_joint(joints, j, state)
+      if (event%kind /= event_kind%none) call let_happen(joints, event, state)
    end subroutine move_on
+
+   !> Let an event happen where a state is
+   pure subroutine let_happen(joints, event, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(event_t), intent(in) :: event
+      type(coulomb_state_t), intent(inout) :: state
+
+      associate (j => event%joint, i => event%corner)
+         select case (event%kind)
+         case (event_kind%opens)
+            if (can_crush(joints, j)) call touch_limit(joints, j, i, state)
+            ! what a tensile force has stretched is a gap
+            state%gap(i, j) = max(0.0_wp, -state%force(i, j)*joints%graph%compliance(j))
+            if (.not. can_crush(joints, j)) state%force(i, j) = 0.0_wp
+            state%face(i, j) = face%open
+            if (.not. sum(state%force(:2, j)) > 0.0_wp) &
+               & state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
+            call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
+         case (event_kind%closes)
+            state%gap(i, j) = 0.0_wp
+            state%face(i, j) = face%closed
+            state%face(3, j) = shear_face(joints, j, state%face(:2, j), &
+               & merge(face%stuck, state%face(3, j), state%face(3, j) == face%free))
+         case (event_kind%slides, event_kind%slides_back)
+            state%face(3, j) = merge(face%slides, face%slides_back, &
+               & event%kind == event_kind%slides)
+            call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
+         end select
+         if (allocated(state%whole)) call break_joint(joints, j, state)
+      end associate
+   end subroutine let_happen
+
+   !> Move a state on while all faces stay, beyond the limits of its joints, too
+   pure subroutine go_ahead(joints, rates, distance, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(rates_t), intent(in) :: rates  !! Rates of the state
+      real(wp), intent(in) :: distance    !! Distance along them
+      type(coulomb_state_t), intent(inout) :: state
+      real(wp) :: shear
+      integer :: i, j
+
+      state%motion = state%motion + distance*rates%motion
+      do j = 1, size(rates%face, 2)
+         if (can_crush(joints, j)) then
+            call yield_joint(joints, j, rates%face(:2, j), distance*rates%opening(:2, j), state)
+         else
+            do i = 1, 2
+               state%force(i, j) = state%force(i, j) + distance*rates%force(i, j)
+               if (joints%end_role(i, j) == end_role%contact .and. rates%face(i, j) == face%open) &
+                  & state%gap(i, j) = state%gap(i, j) + distance*rates%opening(i, j)
+            end do
+         end if
+         state%face(:, j) = rates%face(:, j)
+         shear = state%force(3, j)
+         if (state%face(3, j) == face%stuck) then
+            state%force(3, j) = shear + distance*rates%force(3, j)
+         else
+            call take_shear(joints, j, state%face(3, j), shear, state)
+         end if
+         state%slip(j) = state%slip(j) + distance*rates%opening(3, j) &
+            & + joints%graph%compliance(j)*(state%force(3, j) - shear)
+      end do
+   end subroutine go_ahead
+
+   !> Put the forces of a joint that crushes where one of its corners opens
+   pure subroutine touch_limit(joints, j, corner, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j       !! Number of the joint
+      integer, intent(in) :: corner  !! The corner
+      type(coulomb_state_t), intent(inout) :: state
+      real(wp) :: n
+
+      associate (force => state%force(:2, j))
+         n = sum(force)
+         if (state%face(3 - corner, j) == face%open) then
+            force = 0.0_wp
+            if (n > 0.5_wp*joints%graph%crush(j)) force = 0.5_wp*joints%graph%crush(j)
+            return
+         end if
+         force(corner) = force(corner) - reserve(joints, j, corner, force)
+         if (.not. n > 0.0_wp) force(corner) = 0.0_wp
+         force(3 - corner) = n - force(corner)
+      end associate
+   end subroutine touch_limit
 
    !> Go back from a collapse to where it broke: forces are those just before, with the joints that
    !> broke

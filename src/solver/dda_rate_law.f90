@@ -6,16 +6,17 @@
 !> pieces.
 submodule (dda_event_rates) dda_rate_law
    use dda_coulomb_joints, only : end_role, shear_role
-   use dda_coulomb_law, only : face, shear_face, strength
+   use dda_coulomb_law, only : face, normal_forces, shear_face, strength
+   use dda_crushed_joint, only : is_crushed, reserve, turn_of_corner
    implicit none
 
 contains
 
    !> The law of a state
    module procedure set_rate_law
-      real(wp) :: bond(3), bound
+      real(wp) :: bond(3), bound, left(2)
       integer :: i, j, loose(size(state%slip)), n
-      logical :: pushes(2)
+      logical :: bears, pushes(2)
 
       allocate (law%weak(2, size(state%slip)), law%limit(2, size(state%slip)))
       allocate (law%given(3, size(state%slip)), law%holds(size(state%slip)))
@@ -23,9 +24,12 @@ contains
       bond = 0.0_wp
       do j = 1, size(state%slip)
          if (allocated(state%whole)) bond = strength(joints, state, j)
+         left = state%force(:2, j)
+         if (allocated(joints%share)) left = [reserve(joints, j, 1, state%force(:2, j)), &
+            & reserve(joints, j, 2, state%force(:2, j))]
          do i = 1, 2
             pushes(i) = joints%end_role(i, j) == end_role%tied &
-               & .or. state%force(i, j) + bond(i) > weak_force
+               & .or. left(i) + bond(i) > weak_force
             law%weak(i, j) = .not. (pushes(i) .or. joints%end_role(i, j) == end_role%absent &
                & .or. state%gap(i, j) > weak_force*joints%graph%compliance(j))
             law%given(i, j) = merge(face%closed, face%open, pushes(i))
@@ -34,8 +38,9 @@ contains
          law%given(3, j) = face%stuck
          if (.not. law%holds(j)) &
             & law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)
-         law%limit(:, j) = .not. any(pushes)
-         if (any(pushes) .or. law%holds(j)) then
+         bears = any(pushes) .or. is_crushed(joints, j)
+         law%limit(:, j) = .not. bears
+         if (bears .or. law%holds(j)) then
             bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j)) + bond(3)
             law%limit(1, j) = bound - state%force(3, j) <= weak_force
             law%limit(2, j) = bound + state%force(3, j) <= weak_force
@@ -62,7 +67,8 @@ contains
          j = law%loose(k)
          do i = 1, 2
             if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, &
-               & opening(i, j) > merge(0.0_wp, still, before(i, j) == face%open))
+               & turn_of_corner(joints, j, i, opening(:2, j)) &
+               & > merge(0.0_wp, still, before(i, j) == face%open))
          end do
          if (any(law%weak(:, j)) .and. .not. law%holds(j)) &
             & faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
@@ -93,7 +99,9 @@ contains
       real(wp) :: push(3)
 
       push = -opening/joints%graph%compliance(j)
-      beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)
+      push(:2) = merge(push(:2), 0.0_wp, ends == face%closed)
+      if (allocated(joints%share)) push(:2) = normal_forces(joints, j, ends, opening(:2))
+      beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2))
    end function beyond_limit
 
    !> The first bend of the law on a line of rates of opening
@@ -146,8 +154,8 @@ contains
       do i = 1, 2
          if (.not. law%weak(i, j)) cycle
          sense = merge(1.0_wp, -1.0_wp, faces(i, j) == face%closed)
-         far(i) = -sense*opening(i, j)
-         rate(i) = sense*change(i, j)
+         far(i) = -sense*turn_of_corner(joints, j, i, opening(:2, j))
+         rate(i) = sense*turn_of_corner(joints, j, i, change(:2, j))
       end do
       if (faces(3, j) /= face%free) then
          do i = 1, 2
@@ -172,7 +180,7 @@ contains
             rate = beyond_limit(joints, j, faces(:2, j), change(:, j))
             break_rate = rate(break%part - 2)
          else
-            break_rate = -change(break%part, j)
+            break_rate = -turn_of_corner(joints, j, break%part, change(:2, j))
          end if
       end associate
    end procedure break_rate

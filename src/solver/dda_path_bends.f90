@@ -1,0 +1,259 @@
+!> Steps of the loading path of joints that crush
+!>
+!> The path is curved: strips of crushed joints follow the forces, while corners and joints keep
+!> what they do. A step goes along its tangent, then Newton's method brings it back to balance and
+!> to the event at which it ends. The first limit passed on the way is the next event to aim at.
+submodule (dda_loading_path:dda_path_steps) dda_path_bends
+   use dda_crushed_joint, only : bear_side, can_crush, reserve
+   use dda_coulomb_joints, only : end_role, shear_role
+   use dda_coulomb_law, only : face, imbalance, spring_forces
+   use dda_event_rates, only : solve_rates, weak_force
+   use dda_path_event, only : go_ahead, left_to_event
+   implicit none
+
+   !> Residual of balance and distance from an event, over the largest force: Newton's method
+   !> squares its error, so that another correction would be round-off
+   real(wp), parameter :: exact = 1.0e-12_wp
+   !> Largest correction of a step over the step: a larger one may lead to another state of balance
+   real(wp), parameter :: most_bend = 0.2_wp
+   !> Share of a step that failed
+   real(wp), parameter :: shorter = 0.25_wp
+   !> Maximum number of corrections
+   integer, parameter :: most_turns = 12
+   !> Largest share of the strength with which joints begin to crush
+   real(wp), parameter :: gentle = 1.0e-2_wp
+
+contains
+
+   !> Go on along rates to the next event at most, where joints crush
+   module procedure follow_bend
+      type(coulomb_state_t) :: last
+      type(event_t) :: aim
+      integer :: try
+      integer, parameter :: most_tries = 60
+
+      last = state
+      event = next_event(path%joints, state, rates, longest)
+      found = .false.
+      do try = 1, most_tries
+         call walk(path, way, rates, last%load, most_bend*event%distance &
+            & *maxval(abs(rates%motion)), event, state, found)
+         if (found) then
+            aim = passed_limit(path%joints, last, state, rates, event)
+            found = .not. aim%distance < event%distance
+            if (found) exit
+            event = aim
+         else
+            event = event_t(shorter*event%distance)
+         end if
+         if (event%distance < no_way) exit
+         state = last
+      end do
+      if (.not. found) state = last
+      if (.not. found) return
+      call move_on(path%joints, rates_of_faces(rates), event_t(0.0_wp, event%kind, event%joint, &
+         & event%corner), state)
+   end procedure follow_bend
+
+   !> Rates that lead nowhere
+   pure type(rates_t) function rates_of_faces(rates) result(none)
+      type(rates_t), intent(in) :: rates
+
+      none = rates
+      none%motion = 0.0_wp
+      none%opening = 0.0_wp
+      none%force = 0.0_wp
+   end function rates_of_faces
+
+   !> Walk to an event, or by a distance if it has none, in balance
+   pure subroutine walk(path, way, rates, load, largest, event, state, found)
+      type(loading_path_t), intent(inout) :: path
+      type(path_rate_t), intent(in) :: way
+      type(rates_t), intent(in) :: rates      !! Rates where it begins
+      real(wp), intent(in) :: load(:, :)      !! Load there: (3, n_block)
+      real(wp), intent(in) :: largest         !! Largest motion by a correction
+      type(event_t), intent(inout) :: event   !! The event; its distance is corrected
+      type(coulomb_state_t), intent(inout) :: state
+      logical, intent(out) :: found           !! True if it is there
+      type(rates_t) :: onward, step
+      real(wp) :: left(2), more, rest(3, size(load, 2))
+      integer :: turn
+
+      call go_ahead(path%joints, rates, event%distance, state)
+      step = rates
+      onward = rates
+      do turn = 1, most_turns
+         state%load = load + event%distance*way%load
+         call imbalance(path%joints, state%load, state%force, rest)
+         left = left_to_event(path%joints, state, onward, event)
+         found = maxval(abs([maxval(abs(rest)), left(1)])) <= exact*max(1.0_wp, &
+            & maxval(abs(state%force)))
+         if (found) return
+         call bend_joints(path%equations, path%joints, state)
+         call solve_rates(path%joints, path%equations, rest, 0.0_wp, step)
+         if (.not. path%equations%usable) return
+         call spring_forces(path%joints, step%face, step%opening, step%force)
+         if (event%kind /= event_kind%none) then
+            call solve_rates(path%joints, path%equations, way%load, 0.0_wp, onward, way%opening)
+            if (.not. path%equations%usable) return
+            call spring_forces(path%joints, onward%face, onward%opening, onward%force)
+            more = rate_of(path, state, onward, event)
+            if (.not. abs(more) > 0.0_wp) return
+            more = -(left(1) + rate_of(path, state, step, event))/more
+            if (.not. event%distance + more >= 0.0_wp) return
+            event%distance = event%distance + more
+            step%motion = step%motion + more*onward%motion
+            step%opening = step%opening + more*onward%opening
+            step%force = step%force + more*onward%force
+         end if
+         if (maxval(abs(step%motion)) > max(largest, weak_force)) return
+         call go_ahead(path%joints, step, 1.0_wp, state)
+      end do
+   end subroutine walk
+
+   !> Rate of what is left to an event
+   pure real(wp) function rate_of(path, state, rates, event) result(rate)
+      type(loading_path_t), intent(in) :: path
+      type(coulomb_state_t), intent(in) :: state
+      type(rates_t), intent(in) :: rates
+      type(event_t), intent(in) :: event
+      real(wp) :: left(2)
+
+      left = left_to_event(path%joints, state, rates, event)
+      rate = left(2)
+   end function rate_of
+
+   !> The limit that was passed first between two states with the same faces; without one the event
+   !> at which they end
+   pure type(event_t) function passed_limit(joints, last, state, rates, event) result(first)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: last, state
+      type(rates_t), intent(in) :: rates  !! Rates of the first one
+      type(event_t), intent(in) :: event
+      integer :: i, j
+
+      first = event
+      do j = 1, size(state%slip)
+         do i = 1, 2
+            if (joints%end_role(i, j) == end_role%contact) call see_limit(joints, last, state, &
+               & rates, event, event_t(0.0_wp, merge(event_kind%opens, event_kind%closes, &
+               & state%face(i, j) == face%closed), j, i), first)
+         end do
+         if (joints%shear_role(j) /= shear_role%frictional) cycle
+         if (state%face(3, j) == face%stuck) then
+            call see_limit(joints, last, state, rates, event, event_t(0.0_wp, event_kind%slides, &
+               & j, 0), first)
+            call see_limit(joints, last, state, rates, event, event_t(0.0_wp, &
+               & event_kind%slides_back, j, 0), first)
+         else if (abs(state%face(3, j)) == face%slides) then
+            ! the joint turns back on the way
+            if (real(state%face(3, j), wp)*(state%slip(j) - last%slip(j)) > weak_force &
+               & .and. first%distance > 0.5_wp*event%distance) &
+               & first = event_t(0.5_wp*event%distance)
+         end if
+      end do
+   end function passed_limit
+
+   !> See if a limit was passed before others
+   pure subroutine see_limit(joints, last, state, rates, event, limit, first)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: last, state
+      type(rates_t), intent(in) :: rates
+      type(event_t), intent(in) :: event     !! The event at which the states end
+      type(event_t), intent(in) :: limit     !! The limit
+      type(event_t), intent(inout) :: first  !! The first one so far
+      real(wp) :: after(2), before(2), share
+
+      if (limit%kind == event%kind .and. limit%joint == event%joint &
+         & .and. limit%corner == event%corner) return
+      after = left_to_event(joints, state, rates, limit)
+      if (.not. after(1) < -weak_force) return
+      before = left_to_event(joints, last, rates, limit)
+      share = 0.5_wp
+      if (before(1) > weak_force) share = before(1)/(before(1) - after(1))
+      if (.not. share*event%distance < first%distance) return
+      first = event_t(share*event%distance)
+      if (before(1) > weak_force) first = event_t(first%distance, limit%kind, limit%joint, &
+         & limit%corner)
+   end subroutine see_limit
+
+   !> A state whose joints do not crush, at a share of its load at which they crush by little
+   module procedure begin_to_crush
+      type(coulomb_state_t) :: whole
+      type(path_rate_t) :: way
+      type(rates_t) :: rates
+      type(event_t) :: event
+      integer, parameter :: most_tries = 6
+      integer :: i, try
+
+      whole = state
+      share = 1.0_wp
+      settled = least_reserve(path%joints, state) >= 0.0_wp
+      if (settled) return
+      share = min(1.0_wp, gentle/largest_share(path%joints, state))
+      allocate (way%load, mold=state%load)
+      way%load = 0.0_wp
+      rates%face = state%face
+      allocate (rates%motion, mold=state%motion)
+      allocate (rates%opening, rates%force, mold=state%force)
+      rates%motion = 0.0_wp
+      rates%opening = 0.0_wp
+      rates%force = 0.0_wp
+      do try = 1, most_tries
+         state%motion = share*whole%motion
+         state%force = share*whole%force
+         state%gap = share*whole%gap
+         state%slip = share*whole%slip
+         state%load = share*whole%load
+         do i = 1, size(state%slip)
+            if (can_crush(path%joints, i)) call rest_on_strip(path%joints, i, state)
+         end do
+         event = event_t(0.0_wp)
+         call walk(path, way, rates, share*whole%load, most_bend*maxval(abs(state%motion)), event, &
+            & state, settled)
+         if (settled) return
+         share = 0.1_wp*share
+      end do
+   end procedure begin_to_crush
+
+   !> Least distance of a closed corner from its limit
+   pure real(wp) function least_reserve(joints, state) result(least)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      integer :: i, j
+
+      least = 0.0_wp
+      do j = 1, size(state%slip)
+         if (.not. can_crush(joints, j)) cycle
+         do i = 1, 2
+            least = min(least, reserve(joints, j, i, state%force(:2, j)))
+         end do
+      end do
+   end function least_reserve
+
+   !> Largest normal force over the strength
+   pure real(wp) function largest_share(joints, state) result(share)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      integer :: j
+
+      share = tiny(share)
+      do j = 1, size(state%slip)
+         if (can_crush(joints, j)) share = max(share, &
+            & sum(state%force(:2, j))/joints%graph%crush(j))
+      end do
+   end function largest_share
+
+   !> Put the force of a joint that one corner bears on its strip
+   pure subroutine rest_on_strip(joints, j, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j  !! Number of the joint
+      type(coulomb_state_t), intent(inout) :: state
+      integer :: side
+
+      if (state%face(1, j) == state%face(2, j)) return
+      side = merge(1, 2, state%face(1, j) == face%closed)
+      call bear_side(joints, j, side, state%gap(:, j) - joints%graph%compliance(j) &
+         & *state%force(:2, j), state%force(:2, j), state%gap(:, j))
+   end subroutine rest_on_strip
+end submodule dda_path_bends
