@@ -255,3 +255,31 @@ def test_corners_on_edges_are_refused(tmp_path: Path) -> None:
     done = run_dda("check", "x.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert "x.blocks:6: error: compressive_strength needs joints with a width" in done.stderr
+
+
+@pytest.mark.parametrize("share", [0.5, 0.99, 0.999, 1.001, 1.01, 1.5, 10.0])
+@pytest.mark.parametrize("shape", [(1.0, 0.3), (3.0, 1.5)])
+def test_two_blocks_between_walls_stand_above_the_closed_form(
+        tmp_path: Path, shape: tuple[float, float], share: float) -> None:
+    """H (h - H/s) = W a/2 with H at most s h/4; friction that carries W by the thrust without crushing, W a/(2 h)."""
+    half, height = shape
+    strength = share * 2.0 * half**2 / height
+    friction = math.degrees(math.atan(1.05 * 2.0 * height / half))
+    deck = f"&joint friction_deg = {friction!r} /\n&analysis flow = 'coulomb' /\n" + material(strength)
+    (row,) = rows(tmp_path, deck, beam(half, height))
+    assert row["verdict"] == ("stable" if share > 1.0 else "collapsed")
+
+
+def beam(half: float, height: float) -> str:
+    """Two blocks between walls."""
+    ends = ((-1.0, 0.0), (2.0 * half, 2.0 * half + 1.0))
+    text = "".join(f"block fixed\n{a} {-height}\n{b} {-height}\n{b} {2 * height}\n{a} {2 * height}\n" for a, b in ends)
+    return text + "".join(f"block\n{x} 0\n{x + half} 0\n{x + half} {height}\n{x} {height}\n" for x in (0.0, half))
+
+
+def test_a_search_finds_the_strength_of_two_blocks_between_walls(tmp_path: Path) -> None:
+    """2 W a/h**2 with W = g a h."""
+    deck = "&joint friction_deg = 45 /\n&analysis flow = 'coulomb' /\n&material unit_weight = 25000 /\n" \
+        "&search parameter = 'compressive_strength', low = 1e5, high = 1e7 /\n"
+    (row,) = rows(tmp_path, deck, beam(2.0, 0.5))
+    assert float(row["critical"]) == pytest.approx(4e5, rel=1e-7)
