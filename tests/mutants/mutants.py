@@ -171,7 +171,7 @@ class Copy:
         return sorted(others, key=lambda name: (f"use {fault.path.stem}," not in self.units[name], self.usual[name]))
 
     def holds(self, program: str, package: str) -> bool:
-        """Whether a program is linked with a package."""
+        """Return true if a program is linked with a package."""
         linked = subprocess.run(["ldd", self.build / "tests" / "bin" / program], capture_output=True, text=True).stdout
         return f"libvoussoir_{package}.so" in linked
 
