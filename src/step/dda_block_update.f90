@@ -12,7 +12,7 @@ module dda_block_update
    implicit none
    private
 
-   public :: carry_over, displace_blocks, update_blocks, update_contacts
+   public :: carry_over, displace_blocks, update_blocks, update_contacts, worn
 
    !> Force of velocities that is a residual, over that of the motion
    real(wp), parameter :: residual_force = 1.0e-6_wp

@@ -2,10 +2,13 @@
 module dda_step_motion
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
+   use dda_block_update, only : worn
+   use dda_contact_types, only : mohr_coulomb
    use dda_contact_transfer, only : renew_contacts
    use dda_contacts, only : contacts_t, follow_contacts
    use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_kinds, only : wp
+   use dda_material, only : loses_strength
    use dda_multipliers, only : settle_joints
    use dda_spring_products, only : relative_displacement
    use dda_step_context, only : in_time, run_t
@@ -110,8 +113,28 @@ contains
       ! a try that is repeated leaves its rows behind
       if (run%step%renews) run%step%speed = relative_displacement(run%contacts%springs, &
          & packed_velocity(run%system, size(run%step%state%motion, 1)))
+      call wear_joints(run)
       call foresee_curves(run)
    end subroutine assemble_step
+
+   !> Bounds of joints that lose strength by slip, at the middle of the step: those of its beginning
+   !> would be of first order
+   pure subroutine wear_joints(run)
+      type(run_t), intent(inout) :: run
+      real(wp) :: slip
+      integer :: j
+
+      associate (contacts => run%contacts)
+         do j = 1, size(contacts%joint)
+            associate (law => contacts%law(contacts%joint(j)%law), springs => contacts%springs)
+               if (.not. (law%slip_length > 0.0_wp .and. loses_strength(law))) cycle
+               slip = abs(run%step%speed(3, j))*run%step%dt/2.0_wp
+               call mohr_coulomb(contacts%joint(j), law, worn(contacts%intact(:, j), slip, &
+                  & law%slip_length), springs%cone(j), springs%shift(:, j))
+            end associate
+         end do
+      end associate
+   end subroutine wear_joints
 
    !> Contact forces and motion of one try
    pure subroutine solve_contacts(run)

@@ -58,6 +58,24 @@ def test_a_sliding_block_loses_friction_by_its_slip(tmp_path: Path, rest: float,
     assert error[1] < 0.7 * error[0] + 1e-5
 
 
+@pytest.mark.parametrize(("angle", "peak", "rest", "speed"), [(30.0, 35.0, 20.0, 2.0), (25.0, 24.0, 10.0, 0.3)])
+def test_slip_that_weakens_is_of_second_order(
+    tmp_path: Path, angle: float, peak: float, rest: float, speed: float
+) -> None:
+    """Strength that falls linearly with slip makes x'' = a + b x: a hyperbolic cosine and sine."""
+    law = f"&joint friction_deg = {peak}, residual_deg = {rest}, slip_length = 9 /\n"
+    begin, end = math.tan(math.radians(peak)), math.tan(math.radians(rest))
+    normal = GRAVITY * math.cos(math.radians(angle))
+    drive, growth = GRAVITY * math.sin(math.radians(angle)) - normal * begin, math.sqrt(normal * (begin - end) / 9.0)
+    exact = speed / growth * math.sinh(growth) + drive / growth**2 * (math.cosh(growth) - 1.0)
+    error = []
+    for step in (4e-3, 2e-3):
+        run_blocks(tmp_path, slope(angle, speed), law + MOTION.format(step))
+        error.append(abs(way(tmp_path) / exact - 1.0))
+    assert error[0] < 1e-5
+    assert error[1] < error[0] / 3.5 + 1e-9
+
+
 def test_a_joint_that_slides_back_and_forth_does_not_heal(tmp_path: Path) -> None:
     """A quake to and fro wears the joint; afterwards a slope that held lets go."""
     base = on_slope(25.0) + "base_acceleration\n0 0 0\n0.1 8 0\n0.3 -8 0\n0.4 0 0\n0.5 0 0\nmeasure 0 0.5\n"
