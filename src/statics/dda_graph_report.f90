@@ -60,7 +60,7 @@ contains
          pressed = 0.0_wp
          if (allocated(graph%crush)) then
             if (graph%crush(j) < huge(1.0_wp)) &
-               & pressed = sum(contacts%force(1:2, j))**2/(2.0_wp*graph%crush(j))
+               & pressed = sum(contacts%force(1:2, j))**2/max(2.0_wp*graph%crush(j), tiny(pressed))
          end if
          contacts%face(j)%open = rate(1:2, j) - dilatancy &
             & > max(least, share*(contacts%force(1:2, j) - pressed))

@@ -52,6 +52,21 @@ def test_a_joint_that_crushes_is_a_hinge_of_the_mechanism(tmp_path: Path, streng
     assert float(joint["normal_force"]) == pytest.approx(2.0, rel=1e-9)
 
 
+def test_a_corner_of_a_pier_bears_nothing_where_joints_crush(tmp_path: Path) -> None:
+    """The joints of the two springings end at one corner each, which has no area: they have no force."""
+    deck = (
+        "&arch span = 2.233, rise = 1.558, thickness = 0.1105, voussoirs = 18, spans = 2, pier_width = 0.3778, "
+        "pier_height = 0.4839 /\n&fill height = 0.3, unit_weight = 20e3 /\n&vehicle axles = 4e5, position = 0.4 /\n"
+        "&joint friction_deg = 56 /\n&material unit_weight = 17530, compressive_strength = 2e6 /\n"
+    )
+    (row,) = rows(tmp_path, deck + ASSOCIATED, head="")
+    assert row["verdict"] == "collapsed"
+    joints = rows_of(tmp_path / "x" / "joints.csv")
+    corners = [joint for joint in joints if all(joint[f"{x}_intrados"] == joint[f"{x}_extrados"] for x in "xy")]
+    assert len(corners) == 2
+    assert all(float(joint["normal_force"]) == float(joint["force_y"]) == 0.0 for joint in corners)
+
+
 @pytest.mark.parametrize("place", [0.5, 0.6, 0.7, 0.9])
 @pytest.mark.parametrize("strength", [3.0, 5.0, 50.0])
 def test_a_column_bears_up_to_its_strength(tmp_path: Path, place: float, strength: float) -> None:
