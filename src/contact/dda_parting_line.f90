@@ -17,6 +17,8 @@ module dda_parting_line
       integer :: corner = 0             !! Corner of the opposite block nearest to the line
       real(wp) :: gap = -huge(1.0_wp)   !! Height of that corner above the line [m]
       real(wp) :: time = -huge(1.0_wp)  !! Crossing time in units of the expected motion
+      !> True if the block is beyond the line before the expected motion and after it
+      logical :: parts = .false.
    end type line_t
 
    !> Advantage in gap below which a separating axis is kept, over the length of the edge
@@ -111,12 +113,18 @@ contains
       if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
    end function parting_line
 
-   !> True if a line is crossed later than another one, or at the same time with a larger gap
+   !> True if a line is crossed later than another one, or at the same time with a larger gap. A
+   !> line that parts the blocks throughout precedes those that they have crossed within the
+   !> tolerance
    pure logical function is_later(line, other)
       type(line_t), intent(in) :: line, other
 
-      is_later = line%time > other%time &
-         & .or. .not. line%time < other%time .and. line%gap > other%gap
+      if (line%parts .neqv. other%parts) then
+         is_later = line%parts
+      else
+         is_later = line%time > other%time &
+            & .or. .not. line%time < other%time .and. line%gap > other%gap
+      end if
    end function is_later
 
    !> True if the edge of a line, or the opposite edge, is between two fixed blocks
@@ -147,6 +155,7 @@ contains
          line%gap = minval(height)
          height(:) = heights(near%ahead, edge, next, from, to)
          after = minval(height)
+         line%parts = min(line%gap, after) > 0.0_wp
       end associate
       associate (left => line%gap + near%level, way => line%gap - after)
          line%time = sign(huge(1.0_wp), left)

@@ -1,4 +1,4 @@
-"""Blocks that fall flat on a smooth floor, bounce and slide: closed forms, in gravity of any direction."""
+"""Blocks that fall flat on a smooth floor, bounce and slide, or fly past: closed forms, gravity of any direction."""
 
 from __future__ import annotations
 
@@ -51,4 +51,28 @@ def rotated_bounce(pick: random.Random) -> Scene:
         {"young": 1e12}, is_step_free=True)
 
 
-FAMILIES = {"rotated_bounce": rotated_bounce}
+def flight(pick: random.Random) -> Scene:
+    """A block that flies towards another one and falls past the level of its top, but is not yet there.
+
+    No side of the two is crossed while the gap between them lasts: the block falls freely.
+    """
+    angle, friction = pick.uniform(-math.pi, math.pi), pick.choice([0.0, 30.0, 60.0, 80.0])
+    width, tall = pick.uniform(0.3, 2.0), pick.uniform(0.3, 2.0)
+    gap, time = pick.uniform(0.01, 0.3), pick.uniform(2e-3, 2e-2)
+    along = gap / time * pick.uniform(0.3, 0.99)
+    fallen = G * time**2 / 2.0
+    # level with the top at some time of the flight
+    corners = rectangle(-width, fallen * pick.random(), width, tall)
+    _, (x, y), _ = properties(corners)
+    below = turned(rectangle(gap, -2.0, pick.uniform(0.3, 3.0), 2.0), angle)
+    shape, ((vx, vy), (ex, ey), (evx, evy)) = turned(corners, angle), turned(
+        [(along, 0.0), (x + along * time, y - fallen), (along, -G * time)], angle)
+    direction = math.remainder(math.degrees(angle) - 90.0, 360.0)
+    return Scene(
+        block(below, "fixed") + moving(shape, (vx, vy, 0.0)) + measured(2, shape), in_time(pick, time, 0.0),
+        end_checks(0, shape, State(ex, ey, 0.0, evx, evy), (gap, along)),
+        f"&joint friction_deg = {friction} /\n&load gravity = {G}, gravity_direction_deg = {direction!r} /\n",
+        {"young": 1e12}, is_step_free=True)
+
+
+FAMILIES = {"rotated_bounce": rotated_bounce, "flight": flight}
