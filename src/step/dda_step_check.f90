@@ -7,7 +7,7 @@ module dda_step_check
    use dda_impact, only : check_impact
    use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
-   use dda_step_context, only : in_time, may_shorten, run_t, step_outcome_t
+   use dda_step_context, only : in_time, may_shorten, near_gap, run_t, step_outcome_t
    use dda_step_interval, only : check_length
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
    implicit none
@@ -78,15 +78,17 @@ contains
    !> enters by depends on the motion of both. An axis is wrong if it has held off a block that is
    !> separate, or has let one enter. Axes are then chosen again by the motion. If blocks still
    !> enter one another, the step is cut; if some are still held off without contact, that is
-   !> accepted
+   !> accepted. A step is cut, too, if a line is reached at its end that another one has replaced by
+   !> then: it meets nothing, and in a shorter step both part the blocks
    pure type(step_outcome_t) function check_axes(run) result(outcome)
       type(run_t), intent(in) :: run
       real(wp) :: before, gap, level, matters, told
-      logical :: entered, held_off
+      logical :: entered, held_off, replaced
       integer :: j
 
       entered = .false.
       held_off = .false.
+      replaced = .false.
       associate (system => run%system, step => run%step)
          do j = 1, size(run%contacts%joint)
             associate (block => run%contacts%joint(j)%block, n => run%contacts%joint(j)%n_contact)
@@ -97,8 +99,13 @@ contains
                ! the depth at which they are closed
                told = minval(step%end_gap(:n, j))
                level = minval(step%end_gap(:n, j) + run%contacts%joint(j)%contact(:n)%closed_at)
-               if (gap > max(0.0_wp, told) + matters .and. .not. all(step%state%face(j)%open)) &
-                  & held_off = .true.
+               if (gap > max(0.0_wp, told) + matters) then
+                  if (.not. all(step%state%face(j)%open)) then
+                     held_off = .true.
+                  else if (told <= near_gap(system, block)) then
+                     replaced = .true.
+                  end if
+               end if
                if (gap > -matters) cycle
                before = min(0.0_wp, block_gap(system%first_vertex, system%moved, block))
                if (gap < min(before + min(0.0_wp, told), level) - matters) entered = .true.
@@ -107,7 +114,8 @@ contains
          outcome%dt = step%dt
          outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
          outcome%accepted = .not. outcome%wrong_axes
-         if (outcome%accepted .and. entered .and. may_shorten(run)) outcome = half_step(run)
+         if (outcome%accepted .and. (entered .or. replaced) .and. may_shorten(run)) &
+            & outcome = half_step(run)
       end associate
    end function check_axes
 
