@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK, STONE
+from voussoir.plot.figure_style import INK, STONE
+from voussoir_paper.paper_style import DASHES
 
 #: Stations along a half arch
 STATIONS = 400

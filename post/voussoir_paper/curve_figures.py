@@ -11,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK, closer
+from voussoir.plot.figure_style import INK
 from voussoir_paper.campaign import Campaign
 from voussoir_paper.tables import THEORIES, PaperTable, Row
+from voussoir_paper.paper_style import DASHES, closer
 
 #: How the points of a column look; columns that join later take the last one
 POINTS: dict[str, dict[str, Any]] = {

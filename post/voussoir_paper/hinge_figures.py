@@ -10,11 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK
+from voussoir.plot.figure_style import INK
 from voussoir.results import Table
 from voussoir_paper.campaign import Campaign
 from voussoir_paper.curve_figures import CURVES, POINTS
 from voussoir_paper.tables import THEORIES
+from voussoir_paper.paper_style import DASHES
 
 _WINDOW = (44.0, 63.0)
 

@@ -9,8 +9,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 
-from voussoir.plot.collapse_picture import draw_frame, limits, mark_legend, set_limits
+from voussoir.plot.collapse_picture import MARKS, MEANINGS, draw_frame, limits, set_limits
 from voussoir.results import Results
 from voussoir_paper.campaign import Campaign
 
@@ -143,3 +144,10 @@ def gallery(
         set_limits(axes, (low, np.array([high[0], top])))
         axes.set_title(title(run.case(number)), fontsize=9.5)
     return figure.figure
+
+
+def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados")) -> Figure:
+    """Explain the marks below a figure."""
+    entries = [Line2D([], [], linestyle="none", markersize=6, label=MEANINGS[kind], **MARKS[kind]) for kind in kinds]
+    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(kinds))
+    return figure

@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK, closer
+from voussoir.plot.figure_style import INK
+from voussoir_paper.paper_style import DASHES, closer
 
 _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK, STONE
+from voussoir.plot.figure_style import INK, STONE
 from voussoir_paper.arch_sketch import chunk, draw_arch, draw_hinges, draw_mechanism, draw_thrust, on_circle, pair
+from voussoir_paper.paper_style import DASHES
 
 _ARROW = {"arrowstyle": "-|>", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
 _SPAN = {"arrowstyle": "<|-|>", "color": INK[0], "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}

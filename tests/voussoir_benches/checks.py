@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.results.vtu_cells import cell_field
+from voussoir_benches.vtu_cells import cell_field
 
 #: Acceleration of gravity of the decks [m/s2]
 GRAVITY = 9.81

@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from voussoir.plot.case_scene import CaseScene, scene_of, view
 from voussoir.plot.figure_style import INK, STONE
@@ -110,13 +108,6 @@ def contacts_of(frame: Frame) -> dict[str, np.ndarray]:
             mask = joints["state" + end] == word
             points[kind].append(np.array([joints["x" + end][mask], joints["y" + end][mask]]))
     return {kind: np.hstack(parts) for kind, parts in points.items()}
-
-
-def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados")) -> Figure:
-    """Explain the marks below a figure."""
-    entries = [Line2D([], [], linestyle="none", markersize=6, label=MEANINGS[kind], **MARKS[kind]) for kind in kinds]
-    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(kinds))
-    return figure
 
 
 def limits(run: Results, numbers: list[int], magnify: float = 1.0) -> tuple[np.ndarray, np.ndarray]:

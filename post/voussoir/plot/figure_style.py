@@ -22,8 +22,6 @@ from voussoir.files import fresh
 EXACT_DPI = 300
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
-#: Line styles that distinguish the curves without colour
-DASHES = ("-", (0, (6, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
 #: Marks that distinguish curves
 MARKERS = "osD^vP*X"
 #: Fill of masonry
@@ -58,20 +56,6 @@ class Picture(Figure):
 def box_of(figure: Figure) -> str | None:
     """Part of a figure that is written: all, or with "tight" the area that has marks."""
     return None if getattr(figure, "exact_size", False) else "tight"
-
-
-def closer(
-    axes: Axes, place: tuple[float, float, float, float], x: tuple[float, float], y: tuple[float, float]
-) -> Axes:
-    """Axes within others for a piece of them, framed there, at left, lower end, width and height as shares of them."""
-    limits = axes.axis()  # the frame of the piece must not change them
-    inner = axes.inset_axes(place, xlim=x, ylim=y, zorder=8)
-    inner.set_autoscale_on(False)
-    inner.tick_params(labelsize=type_of(SMALL))
-    inner.spines[["top", "right"]].set_visible(True)
-    axes.indicate_inset_zoom(inner, edgecolor=INK[0], linewidth=0.7)
-    axes.axis(limits)
-    return inner
 
 
 @contextmanager
