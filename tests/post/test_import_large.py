@@ -15,7 +15,7 @@ from drawn_files import box, drawing, feature, geojson, line  # noqa: E402
 
 from voussoir.command.main import main  # noqa: E402
 from voussoir.imports.curves import Arc, Line, Points, nearest, on_curve  # noqa: E402
-from voussoir.imports.near import Cells, points_on_edges  # noqa: E402
+from voussoir.imports.snapping import Cells, points_on_edges  # noqa: E402
 
 
 @pytest.mark.parametrize(("seed", "reach"), [(1, 0.02), (2, 0.3), (3, 1e-6)])
@@ -42,8 +42,7 @@ def test_points_on_edges_are_those_of_every_pair(seed: int, reach: float) -> Non
     assert found == sorted(found) and len(found) >= 60
 
 
-def test_points_in_one_column_are_found_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("voussoir.imports.near.AT_ONCE", 50)
+def test_points_in_one_column_are_found() -> None:
     points = 1j * np.arange(200.0)
     found = points_on_edges(np.array([-1 + 5j, 0j]), np.array([1 + 5j, 0 + 10j]), points, 0.1)
     assert [(edge, point) for edge, _, point in found] == [(0, 5), *((1, point) for point in range(1, 10))]
@@ -60,6 +59,12 @@ def test_cells_have_every_curve_near_a_point() -> None:
         near = {n for n, curve in enumerate(curves) if nearest(curve, np.array([point]), 0.01)[1][0] <= 0.2}
         assert near <= set(cells.near(complex(point)))
         assert cells.near(complex(point)) == sorted(cells.near(complex(point)))
+
+
+def test_a_far_part_of_a_drawing_leaves_cells_small() -> None:
+    near = [Line(complex(i, 0.0), complex(i + 0.5, 0.0)) for i in range(200)]
+    cells = Cells([*near, Line(1e6 + 1e6j, 1e6 + 1.0 + 1e6j)], 0.01, 0.01)
+    assert max(len(cells.near(line.start)) for line in near) <= 2
 
 
 def wall(columns: int, rows: int, gap: float) -> str:

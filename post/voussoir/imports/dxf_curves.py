@@ -3,66 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Union
+from functools import partial
+from itertools import islice
+from typing import Any
 
 import numpy as np
 
 from voussoir.imports.curves import Arc, Curve, Line, Spline
-from voussoir.imports.dxf_groups import Entry
-from voussoir.imports.dxf_space import Placement, object_axes
+from voussoir.imports.dxf_groups import Entry, Placement
 from voussoir.imports.plane import Plane
 
 
-@dataclass(frozen=True)
-class LinePart:
-    """A straight line between two points of space."""
-
-    points: np.ndarray
-
-    def curve(self, flat: list[complex]) -> Curve:
-        """The line by its points in a plane."""
-        return Line(flat[0], flat[1])
-
-
-@dataclass(frozen=True)
-class ArcPart:
-    """An arc of an ellipse by points of space, ends, centre and ends of two half axes, and the angles at its ends."""
-
-    points: np.ndarray
-    angles: tuple[float, float]
-
-    def curve(self, flat: list[complex]) -> Curve:
-        """The arc by its points in a plane."""
-        start, end, centre, first, second = flat
-        return Arc(start, end, centre, first - centre, second - centre, self.angles)
-
-
-@dataclass(frozen=True)
-class SplinePart:
-    """A rational B-spline of space."""
-
-    degree: int
-    knots: np.ndarray
-    points: np.ndarray
-    weights: np.ndarray
-
-    def curve(self, flat: list[complex]) -> Curve:
-        """The spline by its control points in a plane."""
-        points = np.array(flat)
-        low, high = self.knots[self.degree], self.knots[len(points)]
-        inner, count = np.unique(self.knots[(self.knots > low) & (self.knots < high)], return_counts=True)
-        kinks = tuple(float(knot - low) / float(high - low) for knot in inner[count >= self.degree])
-        spline = Spline(0j, 0j, self.degree, self.knots, points, self.weights, kinks)
-        start, end = spline.at(np.array([0.0, 1.0])).tolist()
-        return replace(spline, start=start, end=end)
+#: Control points of space (n, 3), and what makes the curve from these points in a plane
+Part = tuple[np.ndarray, Callable[..., Curve]]
 
 
 @dataclass(frozen=True)
 class Shape:
     """An entity as parts in a row."""
 
-    parts: list[Union[LinePart, ArcPart, SplinePart]]
+    parts: list[Part]
     is_closed: bool = False
     may_close: bool = False  #: The file does not say whether it is closed
 
@@ -70,13 +32,24 @@ class Shape:
         """The curves in a placement, in a plane; affine maps of control points are those of curves."""
         if not self.parts:
             return []
-        flat = plane.flat(placement.points(np.vstack([part.points for part in self.parts])))
-        row = (flat[:, 0] + 1j * flat[:, 1]).tolist()
-        curves, first = [], 0
-        for part in self.parts:
-            curves.append(part.curve(row[first : first + len(part.points)]))
-            first += len(part.points)
-        return curves
+        flat = plane.flat(placement.points(np.vstack([points for points, _ in self.parts])))
+        row = iter((flat[:, 0] + 1j * flat[:, 1]).tolist())
+        return [make(*islice(row, len(points))) for points, make in self.parts]
+
+
+def _arc(start: complex, end: complex, centre: complex, *tips: complex, angles: tuple[float, float]) -> Curve:
+    """An arc of an ellipse by its ends, its centre, the ends of two half axes, and the angles at its ends."""
+    return Arc(start, end, centre, tips[0] - centre, tips[1] - centre, angles)
+
+
+def _b_spline(*points: complex, degree: int, knots: np.ndarray, weights: np.ndarray) -> Curve:
+    """A rational B-spline, which may have kinks at its repeated knots."""
+    low, high = knots[degree], knots[len(points)]
+    inner, count = np.unique(knots[(knots > low) & (knots < high)], return_counts=True)
+    kinks = tuple(float(knot - low) / float(high - low) for knot in inner[count >= degree])
+    spline = Spline(0j, 0j, degree, knots, np.array(points), weights, kinks)
+    start, end = spline.at(np.array([0.0, 1.0])).tolist()
+    return replace(spline, start=start, end=end)
 
 
 def curves_of(entry: Entry, vertices: list[Entry]) -> Shape | None:
@@ -89,7 +62,7 @@ def curves_of(entry: Entry, vertices: list[Entry]) -> Shape | None:
 
 def _line(entry: Entry) -> Shape:
     """A LINE."""
-    return Shape([LinePart(np.array([entry.point(10), entry.point(11)]))])
+    return Shape([(np.array([entry.point(10), entry.point(11)]), Line)])
 
 
 def _circle(entry: Entry) -> Shape:
@@ -97,7 +70,7 @@ def _circle(entry: Entry) -> Shape:
     radius = entry.number(40)
     if not radius > 0.0:
         raise ValueError(f"{entry.place}: expected a radius of {entry.kind} above 0, got {radius:g}")
-    axes = object_axes(entry)
+    axes = entry.axes()
     if entry.kind == "CIRCLE":
         return _ellipse_of(axes @ np.array(entry.point(10)), radius * axes.T[:2], 0.0, 2.0 * math.pi)
     start = math.radians(entry.number(50))
@@ -108,7 +81,7 @@ def _circle(entry: Entry) -> Shape:
 def _ellipse(entry: Entry) -> Shape:
     """An ELLIPSE: its major half axis, the ratio of the minor one, the angles at its ends."""
     major, ratio = np.array(entry.point(11)), entry.number(40)
-    minor = ratio * np.cross(object_axes(entry)[:, 2], major)
+    minor = ratio * np.cross(entry.axes()[:, 2], major)
     if not (np.linalg.norm(major) > 0.0 and np.linalg.norm(minor) > 0.0):
         raise ValueError(f"{entry.place}: expected half axes of ELLIPSE that have a length, got none")
     start = entry.number(41, 0.0)
@@ -125,8 +98,8 @@ def _ellipse_of(centre: np.ndarray, half_axes: np.ndarray, start: float, turn: f
     ends[-1] = ends[0] if whole else ends[-1]
     frame = [centre, *(centre + half_axes)]
     return Shape(
-        [ArcPart(np.array([*ends[i : i + 2], *frame]), (stops[i], stops[i + 1])) for i in range(len(ends) - 1)],
-        is_closed=whole)
+        [(np.array([*ends[i : i + 2], *frame]), partial(_arc, angles=(stops[i], stops[i + 1])))
+         for i in range(len(ends) - 1)], is_closed=whole)
 
 
 def _light_polyline(entry: Entry) -> Shape:
@@ -134,7 +107,7 @@ def _light_polyline(entry: Entry) -> Shape:
     rows = entry.rows(10, 20, 42)
     height = entry.number(38, 0.0)
     return _chain(
-        [(x, y, height) for x, y, _ in rows], [bulge for _, _, bulge in rows], object_axes(entry),
+        [(x, y, height) for x, y, _ in rows], [bulge for _, _, bulge in rows], entry.axes(),
         bool(entry.whole(70) & 1), not any(code == 70 for code, _ in entry.groups))
 
 
@@ -150,27 +123,27 @@ def _polyline(entry: Entry, vertices: list[Entry]) -> Shape | None:
         return _chain(points, [0.0] * len(points), np.eye(3), bool(flags & 1), is_open_form)
     height = entry.point(10, (0.0, 0.0, 0.0))[2]
     return _chain(
-        [(x, y, height) for x, y, _ in points], [vertex.number(42, 0.0) for vertex in shown], object_axes(entry),
+        [(x, y, height) for x, y, _ in points], [vertex.number(42, 0.0) for vertex in shown], entry.axes(),
         bool(flags & 1), is_open_form)
 
 
 def _chain(points: list[Any], bulges: list[float], axes: np.ndarray, is_closed: bool, may_close: bool) -> Shape:
     """Lines and arcs from point to point; a bulge is the tangent of a quarter of the turn."""
     pairs = list(zip(points, points[1:] + points[:1], bulges))[: None if is_closed else -1]
-    parts: list[Union[LinePart, ArcPart, SplinePart]] = []
+    parts: list[Part] = []
     for start, end, bulge in pairs:
         if start == end:
             continue
         ends = np.array([start, end]) @ axes.T
         if bulge == 0.0:
-            parts.append(LinePart(ends))
+            parts.append((ends, Line))
             continue
         way = complex(end[0] - start[0], end[1] - start[1])
         spoke = -way * complex(0.5, (1.0 - bulge**2) / (4.0 * bulge))  # from the centre to the start
         centre = np.array(start) - np.array([spoke.real, spoke.imag, 0.0])
         half_axes = np.array([[spoke.real, spoke.imag, 0.0], [-spoke.imag, spoke.real, 0.0]])
         frame = np.vstack((centre, centre + half_axes)) @ axes.T
-        parts.append(ArcPart(np.vstack((ends, frame)), (0.0, 4.0 * math.atan(bulge))))
+        parts.append((np.vstack((ends, frame)), partial(_arc, angles=(0.0, 4.0 * math.atan(bulge)))))
     return Shape(parts, is_closed, may_close)
 
 
@@ -181,7 +154,7 @@ def _corners(entry: Entry) -> Shape:
     flat = entry.kind != "3DFACE"
     order = (0, 1, 3, 2) if flat else (0, 1, 2, 3)
     row = [points[number] for number in order]
-    return _chain(row, [0.0] * 4, object_axes(entry) if flat else np.eye(3), True, False)
+    return _chain(row, [0.0] * 4, entry.axes() if flat else np.eye(3), True, False)
 
 
 def _spline(entry: Entry) -> Shape:
@@ -197,7 +170,7 @@ def _spline(entry: Entry) -> Shape:
             knots[degree] < knots[len(points)]):
         raise ValueError(
             f"{entry.place}: expected increasing knots and positive weights that fit the degree of SPLINE, got others")
-    return Shape([SplinePart(degree, knots, points, weights)])
+    return Shape([(points, partial(_b_spline, degree=degree, knots=knots, weights=weights))])
 
 
 def _fitted(entry: Entry, is_closed: bool) -> Shape:
@@ -222,7 +195,8 @@ def _fitted(entry: Entry, is_closed: bool) -> Shape:
     for i in range(count - 1):
         control += [fit[i] + slope[i] * step[i] / 3.0, fit[i + 1] - slope[i + 1] * step[i] / 3.0, fit[i + 1]]
     knots = np.concatenate(([0.0], np.repeat(np.concatenate(([0.0], np.cumsum(step))), 3), [step.sum()]))
-    return Shape([SplinePart(3, knots, np.array(control), np.ones(len(control)))], is_closed)
+    make = partial(_b_spline, degree=3, knots=knots, weights=np.ones(len(control)))
+    return Shape([(np.array(control), make)], is_closed)
 
 
 _READERS = {

@@ -10,8 +10,7 @@ import numpy as np
 
 from voussoir.imports.curves import Curve, Line
 from voussoir.imports.dxf_curves import curves_of
-from voussoir.imports.dxf_groups import Entry, sections_of
-from voussoir.imports.dxf_space import Placement
+from voussoir.imports.dxf_groups import Entry, Placement, sections_of
 from voussoir.imports.linework import Drawn, Found, outlines
 from voussoir.imports.notes import Notes
 from voussoir.imports.plane import Plane

@@ -35,12 +35,10 @@ def limited(function: Callable[..., Any], *arguments: Any) -> Any:
         raise ValueError(_too_large()) from None
     if done.returncode != 0 or not done.stdout:
         raise ValueError(_too_large())
-    kind, value = pickle.loads(done.stdout)
-    if kind == "value":
-        return value
-    if kind == "DdaError":
-        raise DdaError(*value)
-    raise MissingPackage(value) if kind == "MissingPackage" else ValueError(value)
+    value, failure = pickle.loads(done.stdout)
+    if failure:
+        raise failure
+    return value
 
 
 def work() -> None:
@@ -49,23 +47,23 @@ def work() -> None:
     os.dup2(2, 1)  # libraries may print
     _set_limits()
     function, arguments = pickle.loads(sys.stdin.buffer.read())
+    value: Any = None
+    failure: Exception | None = None
     try:
-        given = ("value", function(*arguments))
-    except MissingPackage as problem:
-        given = ("MissingPackage", str(problem))
-    except DdaError as problem:
-        given = ("DdaError", (str(problem), problem.status))
+        value = function(*arguments)
+    except (MissingPackage, DdaError) as problem:
+        failure = problem
     except MemoryError:
-        given = ("ValueError", _too_large())
+        failure = ValueError(_too_large())
     except RecursionError:
-        given = ("ValueError", "expected a file of few levels, got one nested too deeply")
+        failure = ValueError("expected a file of few levels, got one nested too deeply")
     except OSError as problem:
-        given = ("ValueError", f"expected a file that can be read, got: {problem.strerror or one_line(problem)}")
+        failure = ValueError(f"expected a file that can be read, got: {problem.strerror or one_line(problem)}")
     except ValueError as problem:
-        given = ("ValueError", one_line(problem))
+        failure = ValueError(one_line(problem))
     except Exception as problem:  # a fault of a reader is no traceback for the user
-        given = ("ValueError", f"expected a file of its kind, got a {type(problem).__name__}: {one_line(problem)}")
-    pickle.dump(given, answer)
+        failure = ValueError(f"expected a file of its kind, got a {type(problem).__name__}: {one_line(problem)}")
+    pickle.dump((value, failure), answer)
     answer.close()
 
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Optional
 
 import numpy as np
 
 from voussoir.extras import load
 from voussoir.imports.curves import MOST_CHORDS, Curve, Line, Points, nearest, polyline
-from voussoir.imports.near import Cells
 from voussoir.imports.notes import Notes
-from voussoir.imports.snapping import Ends
+from voussoir.imports.snapping import Cells, Ends
 
 #: Ends and corners as near as this share of the tolerance are one
 SAME = 0.1
@@ -33,15 +32,6 @@ class Drawn:
     may_close: bool = False  #: The file does not say whether it is closed
 
 
-@dataclass
-class _Layer:
-    """Open entities of a layer."""
-
-    name: str
-    drawn: list[Drawn]
-    short: list[tuple[complex, float]] = field(default_factory=list)
-
-
 def outlines(drawn: list[Drawn], tolerance: float, snap: float, notes: Notes) -> Found:
     """Outlines of all entities; curves are cut where others end on them, so that both sides of a joint have one shape.
 
@@ -51,26 +41,24 @@ def outlines(drawn: list[Drawn], tolerance: float, snap: float, notes: Notes) ->
     shape = load("shapely.geometry", _PURPOSE)
     reach = SAME * tolerance
     drawn = [replace(one, is_closed=one.is_closed or _gap(one) <= reach) for one in drawn]
-    layers: dict[str, _Layer] = {}
+    layers: dict[str, list[Drawn]] = {}
     for one in drawn:
         if not one.is_closed:
-            layers.setdefault(one.layer, _Layer(one.layer, [])).drawn.append(one)
-    for layer in layers.values():
-        layer.drawn = _closed_alone(layer.drawn, reach, notes)
-        if snap > 0.0:
-            layer.drawn = _snapped(layer.drawn, snap, tolerance, notes)
-    rings = [one for one in drawn if one.is_closed]
-    rings += [one for layer in layers.values() for one in layer.drawn if one.is_closed]
-    rows = _cut_rows(rings + [one for layer in layers.values() for one in layer.drawn if not one.is_closed], tolerance)
+            layers.setdefault(one.layer, []).append(one)
+    for name, lines in layers.items():
+        lines = _closed_alone(lines, reach, notes)
+        layers[name] = _snapped(lines, snap, tolerance, notes) if snap > 0.0 else lines
+    all_open = [one for lines in layers.values() for one in lines]
+    rings = [one for one in [*drawn, *all_open] if one.is_closed]
+    rows = _cut_rows(rings + [one for one in all_open if not one.is_closed], tolerance)
     for one in rings:
         points = [point for row in rows[id(one)] for point in row[:-1]]
         if len(points) > 2:
             yield one.words, shape.Polygon([(point.real, point.imag) for point in points]), one.layer
         else:
             yield f"{one.words}: no area", None, _at(points[0] if points else one.curves[0].start)
-    for layer in layers.values():
-        layer.drawn = [one for one in layer.drawn if not one.is_closed]
-        yield from _enclosed(layer, rows, reach, notes)
+    for name, lines in layers.items():
+        yield from _enclosed(name, [one for one in lines if not one.is_closed], rows, reach, notes)
 
 
 def _at(point: complex) -> str:
@@ -198,26 +186,28 @@ def _cut_rows(drawn: list[Drawn], tolerance: float) -> dict[int, list[list[compl
     return rows
 
 
-def _enclosed(layer: _Layer, rows: dict[int, list[list[complex]]], reach: float, notes: Notes) -> Found:
+def _enclosed(
+    layer: str, lines: list[Drawn], rows: dict[int, list[list[complex]]], reach: float, notes: Notes
+) -> Found:
     """What the open lines of a layer enclose, and how many of their pieces enclose nothing."""
-    if not layer.drawn:
+    if not lines:
         return
     shape, join = load("shapely.geometry", _PURPOSE), load("shapely.ops", _PURPOSE)
     pieces = [
         shape.LineString([(one.real, one.imag), (two.real, two.imag)])
-        for line in layer.drawn for points in rows[id(line)] for one, two in zip(points, points[1:]) if one != two]
+        for line in lines for points in rows[id(line)] for one, two in zip(points, points[1:]) if one != two]
     network = join.unary_union(pieces)
     faces, cuts, dangles, rings = join.polygonize_full(network)
     for number, face in enumerate(faces.geoms, 1):  # without the corners of others on its straight edges
-        yield f"outline {number} of lines on layer {layer.name}", face.simplify(SAME * reach), layer.name
+        yield f"outline {number} of lines on layer {layer}", face.simplify(SAME * reach), layer
     left = len(cuts.geoms) + len(dangles.geoms) + len(rings.geoms)
     if left:
-        kinds = sorted({line.words.split()[0] for line in layer.drawn})
+        kinds = sorted({line.words.split()[0] for line in lines})
         words = " encloses" if left == 1 else "s enclose"
         notes.short += [
-            (f"layer {layer.name}", end, gap) for end, gap in _short_ends(network, dangles, reach)]
+            (f"layer {layer}", end, gap) for end, gap in _short_ends(network, dangles, reach)]
         lost = next(piece for pieces in (dangles, cuts, rings) for piece in pieces.geoms)
-        yield (f"{' and '.join(kinds)} on layer {layer.name}: {left} piece{words} nothing", None,
+        yield (f"{' and '.join(kinds)} on layer {layer}: {left} piece{words} nothing", None,
                _at(complex(*lost.coords[0])))
 
 

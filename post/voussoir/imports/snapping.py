@@ -1,14 +1,75 @@
-"""Corners that nearly meet become one; corners near an edge of another outline are moved onto it."""
+"""Corners that nearly meet become one; corners near an edge of another outline are moved onto it.
+
+Near pairs of large drawings are found by the cells of a grid.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from voussoir.extras import load
-from voussoir.imports.near import points_on_edges
+from voussoir.imports.curves import Curve, Line, sampled
 from voussoir.imports.notes import Notes
+
+
+def points_on_edges(
+    starts: np.ndarray, ends: np.ndarray, points: np.ndarray, reach: float
+) -> list[tuple[int, float, int]]:
+    """Points within reach of edges and farther than that from their ends.
+
+    Edges lead from `starts` to `ends`, (m) complex; points are (n) complex. Gives edge, share along it and point,
+    sorted by edge and share.
+    """
+    edges = [Line(start, end) for start, end in zip(starts.tolist(), ends.tolist())]
+    cells, found = Cells(edges, reach, reach), []
+    for number, point in enumerate(points.tolist()):
+        for edge in cells.near(point):
+            start, end = edges[edge].start, edges[edge].end
+            way = end - start
+            along = min(max(((point - start) * way.conjugate()).real / max(abs(way) ** 2, 1e-300), 0.0), 1.0)
+            if abs(point - start - along * way) <= reach < min(abs(point - start), abs(point - end)):
+                found.append((edge, along, number))
+    return sorted(found)
+
+
+class Cells:
+    """Curves by the cells of a grid that they go through, widened by the distance `reach`.
+
+    Chords may be `tolerance` from a curve.
+    """
+
+    def __init__(self, curves: Sequence[Curve], reach: float, tolerance: float) -> None:
+        # as large as a curve on average: each goes through few, however far apart the parts of a drawing are
+        lengths = [abs(curve.end - curve.start) for curve in curves]
+        self._cell = max(math.fsum(lengths) / max(len(lengths), 1), 2.0 * reach, tolerance)
+        self._cells: dict[tuple[int, int], list[int]] = {}
+        for number, curve in enumerate(curves):
+            wide = reach if isinstance(curve, Line) else reach + tolerance
+            cells: set[tuple[int, int]] = set()
+            points = sampled(curve, tolerance)[1].tolist() if not isinstance(curve, Line) else [curve.start, curve.end]
+            for start, end in zip(points, points[1:]):
+                cells.update(self._along(start, end, wide))
+            for cell in cells:
+                self._cells.setdefault(cell, []).append(number)
+
+    def _along(self, start: complex, end: complex, wide: float) -> Iterator[tuple[int, int]]:
+        """Cells of a straight piece."""
+        parts = max(1, math.ceil(max(abs(end.real - start.real), abs(end.imag - start.imag)) / self._cell))
+        for part in range(parts):
+            one, other = start + (end - start) * (part / parts), start + (end - start) * ((part + 1) / parts)
+            low_x, high_x = sorted((one.real, other.real))
+            low_y, high_y = sorted((one.imag, other.imag))
+            for i in range(math.floor((low_x - wide) / self._cell), math.floor((high_x + wide) / self._cell) + 1):
+                for j in range(math.floor((low_y - wide) / self._cell), math.floor((high_y + wide) / self._cell) + 1):
+                    yield i, j
+
+    def near(self, point: complex) -> list[int]:
+        """Numbers of curves that may be within the distance of a point, in ascending order."""
+        return self._cells.get((math.floor(point.real / self._cell), math.floor(point.imag / self._cell)), [])
 
 
 class Ends:
