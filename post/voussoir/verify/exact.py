@@ -21,7 +21,7 @@ from voussoir.verify.loads import loads_on
 from voussoir.verify.proofs import Finding, Scene, held_points
 from voussoir.verify.rational import Column, square_root
 from voussoir.verify.read import Row
-from voussoir.verify.simplex import Programme, find_best
+from voussoir.verify.simplex import find_best
 
 #: Most joints that are computed exactly
 MOST_JOINTS = 200
@@ -193,8 +193,8 @@ def proves(exact: ExactScene, carried: bool) -> bool:
     for column in columns:
         for i, value in column.items():
             rest[i] -= equal * value
-    vertex = find_best(Programme([*columns, {i: value for i, value in rest.items() if value}], right, -1))
-    return vertex is not None and (vertex.value == 0) is carried
+    found = find_best([*columns, {i: value for i, value in rest.items() if value}], right, -1)
+    return found is not None and (found[-1] == 0) is carried
 
 
 def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] | None:
@@ -215,10 +215,10 @@ def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] |
     for nudge in (-NUDGE, NUDGE):
         columns = _columns(exact, nudge, number, origin)
         right = [-value for value in dead] + _bounds(exact, nudge)
-        vertex = find_best(Programme([*columns, live], right, 1))
+        vertex = find_best([*columns, live], right, 1)
         if vertex is None:
             return None
-        found.append(way * vertex.value)
+        found.append(way * vertex[-1])
     return min(found), max(found)
 
 
