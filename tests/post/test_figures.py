@@ -24,10 +24,11 @@ from voussoir.plot.case_picture import draw_case  # noqa: E402
 from voussoir.plot.case_scene import scene_of  # noqa: E402
 from voussoir.plot.design_chart import ChartError  # noqa: E402
 from voussoir.plot.figure_style import EXACT_DPI, INK, house_style  # noqa: E402
-from voussoir.plot.motion import distance, motion_of  # noqa: E402
+from voussoir.plot.motion import motion_of  # noqa: E402
 from voussoir.plot.sheet import EDGE, Sheet  # noqa: E402
 from voussoir.plot.sweep_chart import draw_contours, draw_map, draw_sweep  # noqa: E402
 from voussoir.plot.thrust_path import chain_pairs  # noqa: E402
+from voussoir.polygon import distance  # noqa: E402
 from voussoir.results import Block  # noqa: E402
 
 DDA = os.environ.get("DDA", "")

@@ -51,7 +51,7 @@ def pictures_of_case(read: Results, number: int) -> list[Frame]:
 
 def block_at(shapes: list[np.ndarray], point: np.ndarray) -> int:
     """The number of the block that a point of the plane lies in, or else is nearest to."""
-    from voussoir.plot.motion import distance
+    from voussoir.polygon import distance
 
     return 1 + int(np.argmin([distance(corners, point) for corners in shapes]))
 

@@ -17,8 +17,7 @@ from voussoir.verify.exact import MOST_JOINTS, check_exactly
 from voussoir.verify.lines import read_lines
 from voussoir.verify.loads import loads_on
 from voussoir.verify.proofs import TOLERANCE, Finding, Scene, check_forces, check_motion
-from voussoir.verify.read import COLUMNS, Row, read_table
-from voussoir.verify.sums import recorded_sums, sums_of
+from voussoir.verify.read import COLUMNS, Row, read_table, recorded_sums, sums_of
 from voussoir.verify.tables import check_joints, check_rigid
 
 #: A collapse without limit analysis is that of blocks that strain, which may be so far from rigid

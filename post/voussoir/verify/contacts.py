@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from voussoir.polygon import distance
+
 #: Blocks touch within this share of the smaller one's size, the root of its area, if a deck gives no other
 TOUCH = 1e-4
 
@@ -174,7 +176,8 @@ def _joint(first: Block, second: Block, contacts: list[tuple[int, int, int]]) ->
     both = (first, second)
     twice = (contacts * 2)[:2]
     ends = np.array([both[1 - side].corners[corner] for side, _, corner in twice])
-    edges = np.array([_corners_of(both[side], edge)[::1 - 2 * side] for side, edge, _ in twice])
+    pairs = [both[side].corners[[edge, (edge + 1) % len(both[side].corners)]] for side, edge, _ in twice]
+    edges = np.array([pair[::1 - 2 * side] for pair, (side, _, _) in zip(pairs, twice)])
     return Joint(first.number, second.number, ends, edges, len(contacts) == 1, tuple(contacts * 2)[:2])
 
 
@@ -228,11 +231,6 @@ def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:
     return start, (end - start) / length, length
 
 
-def _corners_of(block: Block, number: int) -> np.ndarray:
-    """Both corners of an edge."""
-    return block.corners[[number, (number + 1) % len(block.corners)]]
-
-
 def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -> Joint | None:
     """The joint of two edges that lie together, if they do: each end is the inner one of two corners."""
     start, direction, length = _edge(first, a)
@@ -259,17 +257,7 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
 
 def depth(block: Block, point: np.ndarray) -> float:
     """How deep a point lies in a block, negative outside: its distance from the outline, with a sign."""
-    start, point = block.corners.astype(float), np.asarray(point, dtype=float)
-    end = np.roll(start, -1, axis=0)
-    along = end - start
-    share = np.clip(((point - start) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
-    distance = float(np.linalg.norm(start + share[:, None] * along - point, axis=1).min())
-    y, x = point[1], point[0]
-    crosses = (start[:, 1] > y) != (end[:, 1] > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at = start[:, 0] + (y - start[:, 1]) / along[:, 1] * along[:, 0]
-    inside = int((crosses & (x < at)).sum()) % 2 == 1
-    return distance if inside else -distance
+    return -distance(block.corners.astype(float), np.asarray(point, dtype=float))
 
 
 def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:

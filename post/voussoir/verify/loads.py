@@ -59,17 +59,23 @@ def _parts_on(deck: Deck, source: Source, blocks: list[Block]) -> Iterator[tuple
 def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
     """Live loads of a deck: forces of &live and of the axles of &vehicle."""
     free = [block for block in blocks if not block.fixed]
+    x, y = deck.numbers("live%x"), deck.numbers("live%y")
+    fx = deck.numbers("live%fx") or [0] * len(x)
+    fy = deck.numbers("live%fy") or [0] * len(x)
     forces = []
-    for force in _live_of_deck(deck):
-        number = max(free, key=lambda block: depth(block, np.array(force.point))).number
-        forces.append(PointForce(number, force.point, force.force, True))
+    for point, force in zip(zip(x, y), zip(fx, fy)):
+        number = max(free, key=lambda block: depth(block, np.array(point))).number
+        forces.append(PointForce(number, point, force, True))
     return forces + _axles_of_deck(deck, blocks)
 
 
 def pulls_of(deck: Deck, source: Source, blocks: list[Block]) -> list[Pull]:
     """Forces of any size up to a bound: bars that pull, fill that presses."""
     pulls = []
-    for bar in [*source.bars, *_ties_of_deck(deck)]:
+    ends = [deck.numbers(f"tie%{name}") for name in ("x1", "y1", "x2", "y2")]
+    strength: Sequence[float | None] = deck.numbers("tie%strength") or [None] * len(ends[0])
+    ties = [Bar(np.array(place).reshape(2, 2), most) for *place, most in zip(*ends, strength)]
+    for bar in [*source.bars, *ties]:
         numbers = []
         for end in bar.ends:
             block = max(blocks, key=lambda block: depth(block, end))
@@ -80,13 +86,6 @@ def pulls_of(deck: Deck, source: Source, blocks: list[Block]) -> list[Pull]:
         live = [(np.array(force.point), np.array(force.force)) for force in live_of(deck, blocks)]
         pulls += pressures(deck, blocks, live)
     return pulls
-
-
-def _ties_of_deck(deck: Deck) -> list[Bar]:
-    """Bars of &tie."""
-    ends = [deck.numbers(f"tie%{name}") for name in ("x1", "y1", "x2", "y2")]
-    strength: Sequence[float | None] = deck.numbers("tie%strength") or [None] * len(ends[0])
-    return [Bar(np.array(place).reshape(2, 2), most) for *place, most in zip(*ends, strength)]
 
 
 def _wedge(deck: Deck, block: Block, weight: float) -> PointForce:
@@ -144,14 +143,6 @@ def _upper(blocks: list[Block], x: float) -> tuple[Block, float] | None:
             if found is None or y > found[1]:
                 found = (block, y)
     return found
-
-
-def _live_of_deck(deck: Deck) -> list[PointForce]:
-    """Forces of &live."""
-    x, y = deck.numbers("live%x"), deck.numbers("live%y")
-    fx = deck.numbers("live%fx") or [0] * len(x)
-    fy = deck.numbers("live%fy") or [0] * len(x)
-    return [PointForce(0, place, force, True) for place, force in zip(zip(x, y), zip(fx, fy))]
 
 
 def _on_block(force: PointForce, factor: float, blocks: list[Block]) -> tuple[int, np.ndarray]:

@@ -82,7 +82,6 @@ class Scene:
             supports = [self.blocks[number - 1].fixed for number in (joint.first, joint.second)]
         return friction_of(self.deck, self.source, joint, supports[0] != supports[1])
 
-
     def crush(self, joint: Joint) -> float:
         """Strength of a joint over its whole length; infinite where it is not crushed."""
         strength = strength_of(self.deck, self.source, joint)

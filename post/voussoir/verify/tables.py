@@ -36,7 +36,8 @@ def check_joints(
     allowed = allowed.copy()
     rounding = [off + rounding_of(block) for block in scene.blocks]
     left = loads_on(scene.deck, scene.source, scene.blocks)
-    free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
+    held = {place.block for place in scene.source.held}  # 0 for any block
+    free = np.array([not block.fixed and not held & {0, block.number} for block in scene.blocks])
     size = sizes_on(scene.deck, scene.source, scene.blocks)
     largest = largest_of(size[free], scene.length) if free.any() else 1.0
     # a force that is off by a share of the largest load turns a thin block by its arm, many times the joint's length
@@ -102,11 +103,6 @@ def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> N
             reach = (most[share > NONE] * share[share > NONE]).sum()
             beyond = max(beyond, (normal @ wanted - reach) / np.linalg.norm(normal))
     left[block.number - 1] = [beyond, left[block.number - 1, 1], 0.0]
-
-
-def _is_held(scene: Scene, number: int) -> bool:
-    """Whether a point of a block may be held."""
-    return any(held.block in (0, number) for held in scene.source.held)
 
 
 def _forces(
