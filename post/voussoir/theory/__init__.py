@@ -24,13 +24,9 @@ from typing import Any
 
 import numpy.typing as npt
 
-from voussoir._theory import theory_api
+from voussoir._theory import theory_api, theory_discrete_api, theory_equations_api
 from voussoir.theory._columns import HALF_ANGLE, JOINT, THEORIES, THICKNESS, Value, evaluate, theory_number
 from voussoir.theory._discrete import DiscreteSolution, discrete_critical, discrete_solution
-from voussoir.theory._equations import (
-    eccentricity, embrace, lower_thrust, springing_thrust, tangent_thrust, thrust_through,
-)
-from voussoir.theory._friction import friction, friction_critical, friction_thickness
 
 __all__ = [
     "THEORIES", "DiscreteSolution", "critical", "critical_as_printed", "critical_near_limit", "critical_small",
@@ -38,6 +34,8 @@ __all__ = [
     "friction", "friction_critical", "friction_thickness", "initial_thickness", "limits", "lower_thrust",
     "springing_thrust", "tangent_thrust", "thrust_line", "thrust_through"]
 
+_SEMICIRCLE = 0.5 * math.pi
+_ANGLE = "an angle within the range of the theory, see limits()"
 _LIMITS = (
     "alpha_limit", "A_limit", "eta_limit", "beta_limit", "h_limit", "beta_max", "alpha_beta_max", "A_beta_max",
     "eta_beta_max", "h_beta_max", "alpha_unit_A")
@@ -147,6 +145,100 @@ def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, t
     arguments = {"beta": beta, "alpha": alpha, "eta": eta}
     ranges = [JOINT, HALF_ANGLE, THICKNESS + " with a thrust"]
     return evaluate(theory_api.line, arguments, ranges, theory_number(theory))[0]
+
+
+def eccentricity(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, h: npt.ArrayLike, theory: str) -> Value:
+    """Eccentricity ratio 2e/t at beta of a thrust h > 0 that passes the extrados at the crown: eq. (10).
+
+    The ratio is -1 at the extrados and 1 at the intrados; alpha, in (0, pi), does not change it.
+    """
+    arguments = {"beta": beta, "alpha": alpha, "eta": eta, "h": h}
+    ranges = [JOINT, HALF_ANGLE, THICKNESS, "a positive thrust"]
+    return evaluate(theory_equations_api.joint_eccentricity, arguments, ranges, theory_number(theory))[0]
+
+
+def embrace(alpha: npt.ArrayLike) -> Value:
+    """The group A = alpha cot(alpha/2) of an angle in (0, pi) [rad], from 2 down to 0: eq. (9)."""
+    arguments = {"alpha": alpha}
+    return evaluate(theory_equations_api.group_a, arguments, [HALF_ANGLE])[0]
+
+
+def thrust_through(beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
+    """Thrust h through the extrados of the crown and a point of the joint at beta: eq. (6).
+
+    The point has an eccentricity ratio 2e/t in [-1, 1]; h is negative where no thrust can pass.
+    """
+    arguments = {"beta": beta, "ratio": ratio, "eta": eta}
+    ranges = [HALF_ANGLE, "a ratio in [-1, 1]", THICKNESS]
+    return evaluate(theory_equations_api.thrust_at_joint, arguments, ranges, theory_number(theory))[0]
+
+
+def lower_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
+    """Lower thrust h1, through the crown's extrados and the intrados at beta: eq. (7); negative where none can pass."""
+    return thrust_through(beta, 1.0, eta, theory)
+
+
+def springing_thrust(alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
+    """Thrust h2 through the extrados of crown and springing: eq. (8); negative where no thrust can pass."""
+    arguments = {"alpha": alpha, "eta": eta}
+    ranges = [HALF_ANGLE, THICKNESS]
+    return evaluate(theory_equations_api.thrust_at_springing, arguments, ranges, theory_number(theory))[0]
+
+
+def tangent_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
+    """Thrust h_e that touches the intrados at beta: eq. (12), for Heyman eq. (3); negative where none can touch."""
+    arguments = {"beta": beta, "eta": eta}
+    ranges = [HALF_ANGLE, THICKNESS]
+    return evaluate(theory_equations_api.thrust_at_tangent, arguments, ranges, theory_number(theory))[0]
+
+
+def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
+    """Friction coefficients at which the mode of collapse changes.
+
+    Parameters
+    ----------
+    theory : str
+        Name of the theory.
+    alpha : float, optional
+        Half angle of embrace, in (0, alpha_limit]; the semicircle by default [rad].
+
+    Returns
+    -------
+    dict
+        ``mu_rotational``: from here on the arch collapses by rotation alone; ``mu_mixed``: below here no thickness
+        stands; ``h_mixed``, ``eta_mixed``, ``beta_mixed`` [rad] the thrust, thickness ratio and hinge at mu_mixed;
+        ``beta_slip`` [rad] the joint of the haunch that slides there together with the springing; ``slides_first``
+        "springing" or "haunch", the joint that limits mu_rotational.
+    """
+    found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=7)
+    if found[0].ndim > 0:
+        raise ValueError(f"alpha must be one angle, got {alpha!r}")
+    rotational, mixed, h, slip, springing, beta, eta = found
+    return {
+        "mu_rotational": float(rotational),
+        "mu_mixed": float(mixed),
+        "h_mixed": float(h),
+        "eta_mixed": float(eta),
+        "beta_mixed": float(beta),
+        "beta_slip": float(slip),
+        "slides_first": "springing" if springing else "haunch",
+    }
+
+
+def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> tuple[Value, Value, Value]:
+    """Hinge [rad], least thickness and thrust, as of `critical`, at a friction coefficient mu_mixed or more.
+
+    From mu_rotational on the result is that of `critical`; below mu_mixed, see `friction`, no thickness stands.
+    """
+    ranges = ["a coefficient of mu_mixed or more, see friction()", _ANGLE]
+    arguments = {"mu": mu, "alpha": alpha}
+    beta, eta, h = evaluate(theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3)
+    return beta, eta, h
+
+
+def friction_thickness(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> Value:
+    """The least thickness ratio of `friction_critical` alone."""
+    return friction_critical(mu, theory, alpha)[1]
 
 
 def _embraced(theory: str) -> Callable[[], str]:
