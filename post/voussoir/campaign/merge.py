@@ -11,8 +11,8 @@ import os
 import re
 import shutil
 import uuid
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, BinaryIO
 
@@ -29,14 +29,6 @@ TABLES = (
 _PIECE = 1 << 20
 #: Where the rows of a case are: number of the part, first byte, byte behind the last
 _PLACE = np.dtype([("case", "i8"), ("number", "i4"), ("start", "i8"), ("stop", "i8")])
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What a merged table holds."""
-
-    cases: int  #: Cases with a row
-    undecided: int  #: Those of them that are undecided
 
 
 def owners(parts: list[Path], total: int) -> tuple[np.ndarray, bool]:
@@ -132,20 +124,14 @@ def copy_pictures(part: Path, owned: np.ndarray, out: Path) -> None:
             shutil.copy2(path, fresh(copy))
 
 
-def merged(out: Path) -> Summary:
-    """Count what a merged table holds."""
+def count_verdicts(out: Path) -> Counter[str]:
+    """Number of cases of each verdict in a merged table; none where there is no table."""
     if not (out / "results.csv").is_file():
-        return Summary(0, 0)
-    with (out / "results.csv").open("rb") as file:
-        header = file.readline()
-        cases, doubtful = 0, [header]
-        for line in file:
-            cases += 1
-            if b"undecided" in line:  # most rows need no splitting
-                doubtful.append(line)
-    rows = csv.reader(line.decode("utf-8", "replace") for line in doubtful)
-    verdict = next(rows).index("verdict")
-    return Summary(cases, sum(row[verdict] == "undecided" for row in rows))
+        return Counter()
+    with (out / "results.csv").open(encoding="utf-8", errors="replace", newline="") as file:
+        rows = csv.reader(file)
+        place = next(rows).index("verdict")
+        return Counter(row[place] for row in rows)
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:

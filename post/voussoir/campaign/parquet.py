@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from voussoir.campaign.merge import replace
 from voussoir.extras import load
-from voussoir.files import plain
-from voussoir.results._tables import column_of
+from voussoir.results._tables import read_pieces
 
 #: Rows that are held at the same time, and in one group of the file
 BATCH = 50000
@@ -28,7 +24,10 @@ def write_parquet(table: Path) -> Path:
     def write(file: Any) -> None:
         writer = None
         try:
-            for batch in _batches(table, arrow):
+            for names, columns in read_pieces(table, BATCH):
+                batch = arrow.table({
+                    name: arrow.array(column.tolist(), arrow.list_(arrow.float64())) if column.dtype == object
+                    else arrow.array(column) for name, column in zip(names, columns)})
                 writer = writer or parquet.ParquetWriter(file, batch.schema)
                 writer.write_table(batch)
         finally:
@@ -37,25 +36,3 @@ def write_parquet(table: Path) -> Path:
 
     replace(target, write)
     return target
-
-
-def _batches(table: Path, arrow: Any) -> Iterator[Any]:
-    """Rows of a table, so many at a time; one without rows where it has none."""
-    with plain(table).open(newline="", encoding="utf-8") as lines:
-        reader = csv.reader(lines)
-        names = next(reader, [])
-        rows = list(islice(reader, BATCH))
-        while True:
-            cells = list(zip(*rows)) or [()] * len(names)
-            columns = [column_of(name, column) for name, column in zip(names, cells)]
-            yield arrow.table(
-                {
-                    name: arrow.array(column.tolist(), arrow.list_(arrow.float64()))
-                    if column.dtype == object
-                    else arrow.array(column)
-                    for name, column in zip(names, columns)
-                }
-            )
-            rows = list(islice(reader, BATCH))
-            if not rows:
-                return

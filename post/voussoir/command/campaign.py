@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from voussoir.campaign.dask import dask_engine
-from voussoir.campaign.merge import Summary, merge, merged, owners
+from voussoir.campaign.merge import count_verdicts, merge, owners
 from voussoir.campaign.parquet import write_parquet
 from voussoir.campaign.share import (
     Campaign, begun, local_engine, open_campaign, parts_of, run_parts, share, unlock,
@@ -91,8 +91,8 @@ def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) ->
     return run_parts(parts, engine, sys.stderr.isatty() and not arguments.quiet)
 
 
-def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
-    """Merge, unless other shares are still to come."""
+def _finish(campaign: Campaign, arguments: argparse.Namespace, share_cases: range) -> int:
+    """Merge and print, unless other shares are still to come; return 0 if each case has a verdict, else 3."""
     parts = [folder for _, folder in sorted(begun(campaign).items())]
     if arguments.index is not None:
         done = owners(parts, campaign.total)[0] >= 0
@@ -100,23 +100,20 @@ def _finish(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> 
             if not arguments.quiet:
                 left = campaign.total - int(np.count_nonzero(done))
                 print(f"{arguments.deck}: this share has ended, {left} cases of other shares remain")
-            return 0 if done[cases.start:cases.stop].all() else 3
+            return 0 if done[share_cases.start:share_cases.stop].all() else 3
     owner = merge(parts, campaign.total, campaign.out, campaign.asked.record, campaign.asked.headers)
     if (owner[1:] >= 0).all() and arguments.index is None:
         shutil.rmtree(campaign.parts, ignore_errors=True)
-    return _report(campaign, arguments, merged(campaign.out))
-
-
-def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary) -> int:
-    """Print the number of verdicts; return 0 if each case has one, else 3."""
-    missing = campaign.total - summary.cases
+    verdicts = count_verdicts(campaign.out)
+    cases, undecided = sum(verdicts.values()), verdicts["undecided"]
+    missing = campaign.total - cases
     if not arguments.quiet:
         print(
-            f"{arguments.deck}: {summary.cases - summary.undecided} decided, {summary.undecided} undecided, {missing} "
-            f"not finished; results in {campaign.out / 'results.csv'}")
-    if arguments.parquet and summary.cases:
+            f"{arguments.deck}: {cases - undecided} decided, {undecided} undecided, {missing} not finished; results in "
+            f"{campaign.out / 'results.csv'}")
+    if arguments.parquet and cases:
         write_parquet(campaign.out / "results.csv")
-    return 3 if summary.undecided or missing else 0
+    return 3 if undecided or missing else 0
 
 
 def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:

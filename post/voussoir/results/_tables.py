@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -64,14 +64,13 @@ class DamagedTable(ValueError):
 Choice = Callable[[list[str]], Collection[str]]
 
 
-def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | None = None) -> dict[str, np.ndarray]:
-    """Read a table's chosen columns with their types, so many rows as text at one time (None: all).
+def read_pieces(
+    file: Path, at_once: int | None, choice: Choice | None = None
+) -> Iterator[tuple[list[str], list[np.ndarray]]]:
+    """Names of a table's chosen columns, and these with their types of so many rows at one time (None: all).
 
-    Of a table in several pieces a column of one value is that value once, seen in each row, and cannot be written to.
-    DamagedTable if dda does not write such a table.
+    A table without rows has one piece. DamagedTable if dda does not write such a table.
     """
-    pieces: list[list[np.ndarray]] = []
-    names: list[str] = []
     try:
         with plain(file).open(newline="", encoding="utf-8") as lines:
             reader = csv.reader(lines)
@@ -81,12 +80,27 @@ def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | No
                 found = names.count(lost[0])
                 raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got {found}; " + _AGAIN)
             kept = set(names if choice is None else choice(names))
-            while rows := [(reader.line_num, row) for row in islice(reader, at_once)]:
-                pieces.append([_once(piece) for piece in _columns(file, names, rows, kept)])
+            rows = [(reader.line_num, row) for row in islice(reader, at_once)]
+            while True:
+                yield [name for name in names if name in kept], _columns(file, names, rows, kept)
+                rows = [(reader.line_num, row) for row in islice(reader, at_once)]
+                if not rows:
+                    return
     except (UnicodeDecodeError, csv.Error) as problem:
         raise DamagedTable(
             f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN) from problem
-    columns = dict(zip([name for name in names if name in kept], zip(*(pieces or [_columns(file, names, [], kept)]))))
+
+
+def read_columns(file: Path, at_once: int | None = _AT_ONCE, choice: Choice | None = None) -> dict[str, np.ndarray]:
+    """Read a table's chosen columns with their types, as `read_pieces` does.
+
+    Of a table in several pieces a column of one value is that value once, seen in each row, and cannot be written to.
+    """
+    names: list[str] = []
+    pieces: list[list[np.ndarray]] = []
+    for names, piece in read_pieces(file, at_once, choice):
+        pieces.append([_once(column) for column in piece])
+    columns = dict(zip(names, zip(*pieces)))
     if any(len({piece.dtype.kind for piece in column}) > 1 for column in columns.values()):
         return read_columns(file, None, choice)  # a swept parameter whose words are numbers here and there
     pieces.clear()  # each column is held twice only while it is joined
