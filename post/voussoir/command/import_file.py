@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Optional
 
 from voussoir.command import plot
 from voussoir.command.options import magnification, whole_number
@@ -117,7 +116,9 @@ def import_file(arguments: argparse.Namespace) -> _Imported:
     if content.notes.short and not arguments.allow_dropped:
         raise ValueError(_short_ends(content, scale))
     if not shapes:
-        raise ValueError(_nothing(dropped))
+        words = f": {dropped[0]}" if dropped else ""
+        words += f" and {len(dropped) - 1} more" if len(dropped) > 1 else ""
+        raise ValueError(f"expected closed outlines, got none{words}")
     blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed), arguments.hold)
     name = deck.with_suffix(".blocks").name
     blocks.groups["scene"] |= {"title": arguments.file.stem, "geometry": name}
@@ -163,13 +164,6 @@ def _short_ends(content: Content, scale: float) -> str:
         f"expected lines that meet, got {count} at most {max(gaps):.3g} m short of another line, on {layer} at "
         f"({end.real:.10g}, {end.imag:.10g}) of the drawing; join them with --snap {1.01 * max(gaps):.3g}, "
         "or drop them with --allow-dropped")
-
-
-def _nothing(dropped: Optional[list[str]]) -> str:
-    """Error message for a file without outlines."""
-    words = f": {dropped[0]}" if dropped else ""
-    more = f" and {len(dropped) - 1} more" if dropped and len(dropped) > 1 else ""
-    return f"expected closed outlines, got none{words}{more}"
 
 
 def _run_deck(deck: Path) -> int:

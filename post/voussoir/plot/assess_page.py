@@ -52,18 +52,13 @@ _POSITIONS = (
 )
 
 
-def svg_of(figure: Figure) -> str:
-    """A figure as SVG that stands in a page."""
+def figure_of(figure: Figure, title: str, caption: str = "") -> str:
+    """A figure as SVG with its title and caption, for a page."""
     text = io.StringIO()
     figure.savefig(text, format="svg", bbox_inches=box_of(figure), metadata={"Date": None})
-    drawn = text.getvalue()
-    return drawn[drawn.index("<svg") :]
-
-
-def figure_of(figure: Figure, title: str, caption: str = "") -> str:
-    """A figure with its title and caption, for a page."""
+    drawn = text.getvalue().partition("<svg")[2]
     below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
-    return f"<figure><h3>{escape(title)}</h3>{svg_of(figure)}{below}</figure>"
+    return f"<figure><h3>{escape(title)}</h3><svg{drawn}{below}</figure>"
 
 
 def table_of(rows: Sequence[Sequence[str]], kind: str = "", heads: bool = False) -> str:

@@ -64,7 +64,10 @@ def draw_case(
     marks = JointMarks(scene, joints, motion, size, pen, sheet.scale(low, high)) if joints is not None else None
     entries = draw_supports(axes, supports, pen)
     if motion.shown > 0.0 and (factor > 0.0 or scene.largest > SEEN * size):
-        entries += draw_beginning(axes, beginning, beginning_words(scene, factor), pen)
+        words = "before the collapse" if scene.falls else "at the beginning"
+        if factor == 0.0:
+            words = f"at the beginning; true scale, largest displacement {length_text(scene.largest)}"
+        entries += draw_beginning(axes, beginning, words, pen)
     if marks is not None and marks.crowded and motion.shown > 0.0:
         entries += shade_blocks(axes, scene, shapes, pen, length_text(factor or scene.largest))
     else:
@@ -97,13 +100,6 @@ def draw_supports(axes: Axes, supports: list[np.ndarray], pen: float = 1.0) -> l
     style: dict[str, Any] = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6 * pen, "hatch": "/////"}
     axes.add_collection(PolyCollection(supports, **style, zorder=0))
     return [Patch(**style, label="fixed")]
-
-
-def beginning_words(scene: CaseScene, factor: float) -> str:
-    """Legend of the blocks before they have moved."""
-    if factor == 0.0:
-        return f"at the beginning; true scale, largest displacement {length_text(scene.largest)}"
-    return "before the collapse" if scene.falls else "at the beginning"
 
 
 def shape_words(scene: CaseScene, factor: float) -> str:

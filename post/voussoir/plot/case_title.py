@@ -19,13 +19,8 @@ def title_of(row: Row, run: Results | None = None) -> str:
     if run is not None and len(run.cases) > 1:
         given = f"Case {row['case']} of {len(run.cases)}: {given}"
     lines = [title, given, *_ending(row, run).split("\n")]
-    return "\n".join(_plain(line) for line in lines if line)
-
-
-def _plain(line: str) -> str:
-    """A line whose dollars are no formulas."""
-    line = line.replace("$", r"\$")
-    return line[0].upper() + line[1:]
+    plain = [line.replace("$", r"\$") for line in lines if line]  # dollars are no formulas
+    return "\n".join(line[0].upper() + line[1:] for line in plain)
 
 
 def _given(row: Row, run: Results | None) -> list[str]:

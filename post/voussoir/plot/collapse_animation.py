@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
-import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
@@ -51,7 +50,11 @@ def animate(
     timed = any(run.case(number)["mode"] == "dynamic" for number in numbers)
     words = captions(run, numbers, title, magnify)
     room = 0.2 * (1 + max(text.count("\n") for text in words) + timed) + 0.15
-    figure, grid = new_grid(len(numbers), columns, width, width / columns * shape + room)
+    lines = -(-len(numbers) // columns)
+    figure, grid = plt.subplots(
+        lines, columns, figsize=(width, lines * (width / columns * shape + room)), layout="constrained", squeeze=False)
+    for axes in grid.flat[len(numbers):]:
+        axes.set_axis_off()
 
     def draw(moment: int) -> None:
         for axes, number, pictures, box, text in zip(grid.flat, numbers, frames, boxes, words):
@@ -65,15 +68,6 @@ def animate(
     written = write(figure, draw, max(map(len, frames)), file)
     plt.close(figure)
     return written
-
-
-def new_grid(count: int, columns: int, width: float, height: float) -> tuple[Figure, np.ndarray]:
-    """A figure with room for so many pictures of one height [inch], and the axes of all places."""
-    lines = -(-count // columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(width, lines * height), layout="constrained", squeeze=False)
-    for axes in grid.flat[count:]:
-        axes.set_axis_off()
-    return figure, grid
 
 
 def captions(run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], magnify: float) -> list[str]:

@@ -9,7 +9,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from voussoir.plot.field_chart import draw_field
 from voussoir.plot.figure_style import INK, MARKERS, SMALL, Picture, legend_below, type_of
 from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
@@ -23,6 +22,11 @@ _BEFORE, _BEHIND = "case", "blocks"
 MOST_CURVES = 8
 #: Most curves whose colours differ; more are a map
 MOST_COLOURS = 40
+#: Most panels, and how many of them stand side by side
+MOST_PANELS = 6
+_ABREAST = 3
+#: Fill where a case has no critical value
+_NOTHING = "#c9c9c9"
 
 
 class ChartError(ValueError):
@@ -66,7 +70,8 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     if len(found) < 2:
         raise ChartError("expected two critical values or more, got fewer; give the deck &search")
     others = [name for name in swept if name != column and not follows(found, name, column)]
-    missing = _missing(run.cases, found)
+    lost = len(run.cases) - len(found)
+    missing = f"{lost} of {len(run.cases)} cases have no critical value" if lost else ""
     numbers = set(others) <= set(numeric)
     curves = _different(*(found[name] for name in others))
     if numbers and (len(others) == 2 and curves > MOST_CURVES or len(others) == 1 and curves > MOST_COLOURS):
@@ -87,12 +92,6 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     if missing:
         figure.axes[0].set_title(missing, fontsize=type_of(SMALL), color="#555555")
     return figure
-
-
-def _missing(cases: Table, found: Table) -> str:
-    """How many cases have no critical value, in words; empty where all have one."""
-    lost = len(cases) - len(found)
-    return f"{lost} of {len(cases)} cases have no critical value" if lost else ""
 
 
 def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
@@ -134,6 +133,46 @@ def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, 
     axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
     figure.colorbar(scale, ax=axes, label=axis_label(other))
+    return figure
+
+
+def draw_field(found: Table, column: str, across: str, panels: str | None, searched: str, note: str) -> Figure:
+    """Draw critical values as coloured cells, one a case: nothing is computed between them.
+
+    The swept numbers lie along and up; of a third one with more values than there is room for, evenly spaced maps are
+    drawn, and it is said. The colours have a label, the maps a note above them.
+    """
+    kept = np.array([np.nan]) if panels is None else np.unique(found[panels])
+    chosen = kept[np.unique(np.linspace(0, len(kept) - 1, min(len(kept), MOST_PANELS)).round().astype(int))]
+    abreast = min(len(chosen), _ABREAST)
+    rows = -(-len(chosen) // abreast)
+    width = 5.2 if abreast == 1 else 2.6 * abreast + 0.8
+    figure = Picture(figsize=(width, 3.8 if abreast == 1 else 2.5 * rows + 0.9), layout="constrained")
+    grid = figure.subplots(rows, abreast, sharex=True, sharey=True, squeeze=False)
+    x, y = np.unique(found[column]), np.unique(found[across])
+    critical = found["critical"]
+    scale = ScalarMappable(Normalize(float(critical.min()), float(critical.max())), "viridis")
+    for number, axes in enumerate(grid.flat):
+        if number >= len(chosen):
+            axes.remove()
+            continue
+        mine = found if panels is None else found.take(found[panels] == chosen[number])
+        field = np.full((len(y), len(x)), np.nan)
+        field[np.searchsorted(y, mine[across]), np.searchsorted(x, mine[column])] = mine["critical"]
+        axes.set_facecolor(_NOTHING)
+        axes.grid(False)
+        axes.pcolormesh(x, y, field, shading="nearest", cmap=scale.cmap, norm=scale.norm, rasterized=True)
+        if panels is not None:
+            axes.set_title(value_label(panels, float(chosen[number])), fontsize=type_of(1.0))
+    figure.supxlabel(axis_label(column), fontsize=type_of(1.1))
+    figure.supylabel(axis_label(across), fontsize=type_of(1.1))
+    figure.colorbar(scale, ax=grid, label=searched)
+    notes = [note] if note else []
+    if len(chosen) < len(kept):
+        words = axis_label(panels or "").partition(" [")[0]
+        notes.insert(0, f"{len(chosen)} of {len(kept)} values of the {words}")
+    if notes:
+        figure.suptitle("; ".join(notes), fontsize=type_of(SMALL), color="#555555")
     return figure
 
 

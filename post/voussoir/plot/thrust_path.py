@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from voussoir.plot.case_scene import CaseScene
-from voussoir.plot.shape_rings import ring_joints
 from voussoir.results import Table
 
 #: Fewest blocks of a chain
@@ -20,6 +19,18 @@ def thrust_pairs(scene: CaseScene, joints: Table) -> list[tuple[int, int]]:
         return ring_joints(joints["block_1"], joints["block_2"], scene.count, scene.voussoirs)
     free = {block.number for block in scene.blocks if block.state == "free"}
     return chain_pairs(joints["block_1"], joints["block_2"], free)
+
+
+def ring_joints(first: np.ndarray, second: np.ndarray, count: int, voussoirs: int) -> list[tuple[int, int]]:
+    """Pairs of joints between which thrust goes through a voussoir; these are numbered first, ring by ring."""
+    sides: dict[int, list[int]] = {}
+    for joint, pair in enumerate(zip(first, second)):
+        inside = [int(block) for block in pair if block <= count]
+        same_ring = len({(block - 1) // voussoirs for block in inside}) == 1
+        if len(inside) == 1 or same_ring:
+            for block in inside:
+                sides.setdefault(block, []).append(joint)
+    return [(pair[0], pair[1]) for pair in sides.values() if len(pair) == 2]
 
 
 def chain_pairs(first: np.ndarray, second: np.ndarray, free: set[int]) -> list[tuple[int, int]]:
