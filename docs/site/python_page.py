@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 #: Modules of the names that scripts import: those of the package itself, or all of a module
 PUBLIC = {
-    "deck/run": ("run", "Deck"), "deck/arch": ("Arch",), "deck/blocks": ("Blocks",), "results/__init__": (),
+    "deck/run": ("run", "Deck", "Arch"), "deck/blocks": ("Blocks",), "results/__init__": (),
     "theory/__init__": ()}
 HEAD = """# Python interfaces
 
@@ -38,8 +38,14 @@ def python_page() -> str:
 
 
 def _tree(module: str) -> ast.Module:
-    """Source of a module."""
-    return ast.parse((ROOT / f"post/voussoir/{module}.py").read_text(encoding="utf-8"))
+    """Source of a module; fields of its classes have the words beside or above them as their `type_comment`."""
+    text = (ROOT / f"post/voussoir/{module}.py").read_text(encoding="utf-8")
+    tree, lines = ast.parse(text), text.splitlines()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.AnnAssign):
+            beside, above = lines[node.end_lineno - 1].partition("  #: ")[2], lines[node.lineno - 2].partition("#: ")
+            node.type_comment = beside or ("" if above[0].strip() else above[2])
+    return tree
 
 
 def _public(tree: ast.Module, names: tuple[str, ...]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
@@ -62,6 +68,13 @@ def _interface(node: ast.FunctionDef | ast.ClassDef, home: str, level: str, clas
     if signature:
         yield f"```python\n{signature}\n```\n"
     yield from _described(ast.get_docstring(node) or "", classes)
+    fields = [inner for inner in node.body if getattr(inner, "type_comment", "")]
+    if fields:
+        yield "| attribute | type | meaning |\n| --- | --- | --- |"
+        for field in fields:
+            kind = _linked(ast.unparse(field.annotation), classes)
+            yield f"| `{field.target.id}` | {kind} | {_cell(field.type_comment)} |"
+        yield ""
     for inner in node.body if isinstance(node, ast.ClassDef) else []:
         if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_") and not _decorated(inner, "setter"):
             yield from _interface(inner, node.name, level + "#", classes)

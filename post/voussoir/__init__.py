@@ -20,7 +20,7 @@ __all__ = ["Arch", "Blocks", "read", "results", "run", "theory"]
 
 #: Where the public names are; a module is loaded when its name is first used
 _HOMES = {
-    "Arch": "voussoir.deck.arch",
+    "Arch": "voussoir.deck.run",
     "Blocks": "voussoir.deck.blocks",
     "read": "voussoir.results",
     "run": "voussoir.deck.run",

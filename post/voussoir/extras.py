@@ -8,16 +8,8 @@ import sysconfig
 from pathlib import Path
 from types import ModuleType
 
-#: Debian's name of a package, where it has one
-_DEBIAN = {
-    "distributed": "python3-distributed",
-    "ezdxf": "python3-ezdxf",
-    "matplotlib": "python3-matplotlib",
-    "meshio": "python3-meshio",
-    "pandas": "python3-pandas",
-    "scipy": "python3-scipy",
-    "shapely": "python3-shapely",
-}
+#: Packages that Debian has as python3-NAME
+_DEBIAN = frozenset("distributed ezdxf matplotlib meshio pandas scipy shapely".split())
 
 
 class MissingPackage(ImportError):
@@ -34,7 +26,7 @@ def advice(package: str) -> str:
     if not _is_managed():
         return f"install it: {Path(sys.executable).name} -m pip install {package}"
     if package in _DEBIAN:
-        return f"install it: apt-get install {_DEBIAN[package]}"
+        return f"install it: apt-get install python3-{package}"
     return f"the system has no package of it: use a virtual environment and pip install {package}"
 
 

@@ -43,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run, print and draw."""
     from voussoir.deck.study import StudyError, study
+    from voussoir.deck.text import value_of
     from voussoir.plot.figure_style import house_style, save
     from voussoir.plot.sheet import Sheet
     from voussoir.plot.study_chart import draw_study
@@ -53,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     pairs = [pair.partition("=") for pair in arguments.set]
     found = study(
         arguments.deck, key, int(word), bool(arguments.double), arguments.at, arguments.exact, arguments.y,
-        arguments.jobs, **{name: number_of(value) for name, _, value in pairs})
+        arguments.jobs, **{name: value_of(value) for name, _, value in pairs})
     print("\n".join(table_of(found)))
     out = arguments.out or Path(f"{arguments.deck.stem}_study")
     out.mkdir(parents=True, exist_ok=True)
@@ -63,18 +64,6 @@ def run(arguments: argparse.Namespace) -> int:
         for path in save(sheet.resized(draw_study(found, arguments.legend)), out, "study", tuple(arguments.format)):
             print(path)
     return 0
-
-
-def number_of(word: str) -> float | int | bool | str:
-    """A value of --set."""
-    if word.strip(".").lower() in ("true", "false"):
-        return word.strip(".").lower() == "true"
-    for kind in (int, float):
-        try:
-            return kind(word)
-        except ValueError:
-            continue
-    return word.strip("'\"")
 
 
 def table_of(found: Study) -> list[str]:

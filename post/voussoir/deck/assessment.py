@@ -14,7 +14,7 @@ from voussoir.dda_program import DdaError, defaults, find_dda
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.supports import FACTOR, displacements, movement
 from voussoir.deck.text import deck_text, merged
-from voussoir.deck.thickness import dead_groups, thickness_safety
+from voussoir.deck.thickness import dead_groups, given_groups, thickness_safety
 from voussoir.files import read_text
 from voussoir.results import Results, Table
 
@@ -124,12 +124,8 @@ def assess(text: str, deck: Path, full: bool = True) -> Assessment:
 
 def axles_alone(text: str, run: Results) -> str:
     """A deck whose vehicle is that of its run: axles per metre of depth, without list, convoy and width."""
-    keys: dict[str, Any] = {
-        name: [float(word) for word in run.settings(f"vehicle%{name}")] for name in ("axles", "spacings")}
-    keys |= {name: float(run.setting(f"vehicle%{name}") or "nan") for name in ("length", "position")}
-    keys = {name: value for name, value in keys.items() if value and value == value}
-    keys |= {name: str(run.setting(f"vehicle%{name}")).strip() == ".true." for name in ("worst", "both_directions")
-             if run.setting(f"vehicle%{name}")}
+    kept = ("axles", "spacings", "length", "position", "worst", "both_directions")
+    keys = {name: value for name, value in given_groups(run)["vehicle"].items() if name in kept}
     return without(text, "vehicle") + "\n" + deck_text({"vehicle": keys})
 
 

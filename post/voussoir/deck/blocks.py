@@ -13,6 +13,7 @@ import numpy.typing as npt
 from voussoir.dda_program import find_dda
 from voussoir.deck.run import Deck
 from voussoir.deck.text import groups_of
+from voussoir.extras import load
 
 #: Name of the file of blocks beside the deck
 BLOCKS_FILE = "deck.blocks"
@@ -93,8 +94,6 @@ class Blocks(Deck):
         MissingPackage
             If there is no shapely.
         """
-        from voussoir.deck.shapely_blocks import polygons_of
-
         blocks = cls(**keys)
         for shapes, is_fixed, materials in ((fixed, True, 1), (polygons, False, material)):
             found, dropped = polygons_of(shapes)
@@ -120,8 +119,6 @@ class Blocks(Deck):
 
     def add_polygon(self, polygon: Any, fixed: bool = False, material: int = 1) -> int:
         """Add a polygon of shapely; one with holes becomes bonded pieces; ValueError for a polygon in space."""
-        from voussoir.deck.shapely_blocks import pieces_of
-
         heights = {corner[2] for corner in polygon.exterior.coords if len(corner) == 3}
         if len(heights) > 1:
             raise ValueError(f"expected a polygon in the plane, got z from {min(heights):g} to {max(heights):g}")
@@ -169,21 +166,52 @@ class Blocks(Deck):
         return "\n".join([*lines, *self.entries]) + "\n"
 
 
-class _Materials:
-    """Numbers of materials: pieces of a polygon with holes have one each, to bond them alone.
+def polygons_of(shapes: Any) -> tuple[list[Any], list[str]]:
+    """Polygons of a geometry or of several, and in words what is none; TypeError if something is no geometry."""
+    base = load("shapely.geometry.base", "polygons")
+    if not isinstance(shapes, (base.BaseGeometry, Iterable)):
+        raise TypeError(f"expected geometries of shapely, got {shapes!r}")
+    found: list[Any] = []
+    dropped: list[str] = []
+    for number, shape in enumerate([shapes] if isinstance(shapes, base.BaseGeometry) else shapes, 1):
+        if not isinstance(shape, base.BaseGeometry):
+            raise TypeError(f"expected a geometry of shapely, got {shape!r}")
+        for part in getattr(shape, "geoms", [shape]):
+            if part.geom_type == "Polygon" and part.area > 0.0:
+                found.append(part)
+            elif hasattr(part, "geoms"):
+                inner, lost = polygons_of(part)
+                found += inner
+                dropped += lost
+            else:
+                dropped.append(f"geometry {number}, a {part.geom_type} without area")
+    return found, dropped
 
-    Attributes
-    ----------
-    origin : dict of int to int
-        Material that a further number stands for.
-    bonds : list of (int, int)
-        Numbers of pieces of one polygon.
-    """
+
+def pieces_of(polygon: Any) -> list[Any]:
+    """A polygon, or the pieces without holes that upright lines through the middle of each hole make of it."""
+    if not polygon.interiors:
+        return [polygon]
+    load("shapely", "polygons")
+    from shapely.geometry import LineString
+    from shapely.ops import split
+
+    low, high = polygon.bounds[1], polygon.bounds[3]
+    reach = high - low
+    middles = sorted(ring.envelope.centroid.x for ring in polygon.interiors)
+    middle = middles[len(middles) // 2]  # halves are cut further
+    line = LineString([(middle, low - reach), (middle, high + reach)])
+    parts = (part.simplify(1e-9 * reach) for part in split(polygon, line).geoms)  # without corners that nearly meet
+    return [piece for part in parts for piece in pieces_of(part)]
+
+
+class _Materials:
+    """Numbers of materials: pieces of a polygon with holes have one each, to bond them alone."""
 
     def __init__(self, last: int) -> None:
         self._last = last
-        self.origin: dict[int, int] = {}
-        self.bonds: list[tuple[int, int]] = []
+        self.origin: dict[int, int] = {}  #: Material that a further number stands for
+        self.bonds: list[tuple[int, int]] = []  #: Numbers of pieces of one polygon
 
     def of(self, shape: BlockShape) -> list[int]:
         """Numbers of the materials of the pieces of a polygon."""

@@ -22,18 +22,10 @@ _GROUP = re.compile(r"^\s*&\w+", re.MULTILINE)
 
 @dataclass
 class Deck:
-    """A deck made of Python values, and the files beside it.
+    """A deck made of Python values, and the files beside it."""
 
-    Attributes
-    ----------
-    groups : dict
-        Keys and values by group, as in a deck.
-    files : dict of str to str
-        Texts of the files that the deck names, by their names.
-    """
-
-    groups: dict[str, Any] = field(default_factory=dict)
-    files: dict[str, str] = field(default_factory=dict)
+    groups: dict[str, Any] = field(default_factory=dict)  #: Keys and values by group, as in a deck
+    files: dict[str, str] = field(default_factory=dict)  #: Texts of the files that the deck names, by their names
 
     def text(self) -> str:
         """The deck as text."""
@@ -53,6 +45,32 @@ class Deck:
     def run(self, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any) -> results.Results:
         """Run it: see `voussoir.run`."""
         return run(self, out, jobs, **set)
+
+
+class Arch(Deck):
+    """An arch, by the keys of a deck.
+
+    Parameters
+    ----------
+    **keys
+        Keys of &arch and of any other group, with the names and defaults of decks:
+        Arch(half_angle_deg=75, voussoirs=21, friction_deg=35).
+
+    Raises
+    ------
+    ValueError
+        If no group has such a key, or several do.
+
+    Examples
+    --------
+    >>> run = Arch(voussoirs=12).run(search="thickness_ratio")
+    >>> round(float(run.cases["critical"][0]), 6)
+    0.104857
+    """
+
+    def __init__(self, **keys: Any) -> None:
+        groups = groups_of(find_dda(), keys)
+        super().__init__({"arch": groups.pop("arch", {}), **groups})
 
 
 #: What `run` takes: a file, the text of a deck, its groups, or a Deck

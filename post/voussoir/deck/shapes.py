@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
-from voussoir.deck.shapely_blocks import polygons_of
+from voussoir.deck.blocks import polygons_of
 from voussoir.extras import load
 from voussoir.files import plain
 from voussoir.imports.dxf_drawing import Drawing, read_dxf

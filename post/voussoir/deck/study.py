@@ -131,7 +131,9 @@ def study(
     as for `voussoir.run`. StudyError if the key has no number, a sweep has it, or nothing has a value.
     """
     dda = find_dda()
-    group, name = _named(dda, key)
+    bare = key.rpartition("%")[2]
+    ((group, keys),) = groups_of(dda, {key[: len(key) - len(bare)] + ALIASES.get(bare, bare): 0}).items()
+    (name,) = keys
     start = _start(dda, Path(deck), group, name, set)
     factor = 2.0 if double else 0.5
     values: list[Any] = [start["value"] * factor**turn for turn in range(times + 1)]
@@ -155,14 +157,6 @@ def study(
             f"expected one result beside its exact value, got {len(series)}; name one with --y, and its --case")
     steps = np.array([int(found.cases["steps"].sum()) for found in runs])
     return Study(key, [float(value) for value in values], steps, series)
-
-
-def _named(dda: Path, key: str) -> tuple[str, str]:
-    """Group and name of a key."""
-    bare = key.rpartition("%")[2]
-    known = ALIASES.get(bare, bare)
-    ((group, keys),) = groups_of(dda, {key[: len(key) - len(bare)] + known: 0}).items()
-    return group, next(iter(keys))
 
 
 def _start(dda: Path, deck: Path, group: str, name: str, set: dict[str, Any]) -> dict[str, Any]:

@@ -39,6 +39,18 @@ def value_text(value: Any, key: str = "") -> str:
     raise TypeError(f"expected a number, a flag, a text or a list of them{of_key}, got {value!r}")
 
 
+def value_of(word: str) -> int | float | bool | str:
+    """A value as decks and records write it: a flag, a number or a text, which may have quotes."""
+    if word.strip(".").lower() in ("true", "false"):
+        return word.strip(".").lower() == "true"
+    for kind in (int, float):
+        try:
+            return kind(word)
+        except ValueError:
+            continue
+    return word.strip("'\"")
+
+
 def deck_text(groups: Groups) -> str:
     """A deck as text, a line a group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a list of them."""
     lines = []
@@ -107,18 +119,13 @@ def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
     owners = groups_of_keys(dda)
     groups: dict[str, Any] = {}
     for name, value in keys.items():
-        if "&" + name in owners and not _is_plain_key(name, value, owners):
+        if "&" + name in owners and (name not in owners or isinstance(value, Mapping)):  # scene%analysis is a key
             groups = merged(groups, {name: _group_of(name, value)})
             continue
         group, _, key = name.rpartition("%")
         group = group or _only_owner(key, owners)
         groups = merged(groups, {group: {key: value}})
     return groups
-
-
-def _is_plain_key(name: str, value: Any, owners: Mapping[str, tuple[str, ...]]) -> bool:
-    """Whether a name that is a group's is meant as a key: scene%analysis is one."""
-    return name in owners and not isinstance(value, Mapping)
 
 
 def _group_of(name: str, value: Any) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 
 from voussoir.deck.run import run as run_deck
 from voussoir.deck.supports import FACTOR
-from voussoir.deck.text import groups_of, merged
+from voussoir.deck.text import groups_of, merged, value_of
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.results import Results
 
@@ -71,30 +71,24 @@ def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
     return 1.0 / ends[1], f"under dead load, both thicknesses in proportion; it lies between {between}"
 
 
-def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
-    """Groups of a deck for one of its cases, with swept values, without live loads and moved supports."""
+def given_groups(run: Results) -> dict[str, Any]:
+    """Groups of a deck with the keys that it gives."""
     groups: dict[str, Any] = {}
     for name in run.given:
         group, _, key = name.partition("%")
-        values = [_value(word) for word in run.settings(name)]
+        values = [value_of(word) for word in run.settings(name)]
         groups.setdefault(group, {})[key] = values[0] if len(values) == 1 else values
+    return groups
+
+
+def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
+    """Groups of a deck for one of its cases, with swept values, without live loads and moved supports."""
+    groups = given_groups(run)
     swept = {name: row[name.rpartition("%")[2]] for name in run.swept if name.rpartition("%")[2] in row}
     if swept:
         groups = merged(groups, groups_of(find_dda(), swept))
     groups.get("load", {}).pop(FACTOR, None)
     return {group: keys for group, keys in groups.items() if group not in _OTHERS}
-
-
-def _value(word: str) -> Any:
-    """A value of a record: a number, a flag or a word."""
-    if word in (".true.", ".false."):
-        return word == ".true."
-    for number in (int, float):
-        try:
-            return number(word)
-        except ValueError:
-            continue
-    return word
 
 
 def ends_of(low: float, high: float) -> str:

@@ -64,7 +64,9 @@ class Table(Mapping[str, np.ndarray]):
         """Whether another table has the same columns and cells; NaN equals NaN."""
         if not isinstance(other, Table) or list(self) != list(other):
             return False
-        return all(map(_equal, self.values(), other.values()))
+        return all(
+            np.array_equal(mine, its, equal_nan=mine.dtype.kind == its.dtype.kind == "f")  # NaN where NaN is
+            for mine, its in zip(self.values(), other.values()))
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -119,75 +121,37 @@ class Table(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True)
 class Frame:
-    """One picture of a run.
+    """One picture of a run."""
 
-    Attributes
-    ----------
-    number, step : int
-        Number of the picture and of the time step before it.
-    time : float
-        Sum of the time steps before it [s].
-    blocks : list of ndarray
-        Corners of each block, (n, 2) [m].
-    joints : Table
-        Contact points, force and states of each joint: the rows of frame_joints.csv.
-    """
-
-    number: int
-    step: int
-    time: float
-    blocks: list[np.ndarray]
-    joints: Table
+    number: int  #: Its number
+    step: int  #: Number of the time step before it
+    time: float  #: Sum of the time steps before it [s]
+    blocks: list[np.ndarray]  #: Corners of each block, (n, 2) [m]
+    joints: Table  #: Contact points, force and states of each joint: the rows of frame_joints.csv
 
 
 @dataclass(frozen=True)
 class Block:
-    """One block of a case.
+    """One block of a case."""
 
-    Attributes
-    ----------
-    number : int
-        Its number, from 1.
-    state : str
-        "fixed", "held" (by points) or "free".
-    corners : ndarray
-        Where its corners are at the beginning, anticlockwise: (n, 2) [m].
-    displacement : ndarray
-        Displacements of the corners: (n, 2) [m]; NaN where none are known.
-    """
-
-    number: int
-    state: str
-    corners: np.ndarray
-    displacement: np.ndarray
+    number: int  #: Its number, from 1
+    state: str  #: "fixed", "held" (by points) or "free"
+    corners: np.ndarray  #: Where its corners are at the beginning, anticlockwise: (n, 2) [m]
+    displacement: np.ndarray  #: Displacements of the corners: (n, 2) [m]; NaN where none are known
 
 
 @dataclass(frozen=True, repr=False)
 class Results:
-    """The results of one deck.
+    """The results of one deck."""
 
-    Attributes
-    ----------
-    folder : Path
-        Folder from which they were read.
-    cases : Table
-        results.csv, in the order of the cases.
-    joints : Table or None
-        joints.csv, likewise; None if it was not written.
-    frames, frame_joints : Table or None
-        frames.csv and frame_joints.csv, likewise.
-    blocks, points, reactions : Table or None
-        blocks.csv, points.csv and reactions.csv, likewise.
-    """
-
-    folder: Path
-    cases: Table
-    joints: Table | None = None
-    frames: Table | None = None
-    frame_joints: Table | None = None
-    blocks: Table | None = None
-    points: Table | None = None
-    reactions: Table | None = None
+    folder: Path  #: Folder from which they were read
+    cases: Table  #: results.csv, in the order of the cases
+    joints: Table | None = None  #: joints.csv, likewise; None if it was not written
+    frames: Table | None = None  #: frames.csv, likewise
+    frame_joints: Table | None = None  #: frame_joints.csv, likewise
+    blocks: Table | None = None  #: blocks.csv, likewise
+    points: Table | None = None  #: points.csv, likewise
+    reactions: Table | None = None  #: reactions.csv, likewise
 
     def __repr__(self) -> str:
         title = self.setting("scene%title")
@@ -362,11 +326,6 @@ def _drawn(module: str, function: str, *arguments: Any, **options: Any) -> Pictu
     with import_module("voussoir.plot.figure_style").house_style():
         picture: Picture = draw(*arguments, **options)
     return picture
-
-
-def _equal(left: np.ndarray, right: np.ndarray) -> bool:
-    """Whether two columns are the same, NaN where NaN is."""
-    return np.array_equal(left, right, equal_nan=left.dtype.kind == right.dtype.kind == "f")
 
 
 def _read_table(file: Path, choice: Choice | None = None) -> Table | None:
