@@ -31,11 +31,9 @@ contains
 
    !> Lay a block matrix into LAPACK's band storage
    pure subroutine new_band_job(matrix, load, job)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Right-hand side: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> The job
       type(band_job_t), intent(out) :: job
 
       call fill_band(matrix, job%matrix)
@@ -46,7 +44,6 @@ contains
 
    !> Lay matrix and right-hand side ready
    subroutine prepare_band(job)
-      !> The job
       class(band_job_t), intent(inout) :: job
 
       job%factor%band = job%matrix%band
@@ -55,7 +52,6 @@ contains
 
    !> Factor and substitute
    subroutine run_band(job)
-      !> The job
       class(band_job_t), intent(inout) :: job
 
       call factor_band(job%factor)

@@ -150,7 +150,6 @@ contains
       integer, intent(in) :: voussoirs
       !> Unknowns of a block, 3 or 6
       integer, intent(in) :: unknowns
-      !> The arches
       type(equal_arches_t) :: family
       type(material_t) :: material
       type(settings_t) :: settings
@@ -169,11 +168,9 @@ contains
 
    !> Make the arch of one thickness ratio
    pure subroutine build_arch(family, value, scene, error)
-      !> The family
       class(equal_arches_t), intent(in) :: family
       !> Thickness over radius
       real(wp), intent(in) :: value
-      !> The scene
       type(scene_t), intent(out) :: scene
       !> Never allocated
       type(error_t), allocatable, intent(out) :: error
@@ -303,7 +300,6 @@ contains
 
    !> Decide all four
    subroutine run_decisions(job)
-      !> The job
       class(decisions_job_t), intent(inout) :: job
       type(deficit_t) :: deficit
       logical :: decided
@@ -321,7 +317,6 @@ contains
 
    !> Search to 1e-8, from where a deck without bounds makes a search begin
    subroutine run_search(job)
-      !> The job
       class(search_job_t), intent(inout) :: job
       type(search_t) :: search
 
@@ -334,7 +329,6 @@ contains
 
    !> Copy blocks and contacts, set up the equations
    subroutine run_setup(job)
-      !> The job
       class(setup_job_t), intent(inout) :: job
 
       job%system = job%scene%system
@@ -345,7 +339,6 @@ contains
 
    !> Assemble the blocks, so that the matrix is made anew
    subroutine prepare_solve(job)
-      !> The job
       class(solve_job_t), intent(inout) :: job
 
       call assemble_blocks(job%system, job%scene%settings, job%dt, job%equations)
@@ -353,7 +346,6 @@ contains
 
    !> Assemble the joints, factor, substitute
    subroutine run_solve(job)
-      !> The job
       class(solve_job_t), intent(inout) :: job
 
       call solve_faces(job%equations, job%contacts%springs, job%contacts%springs%cone, &
@@ -362,7 +354,6 @@ contains
 
    !> Factor
    subroutine run_factorise(job)
-      !> The job
       class(factorise_job_t), intent(inout) :: job
 
       call factorise(job%equations%matrix, job%equations%factor)
@@ -370,7 +361,6 @@ contains
 
    !> Substitute
    subroutine run_substitute(job)
-      !> The job
       class(substitute_job_t), intent(inout) :: job
 
       job%motion = job%equations%weight

@@ -43,7 +43,6 @@ contains
 
    !> One line of the first table
    function figure_cells(figures) result(cells)
-      !> The figures
       type(figures_t), intent(in) :: figures
       !> Text of each column: (12)
       character(len=cell) :: cells(12)
@@ -62,7 +61,6 @@ contains
 
    !> One line of the second table
    function part_cells(figures) result(cells)
-      !> The figures
       type(figures_t), intent(in) :: figures
       !> Text of each column: (7)
       character(len=cell) :: cells(7)

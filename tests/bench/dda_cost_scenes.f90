@@ -31,7 +31,6 @@ contains
       logical, intent(in) :: dynamic
       !> Whether blocks move
       logical, intent(in) :: current
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: left, right
@@ -60,7 +59,6 @@ contains
       integer, intent(in) :: columns
       !> Whether velocities are kept
       logical, intent(in) :: dynamic
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: pitch(2), shift
@@ -86,7 +84,6 @@ contains
    subroutine empty_plan(n, plan)
       !> Number of blocks
       integer, intent(in) :: n
-      !> The plan
       type(block_plan_t), intent(out) :: plan
       integer :: b
 
@@ -100,7 +97,6 @@ contains
 
    !> Put a rectangle into a plan
    subroutine put_brick(plan, b, corner, size, angle)
-      !> The plan
       type(block_plan_t), intent(inout) :: plan
       !> Number of the block
       integer, intent(in) :: b
@@ -123,13 +119,11 @@ contains
 
    !> The scene of a plan
    subroutine make_scene(plan, dynamic, current, scene)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Whether velocities are kept
       logical, intent(in) :: dynamic
       !> Whether blocks move
       logical, intent(in) :: current
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
 

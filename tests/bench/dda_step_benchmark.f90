@@ -120,7 +120,6 @@ contains
    subroutine make_job(step_case, job)
       !> The scene and how it is run
       type(step_case_t), intent(in) :: step_case
-      !> The job
       type(step_job_t), intent(out) :: job
       type(outcome_t) :: outcome
 
@@ -147,7 +146,6 @@ contains
 
    !> Copy what a run changes
    subroutine prepare_step(job)
-      !> The job
       class(step_job_t), intent(inout) :: job
 
       job%copy = job%scene
@@ -155,7 +153,6 @@ contains
 
    !> Do the part of a step once
    subroutine run_step(job)
-      !> The job
       class(step_job_t), intent(inout) :: job
       type(joint_t), allocatable :: joint(:)
       integer(int64) :: none(0)

@@ -39,7 +39,6 @@ contains
 
    !> Nothing to make ready
    subroutine prepare(job)
-      !> The job
       class(job_t), intent(inout) :: job
 
       associate (unused => job)
@@ -72,7 +71,6 @@ contains
    !> Least time of several runs in a row: other work on the machine can only add to it. What counts
    !> is the time that the processor gives to this process, not that in which it waits
    function seconds_of(job, runs) result(least)
-      !> The job
       class(job_t), intent(inout) :: job
       !> How many
       integer, intent(in) :: runs

@@ -29,7 +29,6 @@ contains
 
    !> The next graph
    subroutine read_graph(graph, dead, live, name, ended)
-      !> The joints
       type(joint_graph_t), intent(out) :: graph
       !> Loads at factor zero, what a factor of one adds: (3, n_block)
       real(wp), allocatable, intent(out) :: dead(:, :), live(:, :)
@@ -55,7 +54,6 @@ contains
 
    !> Limit and decisions of one graph
    subroutine report(graph, dead, live, name)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero, what a factor of one adds: (3, n_block)
       real(wp), intent(in) :: dead(:, :), live(:, :)

@@ -105,7 +105,6 @@ contains
 
    !> Number of blocks of a scene, nearly
    pure integer function blocks_of(step_case)
-      !> The scene
       type(step_case_t), intent(in) :: step_case
 
       blocks_of = step_case%size(2)*merge(step_case%size(1), step_case%size(2), &
@@ -116,7 +115,6 @@ contains
    subroutine fill_cells(name, figures, cells)
       !> Name of the scene
       character(len=*), intent(in) :: name
-      !> The figures
       type(step_figures_t), intent(in) :: figures
       !> Text of each column: (11)
       character(len=*), intent(out) :: cells(:)

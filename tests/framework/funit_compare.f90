@@ -39,7 +39,6 @@ contains
       character(len=*), intent(in), optional :: message
       !> Where it stands
       type(SourceLocation), intent(in) :: location
-      !> The claim
       type(claim_t) :: claim
 
       claim%assertion = assertion
@@ -50,7 +49,6 @@ contains
 
    !> Judge a claim on reals
    subroutine judge_reals(claim, expected, expected_shape, actual, actual_shape, tolerance)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> Expected values in array element order: one for all, or as many as actual
       real(real64), intent(in) :: expected(:)
@@ -89,7 +87,6 @@ contains
 
    !> Judge a claim on integers
    subroutine judge_integers(claim, expected, expected_shape, actual, actual_shape)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> Expected values in array element order: one for all, or as many as actual
       integer(int64), intent(in) :: expected(:)
@@ -116,7 +113,6 @@ contains
 
    !> Judge that texts are equal; blanks and tabs at either end do not count
    subroutine judge_texts(claim, expected, expected_shape, actual, actual_shape)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> Expected texts: one for all, or as many as actual
       character(len=*), intent(in) :: expected(:)
@@ -140,7 +136,6 @@ contains
 
    !> Judge that every condition has the wanted truth
    subroutine judge_truth(claim, conditions, wanted)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> Conditions found
       logical, intent(in) :: conditions(:)
@@ -211,7 +206,6 @@ contains
 
    !> Whether two shapes can be compared: one is a scalar's or both are the same; reports if not
    function conformable(claim, expected_shape, actual_shape) result(yes)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> One shape
       integer, intent(in) :: expected_shape(:)
@@ -231,7 +225,6 @@ contains
 
    !> Report a claim that does not hold
    subroutine report(claim, left, right, rest, where_found)
-      !> The claim
       type(claim_t), intent(in) :: claim
       !> First argument of the assertion
       character(len=*), intent(in) :: left

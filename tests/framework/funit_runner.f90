@@ -61,9 +61,7 @@ contains
 
    !> Put a test at the end of a suite
    subroutine addTest(this, test)
-      !> The suite
       class(TestSuite), intent(inout) :: this
-      !> The test
       type(TestMethod), intent(in) :: test
 
       if (.not. allocated(this%test)) allocate (this%test(0))
@@ -100,7 +98,6 @@ contains
    !> Run the tests of a suite that the command line selects, all of them without -f; the name is
    !> written first, so that a crash shows whose it was
    subroutine run_suite(suite, tally)
-      !> The suite
       type(TestSuite), intent(in) :: suite
       !> Counts to add to
       type(tally_t), intent(inout) :: tally
@@ -141,7 +138,6 @@ contains
 
    !> Run one test: after a failed setUp neither the test nor tearDown is run
    subroutine run_test(test)
-      !> The test
       type(TestMethod), intent(in) :: test
 
       n_failure = 0

@@ -80,9 +80,7 @@ contains
    real(wp) function least_time(work, matrix, factor, load, x)
       !> 1: plan; 2: factorise; 3: substitute
       integer, intent(in) :: work
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
-      !> Its factor
       type(block_factor_t), intent(inout) :: factor
       !> The right-hand side: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)

@@ -14,7 +14,6 @@ contains
 
    !> All entries of a block matrix, in the order of the blocks' numbers
    pure function full_matrix(matrix) result(full)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> The same: (n, n)
       real(wp), allocatable :: full(:, :)
@@ -80,7 +79,6 @@ contains
       integer, intent(in) :: n_block
       !> Coupled blocks: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      !> The matrix
       type(block_matrix_t), intent(out) :: matrix
       integer :: b, c, e
 
@@ -112,7 +110,6 @@ contains
       real(wp), intent(in) :: friction
       !> Whether the matrix is laid out as a symmetric one
       logical, intent(in) :: symmetric
-      !> The matrix
       type(block_matrix_t), intent(out) :: matrix
       real(wp) :: a(3, n_dof), b(3, n_dof), spring(3, 3), skew(3)
       integer :: c, e, i

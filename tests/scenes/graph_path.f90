@@ -13,11 +13,9 @@ contains
 
    !> A path and the state under the dead load
    subroutine begin_path(graph, dead_load, path, state, result)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> The load: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead_load(:, :)
-      !> The path
       type(loading_path_t), intent(out) :: path
       !> The state, where one was reached
       type(coulomb_state_t), intent(out) :: state
@@ -32,7 +30,6 @@ contains
 
    !> Nothing grows
    subroutine new_rate(graph, rate)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Room for what grows
       type(path_rate_t), intent(out) :: rate

@@ -27,7 +27,6 @@ contains
       real(wp), intent(in) :: friction
       !> Voussoir of the uppermost ring that is loaded, from the left
       integer, intent(in) :: loaded
-      !> The joints
       type(joint_graph_t), intent(out) :: graph
       !> Weight of each voussoir, ring by ring from inside, from left to right: (3, n_block)
       real(wp), allocatable, intent(out) :: weight(:, :)

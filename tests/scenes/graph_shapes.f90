@@ -16,7 +16,6 @@ contains
       integer, intent(in) :: n_block
       !> Joints
       integer, intent(in) :: n_joint
-      !> The graph
       type(joint_graph_t), intent(out) :: graph
 
       graph%n_block = n_block
@@ -34,7 +33,6 @@ contains
       real(wp), intent(in) :: width
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The graph
       type(joint_graph_t), intent(out) :: graph
       real(wp) :: centre(2, n)
       integer :: b
@@ -51,7 +49,6 @@ contains
    pure subroutine new_wedge(friction, graph)
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The graph
       type(joint_graph_t), intent(out) :: graph
       real(wp), parameter :: centre(2, 1) = reshape([0.0_wp, 2.0_wp/3.0_wp], [2, 1])
 

@@ -20,7 +20,6 @@ contains
       integer, intent(in) :: courses
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The joints
       type(joint_graph_t), intent(out) :: graph
       !> Weight of each brick: (3, n_block)
       real(wp), allocatable, intent(out) :: weight(:, :)
@@ -42,7 +41,6 @@ contains
    pure subroutine new_steps_wall(friction, graph, weight, push)
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The joints
       type(joint_graph_t), intent(out) :: graph
       !> Weight of each brick: (3, 25)
       real(wp), allocatable, intent(out) :: weight(:, :)
@@ -76,7 +74,6 @@ contains
       real(wp), intent(in) :: level(0:)
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The joints
       type(joint_graph_t), intent(out) :: graph
       !> Weight of each brick: (3, n_block)
       real(wp), allocatable, intent(out) :: weight(:, :)
@@ -165,7 +162,6 @@ contains
    pure subroutine keep_joints(n, graph)
       !> Number of joints
       integer, intent(in) :: n
-      !> The joints
       type(joint_graph_t), intent(inout) :: graph
 
       graph%block = graph%block(:, :n)

@@ -89,7 +89,6 @@ contains
 
    !> Factor a symmetric matrix; one that is not positive definite gives a factor that is not usable
    pure subroutine factorise(matrix, factor)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Its factor; storage of an earlier factor of the same pattern is used again
       type(band_factor_t), intent(inout) :: factor
@@ -112,7 +111,6 @@ contains
 
    !> Lay the blocks of a matrix into the band
    pure subroutine fill_band(matrix, factor)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Receives the band
       type(band_factor_t), intent(inout) :: factor
@@ -162,7 +160,6 @@ contains
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the
    !> unit of length nor the size of a block shows; huge if the matrix is not positive definite
    pure function condition_estimate(matrix) result(condition)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Estimate of the condition number, at least 1
       real(wp) :: condition

@@ -24,7 +24,6 @@ contains
 
    !> One number
    pure subroutine draw_scalar(random, x)
-      !> The sequence
       type(random_t), intent(inout) :: random
       !> Between -1 and 1
       real(wp), intent(out) :: x
@@ -35,7 +34,6 @@ contains
 
    !> Several numbers
    pure subroutine draw_vector(random, x)
-      !> The sequence
       type(random_t), intent(inout) :: random
       !> Between -1 and 1: (:)
       real(wp), intent(out) :: x(:)
@@ -48,7 +46,6 @@ contains
 
    !> A table of numbers
    pure subroutine draw_matrix(random, x)
-      !> The sequence
       type(random_t), intent(inout) :: random
       !> Between -1 and 1: (:, :)
       real(wp), intent(out) :: x(:, :)
@@ -61,7 +58,6 @@ contains
 
    !> A whole number
    pure subroutine draw_index(random, n, i)
-      !> The sequence
       type(random_t), intent(inout) :: random
       !> Largest
       integer, intent(in) :: n

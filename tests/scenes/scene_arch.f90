@@ -50,11 +50,9 @@ contains
 
    !> Make the scene of one thickness
    pure subroutine build_arch(family, value, scene, error)
-      !> The arch
       class(arch_thickness_t), intent(in) :: family
       !> Thickness over radius
       real(wp), intent(in) :: value
-      !> The scene
       type(scene_t), intent(out) :: scene
       !> Never allocated
       type(error_t), allocatable, intent(out) :: error
@@ -82,11 +80,9 @@ contains
 
    !> Make the scene of one push
    pure subroutine build_pushed_arch(family, value, scene, error)
-      !> The arch
       class(arch_push_t), intent(in) :: family
       !> Horizontal force over weight, to the right
       real(wp), intent(in) :: value
-      !> The scene
       type(scene_t), intent(out) :: scene
       !> Never allocated
       type(error_t), allocatable, intent(out) :: error

@@ -55,11 +55,9 @@ contains
 
    !> Make the scene of one value of what is varied
    pure subroutine build_block_on_base(family, value, scene, error)
-      !> The block
       class(block_on_base_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value
-      !> The scene
       type(scene_t), intent(out) :: scene
       !> Never allocated
       type(error_t), allocatable, intent(out) :: error

@@ -12,7 +12,6 @@ contains
    !> The least opening of any corner of a whole chain that moves, less friction times the slip of
    !> its joint; an admissible motion has none below zero
    pure real(wp) function least_opening(chain, motion)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Motion of its blocks: (3, n) [m, m, 1]
       real(wp), intent(in) :: motion(:, :)
@@ -35,7 +34,6 @@ contains
 
    !> How a corner moves with a block; those before the first and behind the last are fixed
    pure function moved(chain, motion, b, corner) result(way)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Motion of its blocks: (3, n) [m, m, 1]
       real(wp), intent(in) :: motion(:, :)
@@ -54,7 +52,6 @@ contains
 
    !> Power of the loads on a motion
    pure real(wp) function power_of_loads(chain, motion)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Motion of its blocks: (3, n) [m, m, 1]
       real(wp), intent(in) :: motion(:, :)

@@ -15,11 +15,9 @@ contains
 
    !> Decision of a family's scene
    pure function decision_at(family, value) result(decision)
-      !> The family
       class(family_t), intent(in) :: family
       !> Value of its parameter
       real(wp), intent(in) :: value
-      !> The decision
       type(decision_t) :: decision
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -30,11 +28,9 @@ contains
 
    !> Decision of a family's scene by steps to rest or collapse
    pure function stepped_at(family, value) result(decision)
-      !> The family
       class(family_t), intent(in) :: family
       !> Value of its parameter
       real(wp), intent(in) :: value
-      !> The decision
       type(decision_t) :: decision
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -45,7 +41,6 @@ contains
 
    !> Verdicts of a family just below and just above a value
    pure function verdicts_around(family, value, margin) result(answer)
-      !> The family
       class(family_t), intent(in) :: family
       !> Value of its parameter
       real(wp), intent(in) :: value
@@ -62,9 +57,7 @@ contains
 
    !> Decision of a model
    pure function decision_of(model) result(decision)
-      !> The model
       type(model_t), intent(in) :: model
-      !> The decision
       type(decision_t) :: decision
       type(scene_t) :: scene
 

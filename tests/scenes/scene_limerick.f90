@@ -15,7 +15,6 @@ contains
    pure function empty_model(friction) result(model)
       !> Coefficient of friction
       real(wp), intent(in) :: friction
-      !> The model
       type(limerick_model_t) :: model
       type(limerick_material_t) :: material
       type(joint_law_t) :: law
@@ -33,7 +32,6 @@ contains
 
    !> Add a block
    pure subroutine add_block(model, vertex)
-      !> The model
       type(limerick_model_t), intent(inout) :: model
       !> Its corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -55,7 +53,6 @@ contains
 
    !> Hold the last block at all its corners
    pure subroutine hold(model)
-      !> The model
       type(limerick_model_t), intent(inout) :: model
       type(held_point_t), allocatable :: held(:)
       integer :: block, n, first, i

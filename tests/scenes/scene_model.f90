@@ -81,7 +81,6 @@ contains
       type(model_t), intent(in) :: model
       !> Law of all joints
       type(joint_law_t), intent(in) :: law
-      !> The scene
       type(scene_t) :: scene
 
       scene%settings = model%settings
@@ -97,7 +96,6 @@ contains
    pure function scene_of(model) result(scene)
       !> The model, with a block and a joint or more
       type(model_t), intent(in) :: model
-      !> The scene
       type(scene_t) :: scene
 
       scene%settings = model%settings

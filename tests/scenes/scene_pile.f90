@@ -69,7 +69,6 @@ contains
 
    !> Go on by one step and see what has changed
    subroutine watch_step(scene, record, ended)
-      !> The scene
       type(scene_t), intent(inout) :: scene
       !> What has been seen, new at the beginning
       type(record_t), intent(inout) :: record

@@ -19,7 +19,6 @@ contains
 
    !> Equations and state at the beginning of a step
    pure subroutine begin(scene, dt, equations, state)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -44,11 +43,9 @@ contains
 
    !> A run of a scene at the beginning of a step
    pure subroutine begin_run(scene, dt, run)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> Length of the step [s]
       real(wp), intent(in) :: dt
-      !> The run
       type(run_t), intent(out) :: run
 
       run%settings = scene%settings
