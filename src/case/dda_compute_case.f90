@@ -22,7 +22,7 @@ module dda_compute_case
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
    use dda_scene, only : build_once, link_once, move_scene, scene_t, searched_load
-   use dda_search, only : decision_t
+   use dda_search, only : critical_t, decision_t
    use dda_settings, only : verdict
    use dda_stages, only : decide_in_stages, enter_stage
    use dda_verdict, only : outcome_t
@@ -57,6 +57,8 @@ module dda_compute_case
       !> followed to its end, how far that came
       real(wp) :: jump = 0.0_wp, jump_place = 0.0_wp, jump_factor(2) = no_limit
       logical :: jump_backward = .false.  !! True if the vehicle drives the other way there
+      !> Result of the search there, with its associated limit; unallocated without that
+      type(critical_t), allocatable :: critical
    end type least_factor_t
 
    !> The path of a position
@@ -88,8 +90,9 @@ module dda_compute_case
       end subroutine search_limerick
 
       !> Put the vehicle where the least load factor is carried
-      pure module subroutine place_vehicle(this)
+      pure module subroutine place_vehicle(this, found)
          type(case_t), intent(inout) :: this
+         logical, intent(out) :: found  !! True if its search has been done on the way
       end subroutine place_vehicle
 
       !> Seek the least factor of the loads of all arcs: none where the dead load falls by itself
@@ -148,9 +151,11 @@ contains
    !> Search the critical value, and see the scenes on its two sides that tables and pictures need
    pure subroutine search_critical(this)
       type(case_t), intent(inout) :: this
+      logical :: found
 
-      if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this)
-      call find_critical(this%family, this%search, this%critical)
+      found = .false.
+      if (this%family%deck%value(vehicle_worst)%flag) call place_vehicle(this, found)
+      if (.not. found) call find_critical(this%family, this%search, this%critical)
       if (this%misses_worst .and. this%critical%verdict /= verdict%undecided) then
          this%critical%verdict = verdict%undecided
          this%critical%undecided_at = this%critical%stop

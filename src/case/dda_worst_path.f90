@@ -11,7 +11,7 @@
 !> from position to position. There blocks fall at one position and find balance by a jump at the
 !> next. So positions are tried closely where paths jump before the least factor.
 submodule (dda_compute_case:dda_worst_position) dda_worst_path
-   use dda_search, only : critical_t, search_t
+   use dda_search, only : search_t
    use dda_text, only : short_text
    implicit none
 
@@ -214,6 +214,8 @@ contains
       least%factor = factor
       least%place = place
       least%decided = critical%verdict /= verdict%undecided
+      if (allocated(least%critical)) deallocate (least%critical)
+      if (.not. search%below_limit) allocate (least%critical, source=critical)
    end procedure try_place
 
    !> Try the mirrored position of a bridge of equal halves, with the vehicle turned round. A

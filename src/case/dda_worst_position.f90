@@ -81,6 +81,7 @@ contains
       real(wp) :: before
       integer :: ways
 
+      found = .false.
       before = this%family%deck%value(vehicle_position)%number
       this%jump_note = ""
       associate (deck => this%family%deck)
@@ -110,6 +111,8 @@ contains
             & call try_other_direction(this, bridge, least)
          if (least%backward) call turn_round(deck)
          call put_vehicle(least%place, deck)
+         found = allocated(least%critical)
+         if (found) this%critical = least%critical
       end associate
    end procedure place_vehicle
 
