@@ -78,11 +78,11 @@ contains
    !> enters by depends on the motion of both. An axis is wrong if it has held off a block that is
    !> separate, or has let one enter. Axes are then chosen again by the motion. If blocks still
    !> enter one another, the step is cut; if some are still held off without contact, that is
-   !> accepted. A step is cut, too, if a line is reached at its end that another one has replaced by
-   !> then: it meets nothing, and in a shorter step both part the blocks
+   !> accepted. A step that ends at a line is cut if another line separates the blocks there: they
+   !> do not meet, and after a shorter step both lines separate them
    pure type(step_outcome_t) function check_axes(run) result(outcome)
       type(run_t), intent(in) :: run
-      real(wp) :: before, gap, level, matters, told
+      real(wp) :: before, contact_gap, gap, level, matters
       logical :: entered, held_off, replaced
       integer :: j
 
@@ -97,18 +97,18 @@ contains
                gap = block_gap(system%first_vertex, step%after%moved, block)
                ! what forces have left at the contacts themselves is no fault of their line, nor is
                ! the depth at which they are closed
-               told = minval(step%end_gap(:n, j))
+               contact_gap = minval(step%end_gap(:n, j))
                level = minval(step%end_gap(:n, j) + run%contacts%joint(j)%contact(:n)%closed_at)
-               if (gap > max(0.0_wp, told) + matters) then
+               if (gap > max(0.0_wp, contact_gap) + matters) then
                   if (.not. all(step%state%face(j)%open)) then
                      held_off = .true.
-                  else if (told <= near_gap(system, block)) then
+                  else if (contact_gap <= near_gap(system, block)) then
                      replaced = .true.
                   end if
                end if
                if (gap > -matters) cycle
                before = min(0.0_wp, block_gap(system%first_vertex, system%moved, block))
-               if (gap < min(before + min(0.0_wp, told), level) - matters) entered = .true.
+               if (gap < min(before + min(0.0_wp, contact_gap), level) - matters) entered = .true.
             end associate
          end do
          outcome%dt = step%dt
