@@ -9,7 +9,7 @@
 module dda_impact
    use dda_block_inertia, only : kinetic_energy, packed_velocity
    use dda_contact_types, only : joint_springs_t
-   use dda_friction_cone, only : cone_t
+   use dda_friction_cone, only : shear_bound
    use dda_kinds, only : wp
    use dda_spring_products, only : add_forces, relative_displacement
    use dda_step_context, only : near_gap, run_t, step_outcome_t
@@ -20,12 +20,18 @@ module dda_impact
    public :: check_impact, closed_contacts, fall_energy, foresee_event, masked_force
    public :: meeting_contacts, meets_at_end, parting_acceleration
 
-   !> Least and largest energy of an impact that ends a step, over that of motion and of a fall of
-   !> the longest step, per squared number of blocks
-   real(wp), parameter :: min_event_energy = 1.0e-6_wp, max_event_energy = 1.0e-2_wp
+   !> Least share in the energy of motion and of a fall of the longest step of an impact that ends
+   !> a step, per squared number of blocks, and the largest
+   real(wp), parameter :: min_event_share = 1.0e-6_wp, max_event_share = 1.0e-2_wp
 
-   !> Slip of a reversal over the slowest impact
+   !> Least change of slip by a reversal that ends a step, over the speed that all this energy would
+   !> give there, per cubed number of blocks: more blocks turn more often, and each cut costs more
+   real(wp), parameter :: min_change = 1.0e-6_wp
+
+   !> Time of a reversal over the longest step that is its beginning, and most cuts of a step that
+   !> may end at one: where blocks are pressed the harder the shorter the step, it comes no nearer
    real(wp), parameter :: at_once = 1.0e-3_wp
+   integer, parameter :: max_event_cuts = 10
 
 contains
 
@@ -127,32 +133,26 @@ contains
       parting = relative_displacement(springs, free)
    end function parting_acceleration
 
-   !> True if a step ends before an impact, and before slip turns, if forces stay unchanged from
-   !> the last step; if not, the time of that
+   !> True if a step ends before an impact, if forces stay unchanged from the last step; if not, the
+   !> time of that
    pure type(step_outcome_t) function foresee_event(run) result(outcome)
       type(run_t), intent(in) :: run
-      real(wp) :: acceleration(3, size(run%contacts%joint)), turn
 
       outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
       if (run%march%spare_cuts == 0) return
-      acceleration = parting_acceleration(run%equations, run%contacts%springs, &
-         & run%equations%outer, run%contacts%force)
-      outcome = earliest_impact(run, run%step%end_gap + run%step%dt**2/2.0_wp*acceleration, &
-         & may_meet(run))
+      outcome = earliest_impact(run, run%step%end_gap + run%step%dt**2/2.0_wp &
+         & *parting_acceleration(run%equations, run%contacts%springs, run%equations%outer, &
+         & run%contacts%force), may_meet(run))
       outcome%overshoot = run%step%overshoot
-      if (run%step%ends_at_event) return
-      turn = earliest_reversal(run, acceleration)
-      if (turn >= outcome%dt) return
-      outcome%accepted = .false.
-      outcome%ends_at_event = .true.
-      outcome%dt = turn
    end function foresee_event
 
-   !> True if a solved step ends at an impact, or has none; if not, the time of that. A step that
-   !> comes no nearer to an impact, as where strain closes a gap at once, has it somewhere
+   !> True if no impact is inside a solved step and no slip turns there; if not, the time of the
+   !> first. A step that comes no nearer to an impact, as where strain closes a gap at once, has it
+   !> somewhere
    pure type(step_outcome_t) function check_impact(run) result(outcome)
       type(run_t), intent(in) :: run
       logical :: meets(2, size(run%contacts%joint))
+      real(wp) :: turn
 
       outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
       if (run%march%spare_cuts == 0) return
@@ -160,6 +160,11 @@ contains
       outcome = earliest_impact(run, free_gaps(run, meets), meets)
       if (outcome%overshoot > run%step%overshoot/2.0_wp) &
          & outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
+      turn = earliest_reversal(run)
+      if (turn >= outcome%dt) return
+      outcome%accepted = .false.
+      outcome%ends_at_event = .true.
+      outcome%dt = turn
    end function check_impact
 
    !> Gaps at the end of a solved step if contacts that meet in it had borne no force
@@ -188,93 +193,45 @@ contains
       end do
    end function meets_at_end
 
-   !> Time at which the first joint that slides begins to slide back, for friction turns with it:
-   !> its slip comes to rest under the forces of the last step, and the load on it then exceeds
-   !> friction the other way. A corner that alone carries its block rolls: there friction takes
-   !> little energy, but carries much between translation and rotation of the block
-   pure real(wp) function earliest_reversal(run, acceleration) result(earliest)
+   !> Time at which the first joint turns its slip in a solved step, which has one friction force of
+   !> each joint, and one of the velocities at its end. Slip and its speed there are compared with
+   !> those by friction that turns: at its bound up to the moment of rest, and at most so much the
+   !> other way afterwards, while closed contacts stay closed. A joint that stuck in the previous
+   !> step has no slip to turn: velocities do without those of strain that follows its load
+   pure real(wp) function earliest_reversal(run) result(earliest)
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: acceleration(:, :)  !! Of gaps and slips: (3, n_joint) [m/s2]
-      real(wp), dimension(3, size(run%contacts%joint)) :: free, translation
-      real(wp) :: back, ease(3, 3), least, now, power, shear
-      real(wp) :: velocity(size(run%step%state%motion, 1), size(run%step%state%motion, 2))
-      integer :: corner(size(run%contacts%joint)), j
+      real(wp) :: back, bound, change, hold, least, loss, m(4, 4), push, slip, turn, way
+      integer :: j
 
       earliest = huge(earliest)
-      least = event_energy(run)
-      corner = lone_corners(run)
-      velocity = packed_velocity(run%system, size(velocity, 1))
-      ! blocks that turn change slips without a force
-      free = acceleration + 2.0_wp/run%step%dt*(relative_displacement(run%contacts%springs, &
-         & velocity) - run%step%speed)
-      velocity(3:, :) = 0.0_wp
-      translation = relative_displacement(run%contacts%springs, velocity)
-      do j = 1, size(corner)
-         associate (slip => run%step%speed(3, j), force => run%contacts%force(:, j), &
-            & cone => run%contacts%springs%cone(j))
-            ease = mobility(run, merge(3, 2, corner(j) > 0), j)
-            if (corner(j) > 0) then
-               free(:, j) = free(:, j) - matmul(ease, force)
-               call slide(cone, corner(j), ease, free(:, j), sign(1.0_wp, slip), back, shear)
-               call slide(cone, corner(j), ease, free(:, j), -sign(1.0_wp, slip), now, shear)
-               power = shear*abs(translation(3, j))
-            else
-               now = acceleration(3, j)
-               back = now - 2.0_wp*ease(3, 3)*force(3)
-               power = abs(force(3)*slip)
-            end if
-            if (.not. power > 0.0_wp .or. power*run%step%dt < 2.0_wp*least) cycle
-            if (abs(slip) <= at_once*max(run%step%slowest_impact, abs(now)*run%step%dt)) cycle
-            if (slip*now < 0.0_wp .and. slip*back < 0.0_wp) earliest = min(earliest, -slip/now)
+      if (run%step%event_cuts >= max_event_cuts) return
+      least = event_energy(run, (min_change*real(size(run%equations%mass, 3), wp)**3)**2)
+      do j = 1, size(run%contacts%joint)
+         associate (dt => run%step%dt, speed => run%step%speed(3, j), state => run%step%state, &
+            & force => run%step%state%force(:, j), before => run%contacts%face(j))
+            if (.not. abs(force(3)) > 0.0_wp) cycle
+            if (before%slip == 0 .and. .not. all(before%open)) cycle
+            way = sign(1.0_wp, speed)
+            m = mobility(run, j, closed=force(1:2) > 0.0_wp)
+            ! a shear force takes loss times itself from the bound of friction
+            loss = -m(3, 4)*state%cone(j)%friction
+            bound = loss*force(3) &
+               & + shear_bound(state%cone(j), force + run%contacts%springs%shift(:, j))
+            hold = bound/(1.0_wp - loss*way)
+            back = bound/(1.0_wp + loss*way)
+            push = way*(2.0_wp*(state%increment(3, j) - speed*dt)/(m(3, 3)*dt**2) - force(3))
+            if (abs(loss) >= 1.0_wp .or. push >= hold) cycle
+            turn = abs(speed)/m(3, 3)/(hold - push)
+            if (turn <= at_once*run%march%longest .or. turn >= dt) cycle
+            slip = abs(speed)*turn/2.0_wp + m(3, 3)*min(0.0_wp, push + back)*(dt - turn)**2/2.0_wp
+            ! velocities of joints that slide back have friction that way in all of the step
+            change = m(3, 3)*min(max(0.0_wp, -push - back)*(dt - turn), (hold + back)*turn)
+            change = max(change, abs(slip - way*state%increment(3, j))/dt)
+            if (change**2 > 2.0_wp*m(3, 3)*least) &
+               & earliest = min(earliest, turn)
          end associate
       end do
    end function earliest_reversal
-
-   !> Slip of a corner that stays on its edge, by friction in a given direction. Its normal force
-   !> keeps the gap: 0 = free + ease (normal, shear), shear = +-(limit + friction normal)
-   pure subroutine slide(cone, k, ease, free, way, acceleration, shear)
-      type(cone_t), intent(in) :: cone
-      integer, intent(in) :: k               !! Number of the contact in its joint
-      real(wp), intent(in) :: ease(3, 3)     !! Mobility of its two blocks [1/kg]
-      real(wp), intent(in) :: free(3)        !! Acceleration without its force [m/s2]
-      real(wp), intent(in) :: way            !! Direction of the friction, 1 or -1
-      real(wp), intent(out) :: acceleration  !! Acceleration of the slip [m/s2]
-      real(wp), intent(out) :: shear         !! Friction; 0 where no force keeps the corner [N/m]
-      real(wp) :: normal
-
-      normal = -(free(k) + way*cone%limit*ease(k, 3))/(ease(k, k) + way*cone%friction*ease(k, 3))
-      shear = 0.0_wp
-      if (normal > 0.0_wp) shear = cone%limit + cone%friction*normal
-      acceleration = free(3) + ease(3, k)*max(0.0_wp, normal) + way*shear*ease(3, 3)
-   end subroutine slide
-
-   !> Contact of each joint that alone carries one of its blocks; 0 where there is none
-   pure function lone_corners(run) result(corner)
-      type(run_t), intent(in) :: run
-      integer :: corner(size(run%contacts%joint))  !! Number of the contact: (n_joint)
-      integer :: e, j, n(size(run%equations%mass, 3)), side
-      logical :: touches(2, size(run%contacts%joint))
-
-      n = 0
-      do j = 1, size(corner)
-         associate (joint => run%contacts%joint(j))
-            touches(:, j) = run%contacts%gap(1:2, j) <= near_gap(run%system, joint%block)
-            touches(joint%n_contact + 1:, j) = .false.
-         end associate
-         do side = 1, 2
-            e = run%contacts%springs%equation(side, j)
-            if (e > 0) n(e) = n(e) + count(touches(:, j))
-         end do
-      end do
-      corner = 0
-      do j = 1, size(corner)
-         do side = 1, 2
-            e = run%contacts%springs%equation(side, j)
-            if (e == 0 .or. count(touches(:, j)) /= 1) cycle
-            if (n(e) == 1) corner(j) = findloc(touches(:, j), .true., dim=1)
-         end do
-      end do
-   end function lone_corners
 
    !> The first impact that is inside a step, by the gaps that the contacts would have at its end
    !> without it
@@ -282,11 +239,12 @@ contains
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: gap(:, :)    !! Gaps at the end: (3, n_joint) [m]
       logical, intent(in) :: meets(:, :)   !! Contacts that may be hit: (2, n_joint)
-      real(wp) :: acceleration, earliest, least, meeting, time
+      real(wp) :: acceleration, earliest, ease(4, 4), least, meeting, time
       integer :: j, k
 
       least = 0.0_wp
-      if (.not. run%settings%restitution > 0.0_wp) least = event_energy(run)
+      if (.not. run%settings%restitution > 0.0_wp) least = event_energy(run, &
+         & min_event_share*real(size(run%equations%mass, 3), wp)**2)
       earliest = huge(earliest)
       outcome%overshoot = 0.0_wp
       associate (dt => run%step%dt, start => run%contacts%gap, speed => run%step%speed)
@@ -303,7 +261,8 @@ contains
                meeting = -speed(k, j) - acceleration*min(time, dt)
                if (meeting <= 0.0_wp .or. run%settings%restitution > 0.0_wp &
                   & .and. meeting <= run%step%slowest_impact) cycle
-               if (meeting**2 < 2.0_wp*least*ease_of(run, k, j)) cycle
+               ease = mobility(run, j, closed=[.false., .false.])
+               if (meeting**2 < 2.0_wp*least*ease(k, k)) cycle
                earliest = min(earliest, time)
                outcome%overshoot = max(outcome%overshoot, -gap(k, j))
             end do
@@ -315,14 +274,12 @@ contains
    end function earliest_impact
 
    !> Energy of an event that ends a step [J/m]
-   pure real(wp) function event_energy(run)
+   pure real(wp) function event_energy(run, share)
       type(run_t), intent(in) :: run
+      real(wp), intent(in) :: share  !! Share of the energy of all blocks
 
-      event_energy = min(max_event_energy, &
-         & min_event_energy*real(size(run%equations%mass, 3), wp)**2) &
-         & *(kinetic_energy(run%equations, packed_velocity(run%system, &
-         & size(run%step%state%motion, 1))) &
-         & + fall_energy(run))
+      event_energy = min(max_event_share, share)*(kinetic_energy(run%equations, &
+         & packed_velocity(run%system, size(run%step%state%motion, 1))) + fall_energy(run))
    end function event_energy
 
    !> Energy of all blocks after a fall of the longest step [J/m]
@@ -332,38 +289,36 @@ contains
       fall_energy = sum(run%equations%mass(1, 1, :))*(run%step%slowest_impact/2.0_wp)**2/2.0_wp
    end function fall_energy
 
-   !> Mobility of two blocks at a contact that is hit [1/kg]
-   pure real(wp) function ease_of(run, k, j) result(ease)
+   !> Mobility of the contacts and the slip of a joint by forces there. Gaps of closed contacts stay
+   !> unchanged: their normal forces are eliminated (Gauss). Their sum is the last row and column
+   pure function mobility(run, j, closed)
       type(run_t), intent(in) :: run
-      integer, intent(in) :: k  !! Number of the contact in the joint
-      integer, intent(in) :: j  !! Number of the joint
-      real(wp) :: of_joint(3, 3)
-
-      of_joint = mobility(run, 3, j)
-      ease = of_joint(k, k)
-   end function ease_of
-
-   !> Accelerations of gaps and slip of a joint by unit forces [1/kg]
-   pure function mobility(run, n, j)
-      type(run_t), intent(in) :: run
-      !> Number of unknowns that move: 3, or 2 where shear does not turn blocks that lie on one
-      !> another
-      integer, intent(in) :: n
-      integer, intent(in) :: j  !! Number of the joint
-      real(wp) :: mobility(3, 3)
+      integer, intent(in) :: j             !! Number of the joint
+      logical, intent(in) :: closed(2)     !! Contacts that stay closed: (2)
+      real(wp) :: mobility(4, 4)           !! The mobility; the last without unit: (4, 4) [1/kg]
+      real(wp) :: own(2)
       integer :: e, i, k, side
 
       mobility = 0.0_wp
+      mobility(4, :2) = 1.0_wp
+      mobility(:2, 4) = 1.0_wp
       do side = 1, 2
          e = run%contacts%springs%equation(side, j)
          if (e == 0) cycle
-         do i = 1, n
-            associate (row => run%contacts%springs%row(i, :, side, j))
+         associate (row => run%contacts%springs%row(:, :, side, j))
+            do i = 1, 3
                do k = 1, 3
-                  mobility(:, k) = mobility(:, k) + row*row(k)/run%equations%mass(i, i, e)
+                  mobility(:3, k) = mobility(:3, k) &
+                     & + row(i, :)*row(i, k)/run%equations%mass(i, i, e)
                end do
-            end associate
-         end do
+            end do
+         end associate
+      end do
+      own = [mobility(1, 1), mobility(2, 2)]
+      do k = 1, 2
+         ! two corners at one place are one
+         if (.not. closed(k) .or. mobility(k, k) <= 1.0e-12_wp*own(k)) cycle
+         mobility = mobility - matmul(mobility(:, k:k), mobility(k:k, :))/mobility(k, k)
       end do
    end function mobility
 

@@ -100,6 +100,7 @@ module dda_step_context
       logical :: accepted = .false.  !! True if the step counts
       logical :: was_cut = .false.   !! True if a longer step did not settle
       logical :: ends_at_event = .false.  !! True if it has been cut to end at such an event
+      integer :: event_cuts = 0           !! Number of these cuts
       !> True if no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point, in it and in the try before: [m]

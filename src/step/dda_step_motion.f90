@@ -31,6 +31,7 @@ contains
          step%was_cut = .false.
          step%choices = 0
          step%ends_at_event = .false.
+         step%event_cuts = 0
          step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current
          step%slowest_impact = 2.0_wp*run%march%free_acceleration*run%march%longest
