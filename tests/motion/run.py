@@ -27,7 +27,7 @@ from pathlib import Path
 from scene import SLOW, Run, Scene, run_scene
 
 #: Modules of generators
-MODULES = ("bounces", "trains", "polygons", "drops", "supported", "confined")
+MODULES = ("bounces", "trains", "polygons", "drops", "supported", "stacks", "confined")
 #: Time steps [s] and unknowns at which answers must be the same
 STEPS, UNKNOWNS = (4e-3, 2e-3, 1e-3, 5e-4), (3, 6)
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from oracle import Ambiguous, World
+from stacks import Stack
 from states import rectangle, turned
 from trains import Train
 
@@ -166,3 +167,20 @@ def test_impact_of_two_answers_is_refused() -> None:
     world.add(turned(rectangle(0.0, 0.0, 0.01, 2.0), -math.radians(20.0)), (-3.0, 0.0, 0.0))
     with pytest.raises(Ambiguous):
         world.run(0.1)
+
+
+def test_slab_slips_on_ground_that_moves_off_as_in_closed_form() -> None:
+    shake, friction, duration = 4.0, 0.2, 0.3
+    slab = Stack(np.array([700.0]), np.array([friction]), np.zeros(1), np.zeros(1))
+    assert slab.follow([(0.0, shake), (duration, shake)]) == 0
+    assert slab.follow([(0.0, 0.0), (1.0, 0.0)]) == 1
+    hold = friction * G
+    assert slab.place[0] == pytest.approx(-(shake - hold) * duration**2 / 2.0 * shake / hold, rel=1e-12)
+    assert slab.speed[0] == 0.0
+
+
+def test_slab_on_a_smooth_one_stays_where_it_is() -> None:
+    """The lower one goes with the ground, the upper one keeps its place in space."""
+    slabs = Stack(np.array([700.0, 500.0]), np.array([0.9, 0.0]), np.zeros(2), np.zeros(2))
+    slabs.follow([(0.0, 0.0), (0.5, 3.0)])
+    assert slabs.place == pytest.approx(np.array([0.0, -3.0 / 0.5 * 0.5**3 / 6.0]), abs=1e-12)
