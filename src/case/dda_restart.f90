@@ -21,7 +21,7 @@ module dda_restart
    public :: check_restart, load_restart, save_restart, write_numbers, read_numbers
 
    !> First bytes of the file; another layout needs another number
-   character(len=*), parameter :: title = "voussoir restart 5"
+   character(len=*), parameter :: title = "voussoir restart 6"
 
    !> Integers of a file beside those of its joints: blocks, corners, unknowns per block, true if
    !> blocks move, true if joints are searched; joints, springs at restrained points, steps, passes,
@@ -40,8 +40,8 @@ module dda_restart
       real(wp), allocatable :: vertex(:, :)    !! Corners in the reference shape: (2, n_vertex) [m]
       real(wp), allocatable :: motion(:, :)    !! Motion of the blocks: (6, n_block)
       real(wp), allocatable :: velocity(:, :)  !! Rates of the same: (6, n_block)
-      !> Mean strain rates of the last step: (3, n_block)
-      real(wp), allocatable :: strain_rate(:, :)
+      !> Mean strain rates and accelerations of the last step: (3, n_block)
+      real(wp), allocatable :: strain_rate(:, :), acceleration(:, :)
       real(wp), allocatable :: stress(:, :)    !! Stress of the blocks: (3, n_block) [Pa]
       !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
       real(wp), allocatable :: reach(:)
@@ -128,7 +128,8 @@ contains
             & size(contacts%joint), size(held_force), march%steps, march%passes, &
             & march%spare_cuts, pack(joint_whole, all)], [pack(system%vertex, all), &
             & pack(system%motion, all), pack(system%velocity, all), &
-            & pack(system%strain_rate, all), pack(system%stress, all), reach, held_force, &
+            & pack(system%strain_rate, all), pack(system%acceleration, all), &
+            & pack(system%stress, all), reach, held_force, &
             & march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, e%gravity, &
             & e%work, e%friction, e%damping, e%impact, e%numerical, &
             & pack(joint_number, all)], error)
@@ -210,7 +211,7 @@ contains
       end if
       associate (n_block => int(whole(1), int64), n_vertex => int(whole(2), int64), &
          & n_joint => int(whole(6), int64))
-         wanted = [n_count + n_joint_whole*n_joint, n_march + 19*n_block + 2*n_vertex &
+         wanted = [n_count + n_joint_whole*n_joint, n_march + 22*n_block + 2*n_vertex &
             & + whole(7) + n_joint_number*n_joint]
       end associate
       same = whole(:5) == owner_of(settings, system, contacts)
@@ -240,6 +241,7 @@ contains
          state%motion = reshape(next(6*n_block), [6, n_block])
          state%velocity = reshape(next(6*n_block), [6, n_block])
          state%strain_rate = reshape(next(3*n_block), [3, n_block])
+         state%acceleration = reshape(next(3*n_block), [3, n_block])
          state%stress = reshape(next(3*n_block), [3, n_block])
          state%reach = next(n_block)
          state%held_force = next(state%count(7))

@@ -38,6 +38,7 @@ contains
       else if (any(abs(state%motion(1:2, :)) > far*size_of_all) &
          & .or. any(abs(state%motion(3:, :)) > far) .or. any(abs(state%velocity) > beyond_all) &
          & .or. any(abs(state%strain_rate) > beyond_all) &
+         & .or. any(abs(state%acceleration) > beyond_all) &
          & .or. any(abs(state%stress) > beyond_all)) then
          fault = "motions that no block has"
       end if
@@ -57,6 +58,7 @@ contains
       system%motion = state%motion
       system%velocity = state%velocity
       system%strain_rate = state%strain_rate
+      system%acceleration = state%acceleration
       system%stress = state%stress
       if (.not. settings%current) return
       call displace_blocks(settings, no_motion, system)

@@ -50,6 +50,9 @@ module dda_block_system
       real(wp), allocatable :: velocity(:, :)
       !> Mean strain rate over the last dynamic step: (3, n_block) [1/s]
       real(wp), allocatable :: strain_rate(:, :)
+      !> Mean acceleration in the last dynamic step, 0 if it ended at an impact or a reversal:
+      !> (3, n_block) [m/s2, m/s2, rad/s2]
+      real(wp), allocatable :: acceleration(:, :)
       !> Stress sx, sy, txy: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
       !> Stress at zero strain, in the frame that rotates with the block: (3, n_block) [Pa]
@@ -104,7 +107,7 @@ contains
       allocate (system%moved, source=system%vertex)
       allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), source=0.0_wp)
       allocate (system%stress(3, n), system%initial_stress(3, n), system%strain_rate(3, n), &
-         & source=0.0_wp)
+         & system%acceleration(3, n), source=0.0_wp)
    end subroutine begin_motion
 
    !> Deallocate the arrays of the moving state of blocks at rest and free of stress
@@ -113,7 +116,7 @@ contains
 
       if (any(abs(system%velocity) > 0.0_wp) .or. any(abs(system%stress) > 0.0_wp)) return
       deallocate (system%moved, system%motion, system%velocity, system%stress, &
-         & system%initial_stress, system%strain_rate)
+         & system%initial_stress, system%strain_rate, system%acceleration)
    end subroutine forget_rest
 
    !> Move blocks without copying large arrays
@@ -138,6 +141,7 @@ contains
       call move_alloc(from%motion, to%motion)
       call move_alloc(from%velocity, to%velocity)
       call move_alloc(from%strain_rate, to%strain_rate)
+      call move_alloc(from%acceleration, to%acceleration)
       call move_alloc(from%stress, to%stress)
       call move_alloc(from%initial_stress, to%initial_stress)
    end subroutine move_large

@@ -54,6 +54,8 @@ contains
          motion = 0.0_wp
          motion(:settings%n_dof) = step%state%motion(:, e)
          if (settings%current) then
+            system%acceleration(:, b) = (step%velocity(:3, e) - system%velocity(:3, b))/step%dt
+            if (step%ends_at_event) system%acceleration(:, b) = 0.0_wp
             system%velocity(:settings%n_dof, b) = step%velocity(:, e)
             system%velocity(4:6, b) = turned_tensor(system%velocity(4:6, b), -motion(3), 2.0_wp)
             system%strain_rate(:, b) = turned_tensor(motion(4:6)/step%dt, -motion(3), 2.0_wp)

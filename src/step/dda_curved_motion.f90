@@ -22,13 +22,20 @@ module dda_curved_motion
 
 contains
 
-   !> Begin with the rows of blocks that go on as they are
+   !> Begin with the rows of blocks that go on with the acceleration of the last step
    pure subroutine foresee_curves(run)
       type(run_t), intent(inout) :: run
       real(wp), dimension(size(run%step%state%motion, 1), size(run%step%state%motion, 2)) :: motion
       real(wp) :: error
+      integer :: b
 
-      motion = run%step%dt*packed_velocity(run%system, size(motion, 1))
+      motion = packed_velocity(run%system, size(motion, 1))
+      do b = 1, size(run%system%equation)
+         associate (e => run%system%equation(b), by => run%system%acceleration(:, b))
+            if (e > 0) motion(:3, e) = motion(:3, e) + run%step%dt/2.0_wp*by
+         end associate
+      end do
+      motion = run%step%dt*motion
       run%step%curve = 0.0_wp*run%contacts%gap
       run%step%state%increment = 0.0_wp
       call see_curves(run, motion, error)

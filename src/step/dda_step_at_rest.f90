@@ -52,6 +52,7 @@ contains
       if (.not. still) return
       call begin_step(run)
       run%system%strain_rate = 0.0_wp
+      run%system%acceleration = 0.0_wp
       associate (step => run%step)
          run%contacts%increment = 0.0_wp
          step%dt = run%march%dt

@@ -28,7 +28,7 @@ from fuzz_blocks import BLOCKS, RECORDS, complaint
 from fuzz_deck import run
 
 #: First bytes of a restart file
-TITLE = b"voussoir restart 5"
+TITLE = b"voussoir restart 6"
 #: Whole numbers and numbers of each joint, at the end of the whole numbers and of the numbers
 JOINT = (12, 24)
 #: Scenes whose runs go on: blocks that were found to touch, as they move and as they were at the

@@ -117,8 +117,8 @@ MADE_UP = {
     "edge of its own block": (lambda whole, number: whole.__setitem__(15, whole[13]), "joints"),
     "neither open nor closed": (lambda whole, number: whole.__setitem__(17, 2), "joints"),
     "slides sideways": (lambda whole, number: whole.__setitem__(19, 7), "joints"),
-    "weaker than nothing": (lambda whole, number: number.__setitem__(88, -1e-3), "joints"),
-    "stronger than whole": (lambda whole, number: number.__setitem__(89, 1.5), "joints"),
+    "weaker than nothing": (lambda whole, number: number.__setitem__(94, -1e-3), "joints"),
+    "stronger than whole": (lambda whole, number: number.__setitem__(95, 1.5), "joints"),
     "other corners": (lambda whole, number: number.__setitem__(3, 0.5), "other blocks"),
     "a fixed block that moves": (lambda whole, number: number.__setitem__(16, 1.0), "fixed blocks"),
     "no number": (lambda whole, number: number.__setitem__(22, float("nan")), "none"),
@@ -129,15 +129,16 @@ MADE_UP = {
     "sheared to nothing": (lambda whole, number: number.__setitem__(27, 2.0), "strains"),
     "faster than all": (lambda whole, number: number.__setitem__(34, 1e200), "motions"),
     "strains faster than all": (lambda whole, number: number.__setitem__(43, 1e200), "motions"),
-    "reach below zero": (lambda whole, number: number.__setitem__(53, -1.0), "search distances"),
-    "endless reach": (lambda whole, number: number.__setitem__(53, 1e9), "search distances"),
-    "time below zero": (lambda whole, number: number.__setitem__(54, -0.1), "time"),
-    "two times": (lambda whole, number: number.__setitem__(56, 0.5), "time"),
-    "no step": (lambda whole, number: number.__setitem__(55, 0.0), "step"),
-    "endless energy": (lambda whole, number: number.__setitem__(58, 1e300), "energies"),
-    "length below zero": (lambda whole, number: number.__setitem__(66, -1.0), "joints"),
-    "shares of more than all": (lambda whole, number: number.__setitem__(69, 2.0), "joints"),
-    "endless force": (lambda whole, number: number.__setitem__(79, 1e200), "joints"),
+    "accelerated by more than all": (lambda whole, number: number.__setitem__(49, -1e200), "motions"),
+    "reach below zero": (lambda whole, number: number.__setitem__(59, -1.0), "search distances"),
+    "endless reach": (lambda whole, number: number.__setitem__(59, 1e9), "search distances"),
+    "time below zero": (lambda whole, number: number.__setitem__(60, -0.1), "time"),
+    "two times": (lambda whole, number: number.__setitem__(62, 0.5), "time"),
+    "no step": (lambda whole, number: number.__setitem__(61, 0.0), "step"),
+    "endless energy": (lambda whole, number: number.__setitem__(64, 1e300), "energies"),
+    "length below zero": (lambda whole, number: number.__setitem__(72, -1.0), "joints"),
+    "shares of more than all": (lambda whole, number: number.__setitem__(75, 2.0), "joints"),
+    "endless force": (lambda whole, number: number.__setitem__(85, 1e200), "joints"),
 }
 
 
@@ -163,7 +164,7 @@ def test_numbers_that_are_not_changed_are_taken(tmp_path: Path) -> None:
     assert (tmp_path / "first" / "case_1.restart").read_bytes() == before
     assert go_on(tmp_path).returncode == 0
     whole, number = numbers_of(before)
-    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 22, 90)
+    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 22, 96)
 
 
 def test_a_case_of_many_that_cannot_go_on_says_why(tmp_path: Path) -> None:
