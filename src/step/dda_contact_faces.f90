@@ -2,8 +2,8 @@
 !>
 !> With the faces known, forces and motion are one solution of linear equations. Near the answer,
 !> as where a structure goes on standing or moving as it did, that ends after one factorisation or a
-!> few and leaves rounding; far from it, it ends without. Each force is tied to the one before by a
-!> spring far firmer than the blocks: of all forces that stop them the nearest are found.
+!> few and leaves rounding; far from it, it ends without. Each force is tied to that of the last
+!> step by a spring far firmer than the blocks: of all forces that stop them the nearest are found.
 module dda_contact_faces
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & residual_of, residual_t
@@ -24,10 +24,13 @@ module dda_contact_faces
 
 contains
 
-   !> Find forces that agree with their faces, from those at hand; better ones are kept
-   pure subroutine settle_faces(p, tolerance, force, residual, passes)
+   !> Find forces that agree with their faces, from those at hand if these are near; better ones are
+   !> kept
+   pure subroutine settle_faces(p, tolerance, near, before, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
+      real(wp), intent(in) :: near            !! Residual of forces that are near [m]
+      real(wp), intent(in) :: before(:, :)    !! Forces of the last step: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
@@ -35,19 +38,21 @@ contains
       type(joint_face_t) :: face(size(p%joint))
       real(wp), dimension(3, size(p%joint)) :: centre, now
       real(wp) :: stiff(3, 3, size(p%joint))
-      real(wp) :: motion(size(p%load, 1), size(p%load, 2))
+      real(wp) :: motion(size(p%load, 1), size(p%load, 2)), left
       integer :: changes, last, pass, turn
       logical :: stale
 
+      if (residual%opening <= tolerance .or. residual%opening > near) return
       call lay_out_joints(p%block, size(p%load, 1), size(p%load, 2), .false., springs%matrix, &
          & springs%factor, springs%entry)
       now = force
-      centre = force
+      centre = before
       motion = move_blocks(p, now)
       call read_faces(p, now, motion, face)
       last = size(face)
       changes = size(face)
       pass = 0
+      left = huge(left)
       do turn = 1, max_turns
          if (changes > 0) then
             if (pass == max_passes) return
@@ -65,19 +70,20 @@ contains
             last = changes
             cycle
          end if
-         call keep_better(p, face, now, force, residual, stale)
+         call keep_better(p, face, now, force, residual, left, stale)
          if (residual%opening <= tolerance .or. stale) return
          centre = now
       end do
    end subroutine settle_faces
 
    !> Keep forces on their faces if they have the smaller residual
-   pure subroutine keep_better(p, face, now, force, residual, stale)
+   pure subroutine keep_better(p, face, now, force, residual, opening, stale)
       type(contact_problem_t), intent(in) :: p
       type(joint_face_t), intent(in) :: face(:)    !! Faces: (n_joint)
       real(wp), intent(in) :: now(:, :)            !! Other forces: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)       !! The best so far: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of these
+      real(wp), intent(inout) :: opening  !! Residual of the turn before in, of this out [m]
       logical, intent(out) :: stale                !! True if less than half of it has gone
       type(residual_t) :: left
       real(wp) :: trial(3, size(face))
@@ -86,7 +92,8 @@ contains
       call take_faces(p, face, trial)
       trial = admissible(p, trial)
       left = residual_of(p, trial, move_blocks(p, trial))
-      stale = left%opening > residual%opening/2.0_wp
+      stale = left%opening > opening/2.0_wp
+      opening = left%opening
       if (.not. left%energy < residual%energy) return
       force = trial
       residual = left
@@ -173,7 +180,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       type(joint_matrix_t), intent(in) :: springs       !! Factor of the springs
       real(wp), intent(in) :: stiff(:, :, :)            !! Their stiffness: (3, 3, n_joint)
-      real(wp), intent(in) :: centre(:, :)              !! Forces before: (3, n_joint) [N/m]
+      real(wp), intent(in) :: centre(:, :)              !! Nearest forces: (3, n_joint) [N/m]
       real(wp), intent(inout), contiguous :: force(:, :)   !! Forces on their faces
       real(wp), intent(inout), contiguous :: motion(:, :)  !! The motion: (n_dof, n_block) [m]
       real(wp) :: step(size(motion, 1), size(motion, 2))

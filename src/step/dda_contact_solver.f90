@@ -1,11 +1,11 @@
 !> Contact forces of moving blocks within their bounds, and their residual
 !>
 !> Blocks that no contact joins are independent: each group is a problem of its own. The
-!> forces of the last step are checked; sweeps, faces, and an interior point whose offset moves
-!> along follow, each from the best forces so far, until openings are against the law by no more
-!> than the tolerance. Where none comes so far, the best forces count; where these bring in energy,
-!> those of the convex problem, which exist always. Whatever counts lies within its bounds, and
-!> momentum is exact.
+!> forces of the last step are checked; faces where these are near, sweeps, and an interior point
+!> whose offset moves along follow, each from the best forces so far, until openings are against the
+!> law by no more than the tolerance. Where none comes so far, the best forces count; where these
+!> bring in energy, those of the convex problem, which exist always. Whatever counts lies within its
+!> bounds, and momentum is exact.
 !>
 !> Equation (M5) of docs/method.md
 module dda_contact_solver
@@ -93,7 +93,7 @@ contains
       state%settled = .true.
    end subroutine settle_contacts
 
-   !> Solve one group: sweeps, faces, interior point, and the convex problem where these fail
+   !> Solve one group: faces, sweeps, interior point, and the convex problem where these fail
    pure subroutine settle_group(p, fineness, fall, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
@@ -101,24 +101,25 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(out) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations
-      real(wp) :: enough, exact, speed, tolerance
+      real(wp) :: before(3, size(p%joint)), enough, exact, near, speed, tolerance
 
+      before = force
       residual = residual_of(p, force, move_blocks(p, force))
       speed = speed_of(p, move_blocks(p, 0.0_wp*force))
       tolerance = max(p%noise, fineness*max(gap_tolerance*fall, motion_tolerance*speed))
       enough = max(tolerance, interior_tolerance*speed)
+      near = near_solution*speed
       exact = merge(rounding_tolerance, 1.0_wp, size(p%joint) <= small_group_joints)*tolerance
+      ! sweeps let the first of redundant joints take all
+      call settle_faces(p, exact, near, before, force, residual, passes)
       call sweep_joints(p, exact, first_sweeps, force, residual)
-      if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
-         & call settle_faces(p, exact, force, residual, passes)
+      call settle_faces(p, exact, near, before, force, residual, passes)
       if (residual%opening > enough) &
          & call solve_interior(p, enough, .false., force, residual, passes)
-      if (residual%opening > near_solution*speed) &
+      if (residual%opening > near) &
          & call solve_interior(p, convex_tolerance*speed, .true., force, residual, passes)
-      if (residual%opening > tolerance) &
-         & call sweep_joints(p, tolerance, last_sweeps, force, residual)
-      if (residual%opening > exact .and. residual%opening <= near_solution*speed) &
-         & call settle_faces(p, exact, force, residual, passes)
+      call sweep_joints(p, tolerance, last_sweeps, force, residual)
+      call settle_faces(p, exact, near, before, force, residual, passes)
       if (work_of(p, force) > max_energy_gain*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
          & call solve_interior(p, enough, .true., force, residual, passes)
    end subroutine settle_group
