@@ -282,7 +282,7 @@ class World:
         gap_rate = normal @ before
         closing = gap_rate < -SLOW * self.fastest
         if not closing.any():
-            return contacts
+            return [c for c, rate in zip(contacts, gap_rate) if rate < SLOW * self.fastest]
         self.impacts.append((self.time, float(-gap_rate.min())))
         if self.impacts[-1][1] < self.slowest:
             raise Ambiguous("a slow impact")

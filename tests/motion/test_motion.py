@@ -20,8 +20,8 @@ FOUND = [("elastic_row", 8128002), ("elastic_row", 9119004), ("elastic_row", 101
          ("slider_kinks_smooth", 8128017), ("rocking", 2211009), ("polygon_on_resting", 31415007),
          ("polygon_on_resting", 9830000), ("spin_rough_gravity", 9501009), ("spin_rough_gravity", 8100000),
          ("spin_rough_gravity", 8100002), ("spin_rough_gravity", 9620021), ("spin_smooth_gravity", 9830002),
-         ("flight", 50), ("flight", 73), ("flight", 86),
-         ("polygons_meet", 12500002)]
+         ("flight", 50), ("flight", 73), ("flight", 86), ("polygons_meet", 12500002),
+         ("polygons_meet", 47150003), ("polygons_meet", 48000081)]
 #: Seeds whose answers depended on the step or the unknowns
 DEPENDED = [("touching_row", 2711000)]
 

@@ -161,6 +161,18 @@ def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
     assert world.energy() == pytest.approx(kept, rel=1e-7) and world.rolled > 0.5
 
 
+def test_corner_of_an_edge_that_a_block_has_left_pushes_it_no_more() -> None:
+    """A corner slides off its edge: the end of the edge is near the block then, and separates from it."""
+    world = World((0.0, 0.0))
+    world.add(rectangle(-1.0, -0.2, 2.0, 0.4), (0.0, 0.0, 1.0))
+    world.add(turned(rectangle(-0.3, -0.3, 0.6, 0.6), 1.02), (0.0, 0.0, 0.0))
+    world.place[1, :2] = 0.9, 0.2 - min(y for _, y in world.corners(np.array([[0.0] * 3, [0.0, 0.0, 0.0]]))[1])
+    world.run(1e-3)
+    kept = world.energy()
+    world.run(0.8)
+    assert world.lost > 0.0 and world.energy() == pytest.approx(kept, rel=1e-7)
+
+
 def test_impact_of_two_answers_is_refused() -> None:
     """A rod at 45 degrees that slips along a floor of friction 3 jams, or flies off (Painleve)."""
     world = floor(0.0, 3.0)
