@@ -57,6 +57,8 @@ module dda_entrance
    real(wp), parameter :: least_overlap = 1.0e-6_wp
    !> Distance below which two corners count as coincident, over the shorter edge
    real(wp), parameter :: met = 1.0e-3_wp
+   !> Round-off of corners that are computed in two ways, over their coordinates
+   real(wp), parameter :: rounding = 64.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -144,7 +146,8 @@ contains
    end subroutine join_edges
 
    !> Corner at one end of the overlap of two edges: the inner one; of two coincident corners, the
-   !> one that touched before
+   !> one that touched before, or else that of the first block. Both are right, but contacts of an
+   !> edge of the other block give other forces once the joint opens
    pure subroutine choose_end(near, of_first, of_second, ahead, zone, corner, edge)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: of_first(2)   !! Corner of the first block and edge of the second: (2)
@@ -155,7 +158,7 @@ contains
       integer, intent(out) :: corner, edge
       logical :: by_first
 
-      by_first = ahead >= 0.0_wp
+      by_first = ahead >= -rounding*maxval(abs(near%vertex(:, [of_first, of_second])))
       if (abs(ahead) <= zone) then
          if (was_closed(near, of_first(1), of_first(2))) by_first = .true.
          if (was_closed(near, of_second(1), of_second(2))) by_first = .false.
