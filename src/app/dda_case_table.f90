@@ -36,10 +36,10 @@ module dda_case_table
    !> One column
    type :: column_t
       character(len=64) :: title = ""  !! Header
-      integer :: source = 0            !! One of source
-      integer :: width = 0             !! Width of the widest value, later of the column
-      integer :: sweep = 0             !! Number of the swept parameter
-      logical :: left = .false.        !! True for left-aligned words
+      integer :: source = 0      !! One of source
+      integer :: width = 0       !! Width of the widest value, later of the column
+      integer :: sweep = 0       !! Number of the swept parameter
+      logical :: left = .false.  !! True for left-aligned words
    end type column_t
 
    !> The table of a deck
@@ -50,8 +50,7 @@ module dda_case_table
       integer :: width = 0                      !! Largest width of a line
       type(column_t), allocatable :: column(:)  !! Its columns
       logical :: begun = .false.                !! True if the header is printed
-      !> True to print all cases; otherwise only the undecided ones
-      logical :: all_cases = .true.
+      logical :: all_cases = .true.  !! True to print all cases; otherwise only the undecided ones
       logical, allocatable :: awaited(:)  !! Cases not yet computed: (n)
       integer :: next = 1                 !! Next case to print
       !> Lines that must follow those of earlier cases, by the number of the case: (n)

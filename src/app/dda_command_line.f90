@@ -68,8 +68,7 @@ contains
    !> Read the arguments of the program
    subroutine read_command(command, error)
       type(command_t), intent(out) :: command
-      !> Allocated for an invalid argument
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Allocated for an invalid argument
       type(argument_t), allocatable :: argument(:)
       integer :: bad, i, length
 

@@ -63,8 +63,7 @@ module dda_process
          import :: c_int
          !> 1 for standard output, 2 for standard error
          integer(c_int), intent(in), value :: descriptor
-         !> 1 if it is
-         integer(c_int) :: yes
+         integer(c_int) :: yes  !! 1 if it is
       end function c_isatty
 
       !> C: make a folder

@@ -69,8 +69,7 @@ module dda_result_tables
    type :: result_tables_t
       character(len=:), allocatable :: folder  !! Name of the folder
       type(result_table_t) :: at(13)           !! The tables, by their numbers
-      !> Column of results.csv that differs in every run
-      integer :: seconds = 0
+      integer :: seconds = 0                   !! Column of results.csv that differs in every run
       !> Bytes of all tables except results.csv and sizes.record after the last case, and the
       !> checksum of their lines: (2)
       integer(int64) :: total(2) = 0
@@ -78,8 +77,7 @@ module dda_result_tables
       type(growing_text_t) :: waiting(3)
       integer(int64) :: waiting_sum = 0             !! Checksum of the unwritten lines of the log
       character(len=:), allocatable :: record_file  !! File with the record of deck and program
-      !> File with the length of results.csv on the disk
-      character(len=:), allocatable :: disk_file
+      character(len=:), allocatable :: disk_file  !! File with the length of results.csv on the disk
       integer(int64) :: due = 0     !! Clock time of the next sync
       logical :: has_vtu = .false.  !! True to write frames as VTU too
    end type result_tables_t

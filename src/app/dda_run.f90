@@ -74,13 +74,12 @@ submodule (dda_verbs) dda_run
          !> The deck; of a single case the corners of the blocks are moved out of it
          type(deck_t), intent(inout) :: deck
          type(scene_t), intent(inout) :: scene  !! Scene of a single case, if a check has made it
-         logical, intent(in) :: chosen(:)    !! Cases to be computed
-         integer, intent(inout) :: next      !! Last case taken by any thread
+         logical, intent(in) :: chosen(:)       !! Cases to be computed
+         integer, intent(inout) :: next         !! Last case taken by any thread
          type(result_tables_t), intent(inout) :: tables
          type(case_table_t), intent(inout) :: shown
          integer, intent(inout) :: count(3)  !! Number of cases decided, undecided, written: (3)
-         !> Allocated if writing fails
-         type(error_t), allocatable, intent(inout) :: error
+         type(error_t), allocatable, intent(inout) :: error  !! Allocated if writing fails
       end subroutine run_cases
 
    end interface

@@ -279,8 +279,7 @@ contains
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: origin(2)
       type(frame_t), intent(in) :: frame
-      !> Joints of the frame: (n_joint)
-      type(frame_joint_row_t), intent(in) :: row(:)
+      type(frame_joint_row_t), intent(in) :: row(:)  !! Joints of the frame: (n_joint)
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))

@@ -30,10 +30,9 @@ module dda_screen
    integer, parameter :: width = 60
    !> Progress line of tasks on a terminal
    type, extends(watch_t) :: terminal_watch_t
-      logical :: shown = .false.    !! True if progress is shown
-      logical :: visible = .false.  !! True if a line is on the screen
-      !> Clock at the start, and at the last line
-      integer(int64) :: start = 0, last = 0
+      logical :: shown = .false.             !! True if progress is shown
+      logical :: visible = .false.           !! True if a line is on the screen
+      integer(int64) :: start = 0, last = 0  !! Clock at the start, and at the last line
       !> Delay of the first report of a task, and interval of further ones [s]
       real(wp) :: delay = 0.5_wp, interval = 0.2_wp
    contains
@@ -134,8 +133,7 @@ contains
    subroutine show_task(watch, task, share)
       class(terminal_watch_t), intent(inout) :: watch
       character(len=*), intent(in) :: task  !! Name of the task
-      !> Completed share from 0 to 1; negative if not known
-      real(wp), intent(in) :: share
+      real(wp), intent(in) :: share         !! Completed share from 0 to 1; negative if not known
       integer(int64) :: now, rate
       character(len=width) :: line
 

@@ -11,10 +11,8 @@ module dda_error
    type :: error_t
       !> Expected and actual value, with the unit, and the correction
       character(len=:), allocatable :: message
-      !> File that the message refers to; unallocated if none
-      character(len=:), allocatable :: file
-      !> Line of that file, counted from 1; 0 for the whole file
-      integer :: line = 0
+      character(len=:), allocatable :: file  !! File that the message refers to; unallocated if none
+      integer :: line = 0  !! Line of that file, counted from 1; 0 for the whole file
    end type error_t
 
    !> A warning with the number of its repetitions

@@ -181,8 +181,7 @@ contains
       real(wp), intent(in) :: doubt            !! Bound on the error of beyond
       integer(int64), intent(inout) :: digits  !! 17 digits on entry, the shorter ones on return
       integer, intent(in) :: exponent
-      !> True if the digits were shortened without reading them back
-      logical, intent(out) :: known
+      logical, intent(out) :: known  !! True if the digits were shortened without reading them back
       integer(int64) :: short, unit
       real(wp) :: off, half_step
       integer :: places
@@ -226,10 +225,9 @@ contains
 
    !> Digits and exponent of a text written with an ES edit descriptor
    pure subroutine take_digits(scientific, digits, exponent)
-      !> The text
-      character(len=*), intent(in) :: scientific
-      integer(int64), intent(out) :: digits  !! All digits before the exponent, as an integer
-      integer, intent(out) :: exponent       !! The exponent
+      character(len=*), intent(in) :: scientific  !! The text
+      integer(int64), intent(out) :: digits       !! All digits before the exponent, as an integer
+      integer, intent(out) :: exponent            !! The exponent
       integer :: code, e, i
 
       digits = 0

@@ -18,8 +18,7 @@ module dda_watch
          import :: watch_t, wp
          class(watch_t), intent(inout) :: watch
          character(len=*), intent(in) :: task  !! Name of the task
-         !> Completed share from 0 to 1; negative if not known
-         real(wp), intent(in) :: share
+         real(wp), intent(in) :: share         !! Completed share from 0 to 1; negative if not known
       end subroutine report_task
    end interface
 end module dda_watch

@@ -124,8 +124,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
-      !> Where the origin of the blocks' coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Where the origin of the blocks' coordinates is: (2) [m]
       !> The rows, without the number of the case: (n_joint)
       type(joint_row_t) :: row(size(contacts%joint))
       type(joint_place_t) :: place
@@ -198,8 +197,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts of the rows: of the same run, or of one that stands beside it
       type(contacts_t), intent(in) :: contacts
-      !> The rows: (n_joint)
-      type(joint_row_t), intent(inout) :: row(:)
+      type(joint_row_t), intent(inout) :: row(:)  !! The rows: (n_joint)
       !> Motion of the blocks in the last step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)
       integer :: role(size(fallen%face)), j, k

@@ -34,27 +34,25 @@ module dda_case
       !> Scene of the collapse, or of the decision; before the computation that of the deck, if a
       !> check has made it
       type(scene_t) :: scene
-      !> Scene nearest to critical that stands, where it was asked for
-      type(scene_t) :: standing
-      type(march_t) :: onward  !! Where a dynamic run goes on, and where it ended
+      type(scene_t) :: standing  !! Scene nearest to critical that stands, where it was asked for
+      type(march_t) :: onward    !! Where a dynamic run goes on, and where it ended
       !> Restart file that it goes on from; empty if there is none
       character(len=:), allocatable :: restart_file
       type(error_t), allocatable :: error  !! Why the case could not be computed
       type(album_t) :: album               !! Pictures of the collapse, or of the way to rest
       !> True if the vehicle was put where the least load factor is carried
       logical :: has_worst = .false.
-      !> True if the least load factor was not found
-      logical :: misses_worst = .false.
+      logical :: misses_worst = .false.  !! True if the least load factor was not found
       !> True if it drives the other way there: the deck has its axles the other way round then
       logical :: drives_backward = .false.
       !> True if the other direction of travel has the same least factor
       logical :: either_direction = .false.
-      real(wp) :: other_place = 0.0_wp  !! Worst position in that direction [m]
+      real(wp) :: other_place = 0.0_wp            !! Worst position in that direction [m]
       character(len=:), allocatable :: jump_note  !! Jump of the factor between positions, if any
-      type(proof_t) :: proof            !! Proof of the verdict, if tables are written
-      real(wp) :: exact = 0.0_wp        !! Exact critical thickness ratio
-      logical :: exact_known = .false.  !! True if it is known
-      real(wp) :: seconds = 0.0_wp      !! Wall time of the computation [s]
+      type(proof_t) :: proof                      !! Proof of the verdict, if tables are written
+      real(wp) :: exact = 0.0_wp                  !! Exact critical thickness ratio
+      logical :: exact_known = .false.            !! True if it is known
+      real(wp) :: seconds = 0.0_wp                !! Wall time of the computation [s]
    end type case_t
 
 contains

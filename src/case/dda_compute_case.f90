@@ -33,10 +33,8 @@ module dda_compute_case
 
    !> Live loads that are quadratic in the share of the way from one place to another
    type :: load_arc_t
-      !> The two places [m]
-      real(wp) :: from = 0.0_wp, to = 0.0_wp
-      !> Blocks with a load, by their numbers in the graph: (n)
-      integer, allocatable :: block(:)
+      real(wp) :: from = 0.0_wp, to = 0.0_wp  !! The two places [m]
+      integer, allocatable :: block(:)  !! Blocks with a load, by their numbers in the graph: (n)
       !> Loads at the beginning, half way and at the end: (3, n, 3) [N/m, N/m, N]
       real(wp), allocatable :: load(:, :, :)
    end type load_arc_t

@@ -136,13 +136,11 @@ contains
    !> Forces that carry the load: of joints, at their two corners and along them on the second
    !> block; of restrained points, along x and y
    pure function proof_forces_lines(number, value, proof) result(lines)
-      !> Number of the case
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the case
       !> Value of what is searched as text; empty if nothing is
       character(len=*), intent(in) :: value
       type(proof_t), intent(in) :: proof
-      !> Rows, separated by line ends
-      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: lines  !! Rows, separated by line ends
       type(growing_text_t) :: rows
       character(len=:), allocatable :: start
       integer :: j, n
@@ -167,8 +165,7 @@ contains
 
    !> Rows of the forces of restrained points
    pure subroutine add_held(start, proof, n, rows)
-      !> First fields of a row
-      character(len=*), intent(in) :: start
+      character(len=*), intent(in) :: start  !! First fields of a row
       type(proof_t), intent(in) :: proof
       integer, intent(inout) :: n  !! Number of the last joint before them; theirs are added
       type(growing_text_t), intent(inout) :: rows

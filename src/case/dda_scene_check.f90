@@ -46,10 +46,8 @@ contains
       !> Scene of the first case, if its blocks are from a file or if it is the only one and a
       !> check needs it; without blocks otherwise
       type(scene_t), intent(out) :: scene
-      !> Fault of the scene, or a missing file
-      type(error_t), allocatable, intent(out) :: error
-      !> Progress callback
-      class(watch_t), intent(inout), optional :: watch
+      type(error_t), allocatable, intent(out) :: error  !! Fault of the scene, or a missing file
+      class(watch_t), intent(inout), optional :: watch  !! Progress callback
       !> Cases that will be computed, as choose_cases reads them: the others are not checked
       character(len=*), intent(in), optional :: cases
       logical, allocatable :: chosen(:)

@@ -55,8 +55,7 @@ contains
       real(wp), intent(in) :: from, to  !! Its ends [m]
       real(wp), intent(in) :: step      !! Distance of positions at most [m]
       type(least_factor_t), intent(inout) :: least
-      !> The paths, from left to right: (n)
-      type(trial_t), allocatable, intent(out) :: trial(:)
+      type(trial_t), allocatable, intent(out) :: trial(:)  !! The paths, from left to right: (n)
       integer :: k, n
 
       n = max(1, ceiling((to - from)/step))

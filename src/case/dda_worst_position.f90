@@ -29,8 +29,7 @@ submodule (dda_compute_case) dda_worst_position
 
    !> Data that all positions share
    type :: bridge_t
-      !> The scene without the vehicle, its live loads at a factor of one
-      type(scene_t) :: scene
+      type(scene_t) :: scene  !! The scene without the vehicle, its live loads at a factor of one
       type(vehicle_t) :: vehicle         !! The vehicle
       type(road_t) :: road               !! Road below it
       type(fill_t), allocatable :: fill  !! Fill that it stands on
@@ -295,8 +294,8 @@ contains
    !> Positions between two others at which the bridge begins to lean against other fill
    pure function turns(bridge, from, to) result(at)
       type(bridge_t), intent(in) :: bridge
-      real(wp), intent(in) :: from, to   !! The two positions, the loads smooth between them [m]
-      real(wp), allocatable :: at(:)     !! Those between, rising: (n) [m]
+      real(wp), intent(in) :: from, to  !! The two positions, the loads smooth between them [m]
+      real(wp), allocatable :: at(:)    !! Those between, rising: (n) [m]
       real(wp) :: total(2, 3)
       integer :: i
 

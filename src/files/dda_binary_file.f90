@@ -74,10 +74,9 @@ contains
 
    !> Use a file that the system has already opened
    subroutine open_descriptor(descriptor, name, file)
-      integer, intent(in) :: descriptor     !! File descriptor
-      character(len=*), intent(in) :: name  !! Name for messages
-      !> The file; not open if the descriptor is invalid
-      type(binary_file_t), intent(out) :: file
+      integer, intent(in) :: descriptor         !! File descriptor
+      character(len=*), intent(in) :: name      !! Name for messages
+      type(binary_file_t), intent(out) :: file  !! The file; not open if the descriptor is invalid
 
       file%name = name
       file%handle = c_fdopen(int(descriptor, c_int), "w"//c_null_char)

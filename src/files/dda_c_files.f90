@@ -11,12 +11,9 @@ module dda_c_files
       !> C: open a file
       function c_fopen(path, mode) bind(c, name="fopen") result(handle)
          import :: c_char, c_ptr
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> Access mode, ended by a null character
-         character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if it cannot be opened
-         type(c_ptr) :: handle
+         character(kind=c_char), intent(in) :: path(*)  !! Its name, ended by a null character
+         character(kind=c_char), intent(in) :: mode(*)  !! Access mode, ended by a null character
+         type(c_ptr) :: handle                          !! The file, null if it cannot be opened
       end function c_fopen
 
       !> C: use a file that the system has already opened
@@ -24,8 +21,7 @@ module dda_c_files
          import :: c_char, c_int, c_ptr
          integer(c_int), intent(in), value :: descriptor  !! File descriptor
          character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if the descriptor is invalid
-         type(c_ptr) :: handle
+         type(c_ptr) :: handle  !! The file, null if the descriptor is invalid
       end function c_fdopen
 
       !> C: write items
@@ -79,8 +75,7 @@ module dda_c_files
          type(c_ptr), intent(in), value :: items  !! Address that receives the items
          integer(c_size_t), intent(in), value :: size, count
          type(c_ptr), intent(in), value :: handle
-         !> Number of items read; fewer at the end of the file
-         integer(c_size_t) :: got
+         integer(c_size_t) :: got  !! Number of items read; fewer at the end of the file
       end function c_fread
 
       !> C: check access to a file
@@ -96,8 +91,7 @@ module dda_c_files
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), intent(in), value :: flags  !! Open mode
-         !> File descriptor; negative after a failure
-         integer(c_int) :: descriptor
+         integer(c_int) :: descriptor                !! File descriptor; negative after a failure
       end function c_open
 
       !> C: close a file descriptor
@@ -130,8 +124,7 @@ module dda_c_files
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(out) :: target(*)  !! Receives the target
          integer(c_size_t), intent(in), value :: size      !! Size of target
-         !> Length of the target; negative if the path is no link
-         integer(c_intptr_t) :: length
+         integer(c_intptr_t) :: length  !! Length of the target; negative if the path is no link
       end function c_readlink
    end interface
 end module dda_c_files

@@ -46,8 +46,7 @@ module dda_deck_token
       integer :: n = 0                        !! Number of tokens
       integer :: position = 1                 !! Next character to read
       integer :: line = 1                     !! Line of that character
-      !> True if a comma precedes that character without a value
-      logical :: after_comma = .false.
+      logical :: after_comma = .false.  !! True if a comma precedes that character without a value
       integer :: open_group = 0  !! Token of the open group; 0 between groups
    end type deck_scan_t
 

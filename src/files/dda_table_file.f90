@@ -58,8 +58,7 @@ contains
       character(len=*), intent(in) :: file    !! Name of the file; one that exists is replaced
       character(len=*), intent(in) :: header  !! First line
       type(table_file_t), intent(out) :: table
-      !> Allocated if the file cannot be written
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file cannot be written
 
       call open_binary(file, table%file, error)
       if (.not. allocated(error)) call append_line(table, header, error)

@@ -31,8 +31,7 @@ contains
 
    !> Read a whole text file
    subroutine read_text_file(file, text, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Name of the file
       !> Its normalised text (see plain_text); empty after a failure
       character(len=:), allocatable, intent(out) :: text
       !> Allocated if the file is missing, irregular, too large, unreadable or not text

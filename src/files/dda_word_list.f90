@@ -25,8 +25,7 @@ module dda_word_list
       integer :: next = 1                    !! Next word to take
       integer, allocatable :: start(:)       !! First character of each word: (n)
       integer, allocatable :: finish(:)      !! Last character of each word: (n)
-      !> Line of each word, and of the end of the text: (n + 1)
-      integer, allocatable :: row(:)
+      integer, allocatable :: row(:)  !! Line of each word, and of the end of the text: (n + 1)
    end type word_list_t
 
 contains

@@ -26,8 +26,8 @@ contains
    !> Words of a required attribute
    pure subroutine attribute_words(tree, at, name, words, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: at                           !! Place of the element
-      character(len=*), intent(in) :: name                !! Name of the attribute
+      integer, intent(in) :: at             !! Place of the element
+      character(len=*), intent(in) :: name  !! Name of the attribute
       type(word_list_t), intent(out) :: words
       type(error_t), allocatable, intent(inout) :: error  !! An earlier error or a missing attribute
 
@@ -43,8 +43,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       integer, intent(in) :: at
       type(word_list_t), intent(out) :: words
-      !> Separators of words besides blanks
-      character(len=*), intent(in), optional :: also_blank
+      character(len=*), intent(in), optional :: also_blank  !! Separators of words besides blanks
 
       call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
          & also_blank)
@@ -64,8 +63,8 @@ contains
    !> Read an attribute with two choices from an optional element
    pure subroutine choose(tree, outer, element, name, words_for_yes, word_for_no, yes, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: outer                        !! Place of the outer element
-      character(len=*), intent(in) :: element             !! Name of the element
+      integer, intent(in) :: outer             !! Place of the outer element
+      character(len=*), intent(in) :: element  !! Name of the element
       character(len=*), intent(in) :: name
       character(len=*), intent(in) :: words_for_yes       !! Words for yes, separated by blanks
       character(len=*), intent(in) :: word_for_no         !! The word for no

@@ -220,9 +220,8 @@ contains
    !> Read the elements of a list
    pure subroutine read_entities(tree, list, usual, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      integer, intent(in) :: list  !! Place of the list
-      !> Default material, as above
-      integer, intent(in) :: usual
+      integer, intent(in) :: list   !! Place of the list
+      integer, intent(in) :: usual  !! Default material, as above
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error

@@ -86,7 +86,7 @@ contains
       !> Name of its elements; if empty, Point for points and Line for lines
       character(len=*), intent(in) :: item
       type(entities_t), intent(in) :: entities
-      integer, intent(in) :: first  !! First of them
+      integer, intent(in) :: first            !! First of them
       integer, intent(in), optional :: until  !! Last of them; absent for the whole list
       !> Lines, each with its line end; empty for an empty list
       character(len=:), allocatable :: text
@@ -118,8 +118,7 @@ contains
       character(len=*), intent(in) :: value      !! Value of the attribute
       !> Further attributes, each preceded by a blank
       character(len=*), intent(in), optional :: more
-      !> The element with its line end
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The element with its line end
 
       text = "<"//name//" "//attribute//'="'//value//'"'
       if (present(more)) text = text//more

@@ -12,18 +12,15 @@ module dda_xml_tags
 
    !> Tags in the order of the text
    type :: xml_tags_t
-      !> Number of start tags and end tags
-      integer :: n = 0
-      !> First and last line of each tag: (2, n or more)
-      integer, allocatable :: row(:, :)
+      integer :: n = 0                   !! Number of start tags and end tags
+      integer, allocatable :: row(:, :)  !! First and last line of each tag: (2, n or more)
       !> True if a tag is both start and end of an element: (n or more)
       logical, allocatable :: is_whole(:)
    end type xml_tags_t
 
    !> State of the scan
    type :: scan_t
-      !> Name of the file, for messages
-      character(len=:), allocatable :: file
+      character(len=:), allocatable :: file  !! Name of the file, for messages
       integer :: next = 1      !! Next character of the text
       integer :: row = 1       !! Line of that character
       real :: pairs = 0.0      !! Sum over all elements of the squared number of attributes

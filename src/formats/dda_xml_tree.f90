@@ -26,8 +26,7 @@ module dda_xml_tree
       integer :: parent = 0        !! Place of the parent; 0 for the root
       integer :: last = 0          !! Place of the last descendant, or of the element itself
       logical :: is_read = .true.  !! True if the element is known at its place
-      !> Its attributes: (n)
-      type(xml_attribute_t), allocatable :: attribute(:)
+      type(xml_attribute_t), allocatable :: attribute(:)  !! Its attributes: (n)
    end type xml_element_t
 
    !> Elements in the order of their start tags; the root is the first
@@ -44,8 +43,7 @@ module dda_xml_tree
       integer :: n_tags = 0     !! Number of tags read
       integer :: open = 0       !! Place of the element that is open; 0 outside the root
       integer :: depth = 0      !! Number of open elements
-      !> Text after the last tag, and spare room after it
-      character(len=:), allocatable :: piece
+      character(len=:), allocatable :: piece  !! Text after the last tag, and spare room after it
       integer :: length = 0  !! Length of that text
    end type xml_builder_t
 
@@ -147,8 +145,8 @@ contains
 
    !> Start a tree without elements
    pure subroutine new_xml_builder(text, file, builder, error)
-      character(len=*), intent(in) :: text              !! The file's text
-      character(len=*), intent(in) :: file              !! Name of the file
+      character(len=*), intent(in) :: text  !! The file's text
+      character(len=*), intent(in) :: file  !! Name of the file
       type(xml_builder_t), intent(out) :: builder
       type(error_t), allocatable, intent(out) :: error  !! Allocated for text refused unparsed
 

@@ -15,12 +15,11 @@ module dda_box_tree
 
    !> Node i holds nodes 2 i and 2 i + 1; the leaves are the last n_leaf nodes
    type :: box_tree_t
-      integer :: n_leaf = 1               !! Number of leaves, a power of two
-      integer, allocatable :: box(:)      !! Box of each leaf, 0 for none: (n_leaf)
-      integer, allocatable :: last(:)     !! Largest box number below each node: (2*n_leaf - 1)
-      real(wp), allocatable :: low(:, :)  !! Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
-      !> Upper right corners: (2, 2*n_leaf - 1) [m]
-      real(wp), allocatable :: high(:, :)
+      integer :: n_leaf = 1                !! Number of leaves, a power of two
+      integer, allocatable :: box(:)       !! Box of each leaf, 0 for none: (n_leaf)
+      integer, allocatable :: last(:)      !! Largest box number below each node: (2*n_leaf - 1)
+      real(wp), allocatable :: low(:, :)   !! Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
+      real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, 2*n_leaf - 1) [m]
       !> Unit normal across the segments below each node, if there are slabs: (2, 2*n_leaf - 1)
       real(wp), allocatable :: normal(:, :)
       !> Bounds of these segments along the normal: (2, 2*n_leaf - 1) [m]
@@ -325,10 +324,9 @@ contains
 
    !> Assign boxes to the leaves below a node
    pure recursive subroutine fill_leaves(centre, item, node, tree)
-      !> Centres of the boxes, reordered here: (2, n) [m]
-      real(wp), intent(inout) :: centre(:, :)
-      integer, intent(inout) :: item(:)  !! Numbers of the boxes in the same order: (n)
-      integer, intent(in) :: node        !! The node; it has at least n leaves
+      real(wp), intent(inout) :: centre(:, :)  !! Centres of the boxes, reordered here: (2, n) [m]
+      integer, intent(inout) :: item(:)        !! Numbers of the boxes in the same order: (n)
+      integer, intent(in) :: node              !! The node; it has at least n leaves
       type(box_tree_t), intent(inout) :: tree
       integer :: axis, half
 
@@ -350,8 +348,8 @@ contains
    pure subroutine partition(centre, item, axis, n)
       real(wp), intent(inout) :: centre(:, :)  !! Centres of the boxes: (2, :) [m]
       integer, intent(inout) :: item(:)
-      integer, intent(in) :: axis              !! Axis of the coordinate, 1 or 2
-      integer, intent(in) :: n                 !! Number of boxes to move
+      integer, intent(in) :: axis  !! Axis of the coordinate, 1 or 2
+      integer, intent(in) :: n     !! Number of boxes to move
       real(wp) :: kept(2), middle
       integer(int64) :: lot
       integer :: first, last, i, j

@@ -162,8 +162,7 @@ contains
       real(wp), intent(in) :: vertex(:, :)  !! Corners of the polygon of the other edges: (2, n) [m]
       real(wp), intent(in) :: ends(4)       !! Ends of the edge: (4) [m]
       integer, intent(in) :: near(:)        !! Numbers of the other edges: (n_near)
-      !> The shares: (n_cut)
-      real(wp), allocatable, intent(out) :: cut(:)
+      real(wp), allocatable, intent(out) :: cut(:)  !! The shares: (n_cut)
       real(wp) :: share(size(near) + 3), other(4), b(2), c(2), area, way
       integer, allocatable :: order(:)
       integer :: i, n

@@ -145,10 +145,9 @@ contains
    !> Read the numbers after a word
    pure subroutine take_numbers(line, i, number, error)
       type(line_t), intent(in) :: line
-      integer, intent(inout) :: i           !! Index of the word; moved past the numbers
-      real(wp), intent(inout) :: number(:)  !! The numbers: (n)
-      !> Allocated if there are other words
-      type(error_t), allocatable, intent(out) :: error
+      integer, intent(inout) :: i                       !! Index of the word; moved past the numbers
+      real(wp), intent(inout) :: number(:)              !! The numbers: (n)
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if there are other words
       logical :: ok
       integer :: k
 

@@ -232,8 +232,7 @@ contains
    pure subroutine refuse_overlap(plan, block, inside, point, depth, share, error)
       type(block_plan_t), intent(in) :: plan
       integer, intent(in) :: block(2)  !! Numbers of the two blocks
-      !> The block that lies inside the other: 1, 2 or 0 for neither
-      integer, intent(in) :: inside
+      integer, intent(in) :: inside  !! The block that lies inside the other: 1, 2 or 0 for neither
       real(wp), intent(in) :: point(2)  !! A point inside both: (2) [m]
       real(wp), intent(in) :: depth     !! Depth of the overlap [m]
       real(wp), intent(in) :: share     !! Depth over the size of the smaller block

@@ -25,20 +25,16 @@ module dda_block_sites
 
    !> Positions of the blocks, and the points on them
    type :: site_t
-      !> Boxes of the blocks, with a margin for rounded coordinates
-      type(box_tree_t) :: tree
-      !> Diagonals of the blocks: (n_block) [m]
-      real(wp), allocatable :: size_of(:)
+      type(box_tree_t) :: tree  !! Boxes of the blocks, with a margin for rounded coordinates
+      real(wp), allocatable :: size_of(:)  !! Diagonals of the blocks: (n_block) [m]
       !> Index of each block's tree of edges, 0 for blocks with few edges: (n_block)
       integer, allocatable :: edges_of(:)
-      !> Trees of edges, the first one empty: (0:n)
-      type(box_tree_t), allocatable :: edges(:)
+      type(box_tree_t), allocatable :: edges(:)  !! Trees of edges, the first one empty: (0:n)
       !> Number of restrained, loaded and monitoring points
       integer :: n_held = 0, n_loaded = 0, n_measured = 0
       !> Last restrained point of each block with independent information: (n_block)
       integer, allocatable :: last_held(:)
-      !> Previous such point of the same block: (n_held or more)
-      integer, allocatable :: before(:)
+      integer, allocatable :: before(:)  !! Previous such point of the same block: (n_held or more)
    end type site_t
 
    !> Number of corners above which a block has a tree of its edges
@@ -51,8 +47,7 @@ contains
    !> displacements
    pure subroutine compare_paths(held, other, more, size_of_block, contradicts, independent)
       type(held_point_t), intent(in) :: held(:)  !! Restrained points: (n)
-      !> Independent points of the same block: (n)
-      integer, intent(in) :: other(:)
+      integer, intent(in) :: other(:)            !! Independent points of the same block: (n)
       type(held_point_t), intent(in) :: more
       real(wp), intent(in) :: size_of_block  !! Size of the block [m]
       logical, intent(out) :: contradicts    !! True if the displacements are incompatible
@@ -87,8 +82,8 @@ contains
    !> linear
    pure logical function far_from(held, other, share, more, axis, tolerance)
       type(held_point_t), intent(in) :: held(:)
-      integer, intent(in) :: other(:)    !! Numbers of the other points: (m)
-      real(wp), intent(in) :: share(:)   !! Their coefficients: (m)
+      integer, intent(in) :: other(:)   !! Numbers of the other points: (m)
+      real(wp), intent(in) :: share(:)  !! Their coefficients: (m)
       type(held_point_t), intent(in) :: more
       integer, intent(in) :: axis        !! Direction, 1 or 2 for x or y
       real(wp), intent(in) :: tolerance  !! Permitted difference [m]

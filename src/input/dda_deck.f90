@@ -36,16 +36,12 @@ module dda_deck
 
    !> One &sweep
    type :: deck_sweep_t
-      !> The swept parameter
-      type(parameter_t) :: parameter
+      type(parameter_t) :: parameter  !! The swept parameter
       !> Name of the parameter, such as friction_deg or joints_deg(2)
       character(len=word_length) :: name = ""
-      !> Place of the values
-      type(deck_place_t) :: place
-      !> True if it advances together with the previous sweep
-      logical :: linked = .false.
-      !> Numbers of the parameter; empty if it takes words: (n)
-      real(wp), allocatable :: numbers(:)
+      type(deck_place_t) :: place          !! Place of the values
+      logical :: linked = .false.          !! True if it advances together with the previous sweep
+      real(wp), allocatable :: numbers(:)  !! Numbers of the parameter; empty if it takes words: (n)
       !> Words of the parameter; empty if it takes numbers: (n)
       character(len=word_length), allocatable :: texts(:)
    end type deck_sweep_t
@@ -58,29 +54,23 @@ module dda_deck
 
    !> A deck: values of all keys in the order of the registry, and contents of its files
    type :: deck_t
-      !> Name of the file
-      character(len=:), allocatable :: file
+      character(len=:), allocatable :: file  !! Name of the file
       !> Values, indexed by dda_key_names: (0:n); 0 is a key that does not exist
       type(deck_value_t), allocatable :: value(:)
       !> Place of each group, likewise; line 0 if it is not given: (n)
       type(deck_place_t), allocatable :: group(:)
-      !> Searched parameter; key 0 if there is no search
-      type(parameter_t) :: searched
-      !> The sweeps in their order: (n)
-      type(deck_sweep_t), allocatable :: sweeps(:)
+      type(parameter_t) :: searched  !! Searched parameter; key 0 if there is no search
+      type(deck_sweep_t), allocatable :: sweeps(:)  !! The sweeps in their order: (n)
       !> Lines of the file scene%geometry for kind = 'lines', until they are cut
       type(line_model_t), allocatable :: lines
-      !> Blocks cut from them
-      type(cut_model_t), allocatable :: cut
+      type(cut_model_t), allocatable :: cut  !! Blocks cut from them
       !> Contents of the file scene%analysis; unallocated if there is none
       type(limerick_analysis_t), allocatable :: file_analysis
       !> Identifications of all files named in the deck, each preceded by a blank; unallocated
       !> without files
       character(len=:), allocatable :: file_marks
-      !> Warnings about ignored contents of these files
-      type(warnings_t) :: warnings
-      !> Blocks of the file of blocks
-      type(block_plan_t) :: plan
+      type(warnings_t) :: warnings  !! Warnings about ignored contents of these files
+      type(block_plan_t) :: plan    !! Blocks of the file of blocks
       !> Records of ground motion; unallocated if there are none: (n)
       type(ground_record_t), allocatable :: ground_record(:)
    end type deck_t
@@ -249,10 +239,8 @@ contains
    !> Set a key, or one item of its list, to a number
    pure subroutine put_number(deck, parameter, number, place, error)
       type(deck_t), intent(inout) :: deck
-      !> The key, with the item if it is a list
-      type(parameter_t), intent(in) :: parameter
-      !> The number in the unit of the registry
-      real(wp), intent(in) :: number
+      type(parameter_t), intent(in) :: parameter  !! The key, with the item if it is a list
+      real(wp), intent(in) :: number              !! The number in the unit of the registry
       type(deck_place_t), intent(in) :: place
       !> Allocated for a key without numbers, a value out of range, or a missing item
       type(error_t), allocatable, intent(out) :: error
@@ -337,8 +325,7 @@ contains
       !> Name of the key, with or without its group: friction_deg, joints_deg(2), arch%radius
       character(len=*), intent(in) :: name
       type(parameter_t), intent(out) :: parameter
-      !> The problem; empty if there is none
-      character(len=:), allocatable, intent(out) :: problem
+      character(len=:), allocatable, intent(out) :: problem  !! The problem; empty if there is none
       character(len=:), allocatable :: group, key
       logical :: ok, fits(size(deck_key))
       integer :: i

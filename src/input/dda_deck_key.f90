@@ -36,8 +36,7 @@ module dda_deck_key
       character(len=name_length) :: name = ""  !! Name of the key
       integer :: kind = key_kind%number        !! One of key_kind
       character(len=8) :: unit = ""            !! Unit of the value; empty if none
-      !> Default as written in a deck; empty if none
-      character(len=24) :: default = ""
+      character(len=24) :: default = ""  !! Default as written in a deck; empty if none
       character(len=80) :: without = ""  !! Effect of omitting a key without default
       !> Smallest and largest permitted value: (2)
       real(wp) :: within(2) = [-huge(1.0_wp), huge(1.0_wp)]

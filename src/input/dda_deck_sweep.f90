@@ -31,8 +31,7 @@ contains
    pure subroutine add_sweep(deck, place, error)
       !> The deck; the keys of &sweep are reset to their defaults
       type(deck_t), intent(inout) :: deck
-      !> Place of the group
-      type(deck_place_t), intent(in) :: place
+      type(deck_place_t), intent(in) :: place  !! Place of the group
       !> Allocated for contradicting keys, or a value that the parameter cannot have
       type(error_t), allocatable, intent(out) :: error
       type(deck_sweep_t) :: sweep

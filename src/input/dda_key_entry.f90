@@ -30,8 +30,7 @@ contains
       type(group_t), intent(in) :: groups(:)  !! Groups of the registry
       type(key_t), intent(in) :: keys(:)      !! Keys of the registry, by group
       character(len=*), intent(in) :: topic   !! Page of the help with the list of groups and keys
-      !> Groups of the text, in order
-      type(key_group_t), allocatable, intent(out) :: group(:)
+      type(key_group_t), allocatable, intent(out) :: group(:)  !! Groups of the text, in order
       type(error_t), allocatable, intent(out) :: error
       type(deck_scan_t) :: scan
       character(len=:), allocatable :: problem
@@ -139,10 +138,9 @@ contains
       integer, intent(in) :: first  !! First token of the values
       integer, intent(in) :: last   !! Last token; precedes the first if there are none
       type(key_t), intent(in) :: keys(:)
-      integer, intent(in) :: key    !! Index of the key
-      integer, intent(in) :: item   !! Item of the list, or 0 for the whole value
-      !> Place of the key
-      type(deck_place_t), intent(in) :: place
+      integer, intent(in) :: key               !! Index of the key
+      integer, intent(in) :: item              !! Item of the list, or 0 for the whole value
+      type(deck_place_t), intent(in) :: place  !! Place of the key
       !> Receives the value and its place, or the place of the problem
       type(deck_value_t), intent(inout) :: value
       !> The problem: wrong kind, number of values, or range; empty if there is none
@@ -180,9 +178,8 @@ contains
       type(key_t), intent(in) :: keys(:)
       integer, intent(in) :: key, item
       type(deck_place_t), intent(in) :: place
-      type(deck_place_t), intent(out) :: at  !! Place of the first invalid value
-      !> The problem; empty if there is none
-      character(len=:), allocatable, intent(out) :: problem
+      type(deck_place_t), intent(out) :: at                  !! Place of the first invalid value
+      character(len=:), allocatable, intent(out) :: problem  !! The problem; empty if there is none
       character(len=:), allocatable :: found
       logical :: takes_list
       integer :: n, i

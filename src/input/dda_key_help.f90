@@ -32,8 +32,7 @@ contains
 
    !> Help on a group, or on all keys of a name; empty if unknown
    pure function topic_help(name, groups, keys) result(text)
-      !> Name of a group, of a key, or of both with %
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of a group, of a key, or of both with %
       type(group_t), intent(in) :: groups(:)
       type(key_t), intent(in) :: keys(:)
       character(len=:), allocatable :: text

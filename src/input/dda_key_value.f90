@@ -14,20 +14,17 @@ module dda_key_value
    !> Place of a value
    type :: deck_place_t
       integer :: line = 0  !! Line of the deck, or number of the --set; 0 for a default
-      !> True for a --set
-      logical :: from_command = .false.
+      logical :: from_command = .false.  !! True for a --set
    end type deck_place_t
 
    !> Value of a key
    type :: deck_value_t
-      logical :: given = .false.   !! True if it is given in the deck, a --set or a sweep
-      type(deck_place_t) :: place  !! Place of the value
-      real(wp) :: number = 0.0_wp  !! Number, also for integers
-      logical :: flag = .false.    !! Flag
-      !> Text or word; unallocated for other kinds
-      character(len=:), allocatable :: text
-      !> List of numbers; unallocated for other kinds: (n)
-      real(wp), allocatable :: numbers(:)
+      logical :: given = .false.             !! True if it is given in the deck, a --set or a sweep
+      type(deck_place_t) :: place            !! Place of the value
+      real(wp) :: number = 0.0_wp            !! Number, also for integers
+      logical :: flag = .false.              !! Flag
+      character(len=:), allocatable :: text  !! Text or word; unallocated for other kinds
+      real(wp), allocatable :: numbers(:)    !! List of numbers; unallocated for other kinds: (n)
       !> List of words; unallocated for other kinds: (n)
       character(len=word_length), allocatable :: texts(:)
    end type deck_value_t
@@ -60,8 +57,8 @@ contains
    pure subroutine set_number(value, key, item, number, problem)
       type(deck_value_t), intent(inout) :: value  !! The value; unchanged if there is a problem
       type(key_t), intent(in) :: key
-      integer, intent(in) :: item                 !! Item of a list; 0 for a single number
-      real(wp), intent(in) :: number              !! The number in the unit of the registry
+      integer, intent(in) :: item     !! Item of a list; 0 for a single number
+      real(wp), intent(in) :: number  !! The number in the unit of the registry
       !> The problem and its remedy; empty if there is none
       character(len=:), allocatable, intent(out) :: problem
       integer :: n

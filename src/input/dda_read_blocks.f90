@@ -59,8 +59,7 @@ module dda_read_blocks
          !> Entries of points in the order of the file; their rows are deallocated
          type(entry_t), intent(inout) :: later(:)
          type(block_plan_t), intent(inout) :: plan
-         !> Positions of the blocks; receives the points
-         type(site_t), intent(inout) :: site
+         type(site_t), intent(inout) :: site  !! Positions of the blocks; receives the points
          !> Name of the file, for warnings and relative paths of records
          character(len=*), intent(in) :: file
          type(warnings_t), intent(inout) :: warnings
@@ -71,8 +70,8 @@ module dda_read_blocks
       !> Add the block of an entry; repeated corners are merged, a clockwise order is reversed
       pure module subroutine add_plan_block(reading, fixed, material, warnings, error)
          type(reading_t), intent(inout) :: reading
-         logical, intent(in) :: fixed                      !! True for a fixed block
-         integer, intent(in) :: material                   !! Number of the material
+         logical, intent(in) :: fixed     !! True for a fixed block
+         integer, intent(in) :: material  !! Number of the material
          type(warnings_t), intent(inout) :: warnings
          type(error_t), allocatable, intent(out) :: error  !! Allocated if the block is invalid
       end subroutine add_plan_block
@@ -219,8 +218,7 @@ contains
 
    !> Read a complete entry; points are kept until all blocks are read
    pure subroutine close_entry(reading, warnings, error)
-      !> State of reading; its entry is left without rows
-      type(reading_t), intent(inout) :: reading
+      type(reading_t), intent(inout) :: reading  !! State of reading; its entry is left without rows
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
 

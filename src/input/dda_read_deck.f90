@@ -54,8 +54,7 @@ module dda_read_deck
       !> Check a deck and all cases of its sweeps before any computation
       pure module subroutine check_deck(deck, cases, error)
          type(deck_t), intent(in) :: deck
-         !> Selected cases, as in choose_cases; empty for all
-         character(len=*), intent(in) :: cases
+         character(len=*), intent(in) :: cases  !! Selected cases, as in choose_cases; empty for all
          type(error_t), allocatable, intent(out) :: error  !! The first problem
       end subroutine check_deck
 
@@ -68,18 +67,15 @@ contains
 
    !> Read and check a deck and all cases of its sweeps
    subroutine read_deck(file, settings, deck, error, watch, cases, tight)
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> --set values, as group%key=value: (n)
-      character(len=*), intent(in) :: settings(:)
+      character(len=*), intent(in) :: file         !! Name of the file
+      character(len=*), intent(in) :: settings(:)  !! --set values, as group%key=value: (n)
       type(deck_t), intent(out) :: deck
       !> Allocated for bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
       class(watch_t), intent(inout), optional :: watch
       !> Selected cases, such as 1-500,812; only these are checked; absent or empty for all
       character(len=*), intent(in), optional :: cases
-      !> True for search bounds at the limit of round-off
-      logical, intent(in), optional :: tight
+      logical, intent(in), optional :: tight  !! True for search bounds at the limit of round-off
       character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
@@ -112,8 +108,8 @@ contains
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error, cases, tight)
-      character(len=*), intent(in) :: text             !! The text, lines ended by line feeds
-      character(len=*), intent(in) :: file             !! Name for messages
+      character(len=*), intent(in) :: text  !! The text, lines ended by line feeds
+      character(len=*), intent(in) :: file  !! Name for messages
       character(len=*), intent(in) :: settings(:)
       type(deck_t), intent(out) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -222,8 +218,7 @@ contains
    pure subroutine set_value(text, parameter, place, deck, error)
       !> The value as in a namelist; words and texts may lack quotes
       character(len=*), intent(in) :: text
-      !> The key, with its item if only one is set
-      type(parameter_t), intent(in) :: parameter
+      type(parameter_t), intent(in) :: parameter  !! The key, with its item if only one is set
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error

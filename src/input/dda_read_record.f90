@@ -29,10 +29,9 @@ contains
       character(len=*), intent(in) :: file  !! Name of the file
       !> Columns of time, x and y: numbers from 1, 0 for none, or names in the header: (3)
       character(len=*), intent(in) :: column(3)
-      real(wp), intent(in) :: scale                    !! Factor of the two components
-      real(wp), allocatable, intent(out) :: row(:, :)  !! Time and components: (3, n)
-      !> Length and checksum of the file
-      character(len=:), allocatable, intent(out) :: mark
+      real(wp), intent(in) :: scale                       !! Factor of the two components
+      real(wp), allocatable, intent(out) :: row(:, :)     !! Time and components: (3, n)
+      character(len=:), allocatable, intent(out) :: mark  !! Length and checksum of the file
       !> Allocated for bad input, with file and line; without a line if the file cannot be read
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
@@ -155,7 +154,7 @@ contains
    !> One field of a line
    pure function field_of(line, number, separator) result(text)
       character(len=*), intent(in) :: line
-      integer, intent(in) :: number      !! Number of the field, from 1
+      integer, intent(in) :: number       !! Number of the field, from 1
       character, intent(in) :: separator  !! Semicolon, comma or tab; a blank for blanks and tabs
       !> The field without surrounding blanks and double quotes; empty if there is none
       character(len=:), allocatable :: text

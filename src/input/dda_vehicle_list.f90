@@ -31,8 +31,7 @@ contains
    !> over an effective width
    subroutine read_vehicle(deck, error)
       type(deck_t), intent(inout) :: deck
-      !> Bad input, with file and line
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Bad input, with file and line
       character(len=:), allocatable :: file, message, text
 
       if (.not. has_group(deck, vehicle_group)) return
@@ -214,8 +213,8 @@ contains
    pure subroutine read_numbers(header, line, name, numbers, error)
       character(len=*), intent(in) :: header
       character(len=*), intent(in) :: line
-      character(len=*), intent(in) :: name                !! Name of the column
-      real(wp), allocatable, intent(out) :: numbers(:)    !! The numbers: (n)
+      character(len=*), intent(in) :: name              !! Name of the column
+      real(wp), allocatable, intent(out) :: numbers(:)  !! The numbers: (n)
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       integer :: i

@@ -37,10 +37,9 @@ module dda_joint_map
       type(length_t) :: trace          !! Length of a trace; unlimited joints if the mean is 0
       type(length_t) :: bridge         !! Length of rock between two traces of a joint
       integer :: material = 1          !! Number of the joint material
-      !> Seed and stream of the random numbers of the set: (2)
-      integer :: seed(2) = 0
-      logical :: anchored = .false.   !! True if one joint of the set runs through a given point
-      real(wp) :: anchor(2) = 0.0_wp  !! The given point, or the origin of the set: (2) [m]
+      integer :: seed(2) = 0           !! Seed and stream of the random numbers of the set: (2)
+      logical :: anchored = .false.    !! True if one joint of the set runs through a given point
+      real(wp) :: anchor(2) = 0.0_wp   !! The given point, or the origin of the set: (2) [m]
       !> Corners of the region of the set; without corners the whole outline: (2, n) [m]
       real(wp), allocatable :: region(:, :)
       integer :: row = 0  !! Line of the file
@@ -57,8 +56,7 @@ module dda_joint_map
 
    !> A line or a point given explicitly
    type :: map_line_t
-      !> One of entity_role
-      integer :: role = entity_role%joint
+      integer :: role = entity_role%joint  !! One of entity_role
       real(wp) :: ends(4) = 0.0_wp  !! Ends, equal for a point: (4) [m]
       integer :: material = 1       !! Number of its material, or of the bolt properties
       real(wp) :: bolt(3) = 0.0_wp  !! Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]
@@ -79,19 +77,17 @@ module dda_joint_map
 
    !> Contents of a map
    type :: joint_map_t
-      character(len=:), allocatable :: file  !! Name of the file, for messages
-      real(wp) :: edge_node_ratio = 0.0_wp   !! Shi's e00
-      !> Corners of the outline, anticlockwise: (2, n) [m]
-      real(wp), allocatable :: outline(:, :)
-      integer :: outline_material = 1    !! Number of the joint material of the outline
-      logical :: held_side(3) = .false.  !! Fixed sides: left, right, bottom (3)
+      character(len=:), allocatable :: file   !! Name of the file, for messages
+      real(wp) :: edge_node_ratio = 0.0_wp    !! Shi's e00
+      real(wp), allocatable :: outline(:, :)  !! Corners of the outline, anticlockwise: (2, n) [m]
+      integer :: outline_material = 1         !! Number of the joint material of the outline
+      logical :: held_side(3) = .false.       !! Fixed sides: left, right, bottom (3)
       !> Distance of the line with the fixed points from the side [m]
       real(wp) :: hold_depth = 0.0_wp
-      type(joint_set_t), allocatable :: set(:)  !! Sets of joints
-      !> Openings
-      type(opening_t), allocatable :: opening(:)
-      type(map_line_t), allocatable :: line(:)  !! Lines and points given explicitly
-      type(bolts_t), allocatable :: bolts(:)    !! Bolts around openings
+      type(joint_set_t), allocatable :: set(:)    !! Sets of joints
+      type(opening_t), allocatable :: opening(:)  !! Openings
+      type(map_line_t), allocatable :: line(:)    !! Lines and points given explicitly
+      type(bolts_t), allocatable :: bolts(:)      !! Bolts around openings
    end type joint_map_t
 
 contains

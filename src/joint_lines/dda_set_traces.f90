@@ -67,8 +67,7 @@ contains
       real(wp), intent(in) :: centre(2), radius
       !> Distance of the joint from the anchor, along the normal [m]
       real(wp), intent(in) :: distance
-      !> Number of the joint, negative on one side
-      integer, intent(in) :: number
+      integer, intent(in) :: number  !! Number of the joint, negative on one side
       !> Receives the traces: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
       integer, intent(inout) :: n

@@ -20,8 +20,7 @@ module dda_limerick_assembly
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
-      !> Coupled blocks of the present pattern: (2, n_pair)
-      integer, allocatable :: pair(:, :)
+      integer, allocatable :: pair(:, :)      !! Coupled blocks of the present pattern: (2, n_pair)
       type(block_matrix_t) :: matrix          !! The matrix
       type(block_factor_t) :: factor          !! Its factor
       real(wp), allocatable :: base(:, :, :)  !! Matrix of the blocks: (6, 6, n_block)
@@ -55,8 +54,7 @@ contains
    pure subroutine couple_blocks(model, blocks, contacts, equations, spring)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Contacts, sorted by pairs of blocks
-      type(contact_list_t), intent(in) :: contacts
+      type(contact_list_t), intent(in) :: contacts  !! Contacts, sorted by pairs of blocks
       type(limerick_equations_t), intent(inout) :: equations
       !> Springs of the contacts; their entries are set: (at least contacts%n)
       type(contact_spring_t), intent(inout) :: spring(:)
@@ -204,8 +202,7 @@ contains
       type(limerick_contact_t), intent(in) :: contact
       type(contact_spring_t), intent(in) :: spring  !! Springs of the contact, with its matrix entry
       real(wp), intent(in) :: stiffness             !! Stiffness [N/m2]
-      !> Force of the damper over its elongation in the step [N/m2]
-      real(wp), intent(in) :: damper
+      real(wp), intent(in) :: damper  !! Force of the damper over its elongation in the step [N/m2]
       real(wp), intent(in) :: row(:, :)  !! Length of the spring per unknown: (6, 2)
       real(wp), intent(in) :: start      !! Its length at the beginning of the step [m]
       type(limerick_equations_t), intent(inout) :: equations
@@ -244,8 +241,7 @@ contains
       type(limerick_contact_t), intent(in) :: contact
       type(contact_spring_t), intent(in) :: spring
       real(wp), intent(in) :: penalty  !! Stiffness of the contacts in the last solution [N/m2]
-      !> Right-hand side: (6, n_block)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout) :: load(:, :)  !! Right-hand side: (6, n_block)
       real(wp) :: friction
 
       if (.not. abs(contact%shear) > 0.0_wp) return

@@ -12,8 +12,7 @@ module dda_limerick_contact
 
    !> One contact
    type :: limerick_contact_t
-      !> True for two corners; otherwise a vertex and an edge
-      logical :: corner = .false.
+      logical :: corner = .false.  !! True for two corners; otherwise a vertex and an edge
       !> Number of lines: two for corners, and for two coinciding edges, where the second line is
       !> the same contact of the other block
       integer :: n_line = 1
@@ -22,22 +21,16 @@ module dda_limerick_contact
       integer :: vertex(3, 2) = 0
       !> Other end of the vertex's edge along the contact's edge; 0 if there is none
       integer :: beside = 0
-      !> Block of the first line's vertex, and block of its edge: (2)
-      integer :: block(2) = 0
-      !> One of limerick_state
-      integer :: state = limerick_state%open
-      !> State before the last solution
-      integer :: before = limerick_state%open
-      !> Opening; negative is penetration [m]
-      real(wp) :: gap = 0.0_wp
-      !> Slip along the edge since the shear spring was set [m]
-      real(wp) :: shear = 0.0_wp
+      integer :: block(2) = 0  !! Block of the first line's vertex, and block of its edge: (2)
+      integer :: state = limerick_state%open  !! One of limerick_state
+      integer :: before = limerick_state%open  !! State before the last solution
+      real(wp) :: gap = 0.0_wp  !! Opening; negative is penetration [m]
+      real(wp) :: shear = 0.0_wp  !! Slip along the edge since the shear spring was set [m]
       !> Position at which the shear spring was set: 0 at the first end of the edge, 1 at the second
       real(wp) :: place = 0.0_wp
       !> Half the length of two coinciding edges, for cohesion and tensile strength [m]
       real(wp) :: length = 0.0_wp
-      !> True if cohesion and tensile strength are intact
-      logical :: bonded = .false.
+      logical :: bonded = .false.  !! True if cohesion and tensile strength are intact
    end type limerick_contact_t
 
    !> Contacts of a step, in the first n entries
@@ -168,8 +161,7 @@ contains
    pure subroutine inherit(from, to, keeps_place)
       type(limerick_contact_t), intent(in) :: from  !! Closed contact of the previous step
       type(limerick_contact_t), intent(inout) :: to
-      !> Set if the shear spring keeps its position
-      logical, intent(inout) :: keeps_place
+      logical, intent(inout) :: keeps_place  !! Set if the shear spring keeps its position
       integer :: i, k, closed_line, state
 
       closed_line = merge(2, 1, from%state == limerick_state%second_line)

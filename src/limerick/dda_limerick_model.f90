@@ -19,8 +19,7 @@ module dda_limerick_model
    type, extends(material_t) :: limerick_material_t
       real(wp) :: unit_weight = 0.0_wp  !! Weight per volume [N/m3]
       real(wp) :: stress(3) = 0.0_wp    !! Stress at height 0: sx, sy, txy (3) [Pa]
-      !> Growth of that stress with height: (3) [Pa/m]
-      real(wp) :: stress_gradient(3) = 0.0_wp
+      real(wp) :: stress_gradient(3) = 0.0_wp  !! Growth of that stress with height: (3) [Pa/m]
       real(wp) :: velocity(3) = 0.0_wp  !! Velocities u, v and rotation: (3) [m/s, m/s, rad/s]
    end type limerick_material_t
 
@@ -28,19 +27,15 @@ module dda_limerick_model
    type :: limerick_model_t
       !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> Corners, counter-clockwise: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
+      real(wp), allocatable :: vertex(:, :)  !! Corners, counter-clockwise: (2, n_vertex) [m]
       !> Number of the law of the edge that starts at each vertex: (n_vertex)
       integer, allocatable :: edge_law(:)
-      !> Number of each block's material: (n_block)
-      integer, allocatable :: block_material(:)
-      !> Materials
-      type(limerick_material_t), allocatable :: material(:)
+      integer, allocatable :: block_material(:)  !! Number of each block's material: (n_block)
+      type(limerick_material_t), allocatable :: material(:)  !! Materials
       !> Law of a corner on an edge, by the kind of the corner's block and the number of the
       !> edge: (n_kind, n_law)
       type(joint_law_t), allocatable :: law(:, :)
-      !> Kind of each block's corners: (n_block)
-      integer, allocatable :: kind(:)
+      integer, allocatable :: kind(:)  !! Kind of each block's corners: (n_block)
       !> Direction of gravity; its length is a load factor: (2)
       real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
       !> Fixed, load and monitoring points; all three lists are allocated
@@ -48,8 +43,7 @@ module dda_limerick_model
       !> True to extrapolate loads beyond their first and last two records, as in Shi's files;
       !> otherwise they are constant there
       logical :: loads_go_on = .true.
-      !> Constants of the scheme
-      type(limerick_constants_t) :: constants
+      type(limerick_constants_t) :: constants  !! Constants of the scheme
    end type limerick_model_t
 
    !> States of a contact
@@ -68,9 +62,8 @@ module dda_limerick_model
    type :: limerick_blocks_t
       !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      integer, allocatable :: owner(:)  !! Block of each vertex: (n_vertex)
-      !> Next vertex along the block: (n_vertex)
-      integer, allocatable :: next(:)
+      integer, allocatable :: owner(:)         !! Block of each vertex: (n_vertex)
+      integer, allocatable :: next(:)          !! Next vertex along the block: (n_vertex)
       integer, allocatable :: previous(:)      !! Previous vertex: (n_vertex)
       real(wp), allocatable :: vertex(:, :)    !! Corners: (2, n_vertex) [m]
       real(wp), allocatable :: area(:)         !! Area: (n_block) [m2]

@@ -20,14 +20,10 @@ module dda_limerick_run
       integer :: verdict = 0
       !> Reason of an undecided verdict; otherwise unallocated
       character(len=:), allocatable :: reason
-      !> True if blocks still moved at the step limit
-      logical :: still_moving = .false.
-      !> Largest displacement of a vertex [m]
-      real(wp) :: displacement = 0.0_wp
-      !> Accepted steps
-      integer :: steps = 0
-      !> Open-close iterations, one factorisation each
-      integer :: passes = 0
+      logical :: still_moving = .false.  !! True if blocks still moved at the step limit
+      real(wp) :: displacement = 0.0_wp  !! Largest displacement of a vertex [m]
+      integer :: steps = 0               !! Accepted steps
+      integer :: passes = 0              !! Open-close iterations, one factorisation each
       !> Step and time after each step, from step 0 on, in the first steps + 1
       !> columns: (2, :) [-, s]
       real(wp), allocatable :: when(:, :)
@@ -97,10 +93,8 @@ contains
    pure subroutine next_step(model, run, outcome, ended)
       type(limerick_model_t), intent(in) :: model
       type(limerick_run_t), intent(inout) :: run
-      !> The outcome; complete at the end
-      type(limerick_outcome_t), intent(inout) :: outcome
-      !> True at the end: by a verdict, an error or the step limit
-      logical, intent(out) :: ended
+      type(limerick_outcome_t), intent(inout) :: outcome  !! The outcome; complete at the end
+      logical, intent(out) :: ended  !! True at the end: by a verdict, an error or the step limit
       type(error_t), allocatable :: error
       real(wp) :: end
       logical :: rests

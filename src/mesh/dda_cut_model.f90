@@ -23,8 +23,7 @@ module dda_cut_model
       real(wp) :: origin(2) = 0.0_wp
       !> Size w0 of the model: 1.02 times the larger of height/2 and width/2.6 [m]
       real(wp) :: size = 0.0_wp
-      !> Distance within which points coincide [m]
-      real(wp) :: reach = 0.0_wp
+      real(wp) :: reach = 0.0_wp  !! Distance within which points coincide [m]
       !> Distance within which a crossing is merged with an existing node [m]
       real(wp) :: merge = 0.0_wp
       !> Distance within which an edge is too close to a node of other lines [m]
@@ -37,10 +36,9 @@ module dda_cut_model
       integer :: loose_line = 2  !! The line meets fewer than two others
       integer :: loose_edge = 3  !! The part has a free end
       integer :: doubled = 4     !! The part coincides with a part of another line
-      !> The part crosses another line without a common node
-      integer :: crossing = 5
-      integer :: too_close = 6  !! The part is too close to a node of other lines
-      integer :: flat = 7       !! The lines enclose a block of zero area
+      integer :: crossing = 5    !! The part crosses another line without a common node
+      integer :: too_close = 6   !! The part is too close to a node of other lines
+      integer :: flat = 7        !! The lines enclose a block of zero area
    end type cut_reason_enum
 
    !> Names of the reasons
@@ -73,8 +71,7 @@ module dda_cut_model
    type :: edge_pair_t
       !> Block and edge on the left of the line as drawn, block and edge on its right: (4)
       integer :: side(4) = 0
-      !> Material of the joint
-      integer :: joint = 0
+      integer :: joint = 0  !! Material of the joint
       !> Ends of the common part, along the first block's edge: (4) [m]
       real(wp) :: place(4) = 0.0_wp
    end type edge_pair_t
@@ -106,8 +103,7 @@ module dda_cut_model
       type(cut_bolt_t), allocatable :: bolt(:)   !! Bolts: (n_bolt)
       type(edge_pair_t), allocatable :: pair(:)  !! Coincident edges: (n_pair)
       type(cut_remarks_t) :: remarks             !! Dropped parts
-      !> Number of crossings merged with an existing node at another place
-      integer :: n_merged = 0
+      integer :: n_merged = 0  !! Number of crossings merged with an existing node at another place
       integer :: n_idle_bolts = 0  !! Bolts omitted because both ends are in one block
       integer :: n_removed = 0     !! Blocks removed because of hole points
    end type cut_model_t
@@ -116,9 +112,8 @@ module dda_cut_model
    type :: corners_t
       integer :: n = 0                      !! Number of corners
       real(wp), allocatable :: point(:, :)  !! Coordinates: (2, n or more) [m]
-      !> First vertex of the edge of each corner: (n or more)
-      integer, allocatable :: edge(:)
-      real(wp), allocatable :: along(:)  !! Distance from that vertex: (n or more) [m]
+      integer, allocatable :: edge(:)       !! First vertex of the edge of each corner: (n or more)
+      real(wp), allocatable :: along(:)     !! Distance from that vertex: (n or more) [m]
    end type corners_t
 
 contains

@@ -28,8 +28,7 @@ module dda_cutting
    type :: loops_t
       !> First item of each loop, and one past the last: (n_loop + 1)
       integer, allocatable :: first(:)
-      !> Half-edges, loop by loop
-      integer, allocatable :: half_edge(:)
+      integer, allocatable :: half_edge(:)  !! Half-edges, loop by loop
       !> Area of each loop, negative for outer loops: (n_loop) [m2]
       real(wp), allocatable :: area(:)
    end type loops_t

@@ -22,8 +22,7 @@ module dda_line_network
    type :: crossings_t
       integer :: n = 0                    !! Number of crossings
       integer, allocatable :: line(:, :)  !! The two lines, the smaller number first: (2, n or more)
-      !> The points: (2, n or more) [m]
-      real(wp), allocatable :: point(:, :)
+      real(wp), allocatable :: point(:, :)  !! The points: (2, n or more) [m]
    end type crossings_t
 
    !> Nodes, and edges between neighbouring nodes of a line
@@ -34,8 +33,7 @@ module dda_line_network
       integer, allocatable :: line(:)   !! Line of each edge: (n_edge)
       logical, allocatable :: alive(:)  !! Edges that were not dropped: (n_edge)
       integer :: n_boundary = 0         !! Number of boundary lines, the first ones
-      !> Number of crossings merged with an existing node at another place
-      integer :: n_merged = 0
+      integer :: n_merged = 0  !! Number of crossings merged with an existing node at another place
    end type network_t
 
    !> Nodes, and for each square a linked list of the nodes in it
@@ -51,8 +49,8 @@ contains
 
    !> Find all crossings, ordered by the first line, then by the second
    pure subroutine find_crossings(line, reach, crossings, error)
-      real(wp), intent(in) :: line(:, :)                !! Ends of the lines: (4, n) [m]
-      real(wp), intent(in) :: reach                     !! Distance within which points coincide [m]
+      real(wp), intent(in) :: line(:, :)  !! Ends of the lines: (4, n) [m]
+      real(wp), intent(in) :: reach       !! Distance within which points coincide [m]
       type(crossings_t), intent(out) :: crossings
       type(error_t), allocatable, intent(out) :: error  !! Allocated if there are too many
       type(box_tree_t) :: tree

@@ -42,27 +42,20 @@ module dda_block_input
       real(wp) :: origin(2) = 0.0_wp
       !> Gap within which blocks touch, over the size of the smaller one
       real(wp) :: tolerance = contact_tolerance
-      !> Blocks that cannot move: (n_block)
-      logical, allocatable :: fixed(:)
-      !> Number of each block's material: (n_block)
-      integer, allocatable :: material(:)
-      !> Blocks with an initial velocity or stress: (n_start)
-      integer, allocatable :: starts(:)
+      logical, allocatable :: fixed(:)     !! Blocks that cannot move: (n_block)
+      integer, allocatable :: material(:)  !! Number of each block's material: (n_block)
+      integer, allocatable :: starts(:)    !! Blocks with an initial velocity or stress: (n_start)
       !> Velocity of the centre, spin, and stress sx, sy, txy of each of them: (6, n_start)
       !> [m/s, m/s, rad/s, Pa, Pa, Pa]
       real(wp), allocatable :: start(:, :)
-      !> Line of the file where each block begins: (n_block)
-      integer, allocatable :: line(:)
+      integer, allocatable :: line(:)  !! Line of the file where each block begins: (n_block)
       !> Materials in addition to that of the deck
       type(material_plan_t), allocatable :: materials(:)
-      !> Joint laws in addition to that of the deck
-      type(law_plan_t), allocatable :: laws(:)
-      !> Water
-      type(water_t), allocatable :: water(:)
+      type(law_plan_t), allocatable :: laws(:)  !! Joint laws in addition to that of the deck
+      type(water_t), allocatable :: water(:)    !! Water
       !> Actions on points; coordinates relative to the origin of the plan
       type(boundary_t) :: boundary
-      !> Line of the file with the ground motion, 0 if there is none
-      integer :: ground_line = 0
+      integer :: ground_line = 0  !! Line of the file with the ground motion, 0 if there is none
       !> Identifications of the records named in the file, each preceded by a blank; unallocated
       !> without records
       character(len=:), allocatable :: record_marks

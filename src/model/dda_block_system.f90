@@ -20,29 +20,22 @@ module dda_block_system
       integer, allocatable :: first_vertex(:)
       !> Corners in the reference shape, counter-clockwise: (2, n_vertex) [m]
       real(wp), allocatable :: vertex(:, :)
-      !> Area: (n_block) [m2]
-      real(wp), allocatable :: area(:)
+      real(wp), allocatable :: area(:)  !! Area: (n_block) [m2]
       !> Centre of gravity of the reference shape: (2, n_block) [m]
       real(wp), allocatable :: centroid(:, :)
       !> Central second moments Sxx, Syy, Sxy: (3, n_block) [m4]
       real(wp), allocatable :: second(:, :)
-      !> Mass per volume: (n_block) [kg/m3]
-      real(wp), allocatable :: density(:)
-      !> Weight per volume: (n_block) [N/m3]
-      real(wp), allocatable :: unit_weight(:)
-      !> Number of the block's material: (n_block)
-      integer, allocatable :: material(:)
-      !> Materials
-      type(material_t), allocatable :: materials(:)
+      real(wp), allocatable :: density(:)            !! Mass per volume: (n_block) [kg/m3]
+      real(wp), allocatable :: unit_weight(:)        !! Weight per volume: (n_block) [N/m3]
+      integer, allocatable :: material(:)            !! Number of the block's material: (n_block)
+      type(material_t), allocatable :: materials(:)  !! Materials
       !> Number of the block in the equations; 0 for a block that cannot move: (n_block)
       integer, allocatable :: equation(:)
-      !> Blocks that are always fixed: (n_block)
-      logical, allocatable :: fixed(:)
+      logical, allocatable :: fixed(:)  !! Blocks that are always fixed: (n_block)
       !> Blocks that are not yet built or have been removed; unallocated if there are
       !> none: (n_block)
       logical, allocatable :: absent(:)
-      !> Present corners: (2, n_vertex) [m]
-      real(wp), allocatable :: moved(:, :)
+      real(wp), allocatable :: moved(:, :)  !! Present corners: (2, n_vertex) [m]
       !> Total motion; in current geometry, strains refer to the frame that rotates with the
       !> block: (n_unknown, n_block) [m, m, rad, -, -, -]
       real(wp), allocatable :: motion(:, :)
@@ -53,8 +46,7 @@ module dda_block_system
       !> Mean acceleration in the last dynamic step, 0 if it ended at an impact or a reversal:
       !> (3, n_block) [m/s2, m/s2, rad/s2]
       real(wp), allocatable :: acceleration(:, :)
-      !> Stress sx, sy, txy: (3, n_block) [Pa]
-      real(wp), allocatable :: stress(:, :)
+      real(wp), allocatable :: stress(:, :)  !! Stress sx, sy, txy: (3, n_block) [Pa]
       !> Stress at zero strain, in the frame that rotates with the block: (3, n_block) [Pa]
       real(wp), allocatable :: initial_stress(:, :)
       !> States of the bars; unallocated without bars: (n_bar)

@@ -39,23 +39,18 @@ module dda_chain
       !> True if this plane divides a block. Its left half is then the last block and cannot
       !> separate from the plane
       logical :: keystone = .false.
-      !> Its blocks: (n)
-      type(chain_block_t), allocatable :: block(:)
-      !> Its joints: (n + 1)
-      type(chain_joint_t), allocatable :: joint(:)
-      !> Sum of the absolute components of the loads [N/m]
-      real(wp) :: whole_load = 0.0_wp
-      !> Largest coordinate of the middle of a joint [m]
-      real(wp) :: reach = 0.0_wp
+      type(chain_block_t), allocatable :: block(:)  !! Its blocks: (n)
+      type(chain_joint_t), allocatable :: joint(:)  !! Its joints: (n + 1)
+      real(wp) :: whole_load = 0.0_wp  !! Sum of the absolute components of the loads [N/m]
+      real(wp) :: reach = 0.0_wp  !! Largest coordinate of the middle of a joint [m]
    end type chain_t
 
 contains
 
    !> Prepare a chain of n blocks without values
    pure subroutine new_chain(n, chain)
-      integer, intent(in) :: n  !! Number of blocks
-      !> Arrays of the same size are reused
-      type(chain_t), intent(inout) :: chain
+      integer, intent(in) :: n               !! Number of blocks
+      type(chain_t), intent(inout) :: chain  !! Arrays of the same size are reused
 
       chain%halved = .false.
       chain%keystone = .false.

@@ -29,8 +29,7 @@ contains
       real(wp), intent(in) :: centre(2)  !! Present centre of gravity: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy in the block's own frame: (6)
       real(wp), intent(in) :: motion(6)
-      !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
-      real(wp) :: t(2, 6)
+      real(wp) :: t(2, 6)  !! Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
       real(wp) :: arm(2), strain(3), unstrained(2, 6)
 
       t = displacement_matrix(place, centre)
@@ -53,8 +52,7 @@ contains
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity in the reference shape: (2) [m]
       !> Translation, rotation, strain ex, ey, gxy: (6) [m, m, rad, -, -, -]
       real(wp), intent(in) :: motion(6)
-      !> Present coordinates of the point: (2) [m]
-      real(wp) :: now(2)
+      real(wp) :: now(2)  !! Present coordinates of the point: (2) [m]
       real(wp) :: arm(2), c, s
 
       arm = point - centroid
@@ -71,8 +69,7 @@ contains
       real(wp), intent(in) :: angle      !! Angle of the new frame, anticlockwise [rad]
       !> Ratio of the third component to that of the tensor: 1 for stress, 2 for strain with gxy
       real(wp), intent(in) :: shear_factor
-      !> Components in the new frame: (3)
-      real(wp) :: turned(3)
+      real(wp) :: turned(3)  !! Components in the new frame: (3)
       real(wp) :: c, s, shear
 
       c = cos(angle)

@@ -34,19 +34,15 @@ module dda_joint_graph
 
    !> Joints of an assembly
    type :: joint_graph_t
-      !> Number of movable blocks
-      integer :: n_block = 0
+      integer :: n_block = 0  !! Number of movable blocks
       !> The two blocks of each joint, 0 for a fixed one: (2, n_joint)
       integer, allocatable :: block(:, :)
       !> Opening at corner 1, at corner 2, and slip by unit motion of each block:
       !> (3, 3, 2, n_joint) [1, 1, m]
       real(wp), allocatable :: row(:, :, :, :)
-      !> Kind of each joint, one of joint_kind: (n_joint)
-      integer, allocatable :: kind(:)
-      !> Coefficient of friction; 0 if none: (n_joint)
-      real(wp), allocatable :: friction(:)
-      !> Length of the joint: (n_joint) [m]
-      real(wp), allocatable :: length(:)
+      integer, allocatable :: kind(:)       !! Kind of each joint, one of joint_kind: (n_joint)
+      real(wp), allocatable :: friction(:)  !! Coefficient of friction; 0 if none: (n_joint)
+      real(wp), allocatable :: length(:)    !! Length of the joint: (n_joint) [m]
       !> Compressive strength times length; huge for a joint that cannot crush; unallocated if there
       !> are no others: (n_joint) [N/m]
       real(wp), allocatable :: crush(:)

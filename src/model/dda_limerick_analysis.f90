@@ -39,22 +39,18 @@ module dda_limerick_analysis
       real(wp) :: open_ratio = 2.0e-7_wp
       !> Target penetration of the automatic penalty over the half size (g3)
       real(wp) :: penetration_ratio = 4.0e-4_wp
-      !> Overlap of two corners that is neglected (h1) [deg]
-      real(wp) :: overlap_deg = 3.0_wp
-      !> Normal over shear stiffness of a contact (h2)
-      real(wp) :: stiffness_ratio = 2.5_wp
+      real(wp) :: overlap_deg = 3.0_wp      !! Overlap of two corners that is neglected (h1) [deg]
+      real(wp) :: stiffness_ratio = 2.5_wp  !! Normal over shear stiffness of a contact (h2)
       !> Initial contact stiffness over the largest Young's modulus
       real(wp) :: penalty_factor = 50.0_wp
       !> True if the contact stiffness is adapted to the penetration
       logical :: auto_penalty = .true.
-      !> True if the time step is adapted to the motion
-      logical :: auto_time_step = .true.
+      logical :: auto_time_step = .true.  !! True if the time step is adapted to the motion
       !> Length of fixed steps; a hundredth of it is the shortest adapted step [s]
       real(wp) :: time_step = 0.01_wp
       !> Largest motion of a vertex in a step over the half size (g2)
       real(wp) :: max_displacement_ratio = 1.0e-3_wp
-      !> Maximum number of steps
-      integer :: max_steps = 20000
+      integer :: max_steps = 20000  !! Maximum number of steps
       !> True to keep velocities from step to step; otherwise each step starts at rest
       logical :: dynamic = .false.
       !> True to rotate vertices by sine and cosine; otherwise along the tangent, which enlarges
@@ -78,8 +74,7 @@ module dda_limerick_analysis
       integer :: open_close_limit = 8        !! Maximum number of open-close iterations per step
       integer :: save_interval = 1           !! Number of steps per saved step
       real(wp) :: gravity = 9.81_wp          !! Acceleration of gravity
-      !> Materials of blocks: (n)
-      type(analysis_material_t), allocatable :: material(:)
+      type(analysis_material_t), allocatable :: material(:)  !! Materials of blocks: (n)
       type(limerick_joint_t), allocatable :: joint(:)  !! Materials of joints: (n)
       !> Forces on the load points, in the order of the points: (n)
       type(load_history_t), allocatable :: load(:)

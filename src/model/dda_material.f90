@@ -12,12 +12,11 @@ module dda_material
 
    !> Material properties of a block
    type :: material_t
-      real(wp) :: density = 2240.0_wp  !! Mass per volume [kg/m3]
-      real(wp) :: young = 5.0e9_wp     !! Young's modulus [Pa]
-      real(wp) :: poisson = 0.2_wp     !! Poisson's ratio
-      !> Compressive strength; huge if unlimited [Pa]
-      real(wp) :: strength = huge(1.0_wp)
-      logical :: plane_strain = .false.  !! True for plane strain, otherwise plane stress
+      real(wp) :: density = 2240.0_wp      !! Mass per volume [kg/m3]
+      real(wp) :: young = 5.0e9_wp         !! Young's modulus [Pa]
+      real(wp) :: poisson = 0.2_wp         !! Poisson's ratio
+      real(wp) :: strength = huge(1.0_wp)  !! Compressive strength; huge if unlimited [Pa]
+      logical :: plane_strain = .false.    !! True for plane strain, otherwise plane stress
    end type material_t
 
    !> Mohr-Coulomb law of a joint: -N <= tension*length, |T| <= cohesion*length + friction*N

@@ -42,32 +42,24 @@ module dda_settings
       logical :: dynamic = .false.
       !> True for current geometry: contacts follow the blocks; otherwise reference geometry
       logical :: current = .false.
-      !> Unknowns of a block: 6, or 3 for rigid blocks
-      integer :: n_dof = 6
-      !> Flow rule of the run, one of flow_rule
-      integer :: flow = 1
-      !> Flow rule of the verdict, one of flow_rule
-      integer :: verdict_flow = 2
+      integer :: n_dof = 6         !! Unknowns of a block: 6, or 3 for rigid blocks
+      integer :: flow = 1          !! Flow rule of the run, one of flow_rule
+      integer :: verdict_flow = 2  !! Flow rule of the verdict, one of flow_rule
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp) :: penalty_ratio = 100.0_wp
-      !> Maximum number of steps
-      integer :: max_steps = 400
+      integer :: max_steps = 400  !! Maximum number of steps
       !> Maximum number of state changes in one step before Newton's method is used
       integer :: max_changes = 400
       !> Length of the first static step or of every dynamic step; 0 for automatic [s]
       real(wp) :: time_step = 0.0_wp
       !> Speed after an impact over speed before it, in dynamic runs
       real(wp) :: restitution = 0.0_wp
-      !> Decay rate of velocities by mass-proportional damping [1/s]
-      real(wp) :: damping = 0.0_wp
-      !> True if a dynamic run starts from the forces of a static one
-      logical :: settles = .false.
+      real(wp) :: damping = 0.0_wp  !! Decay rate of velocities by mass-proportional damping [1/s]
+      logical :: settles = .false.  !! True if a dynamic run starts from the forces of a static one
       !> Time at the end of a dynamic run; 0 to end after max_steps [s]
       real(wp) :: duration = 0.0_wp
-      !> Time of the histories at the start of this stage [s]
-      real(wp) :: from = 0.0_wp
-      !> Time at the end of this stage [s]
-      real(wp) :: until = huge(1.0_wp)
+      real(wp) :: from = 0.0_wp         !! Time of the histories at the start of this stage [s]
+      real(wp) :: until = huge(1.0_wp)  !! Time at the end of this stage [s]
       !> Largest motion of a corner in a step over the size of the smallest block
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Displacement of a corner that means collapse; 0 for a test without a length [m]
@@ -76,16 +68,12 @@ module dda_settings
       real(wp) :: collapse_rotation = 0.0_wp
       !> Monitoring point of the collapse displacement in a dynamic run; 0 for any corner
       integer :: collapse_point = 0
-      !> Angle of gravity from the vertical, to the right [rad]
-      real(wp) :: tilt = 0.0_wp
+      real(wp) :: tilt = 0.0_wp  !! Angle of gravity from the vertical, to the right [rad]
       !> Horizontal force over the weight, to the right; if live, at a load factor of one
       real(wp) :: push = 0.0_wp
-      !> True if it is multiplied by the load factor
-      logical :: live_push = .false.
-      !> Factor of live loads
-      real(wp) :: load_factor = 1.0_wp
-      !> Actions on points and ground motion
-      type(boundary_t) :: boundary
+      logical :: live_push = .false.    !! True if it is multiplied by the load factor
+      real(wp) :: load_factor = 1.0_wp  !! Factor of live loads
+      type(boundary_t) :: boundary      !! Actions on points and ground motion
       !> Remaining acceleration over that of the loads below which a structure is at rest
       real(wp) :: rest_tolerance = 1.0e-11_wp
       !> True to compute the condition number of the last equations

@@ -36,9 +36,8 @@ contains
       real(wp), intent(in) :: time                    !! Time [s]
       !> First corner of each block, and one past the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
-      real(wp), intent(in) :: point(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
-      !> Absent blocks, without rows: (n_block)
-      logical, intent(in), optional :: absent(:)
+      real(wp), intent(in) :: point(:, :)         !! Corners of all blocks: (2, n_vertex) [m]
+      logical, intent(in), optional :: absent(:)  !! Absent blocks, without rows: (n_block)
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
       type(growing_text_t) :: rows

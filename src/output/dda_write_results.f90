@@ -45,19 +45,19 @@ module dda_write_results
       integer :: number = 0                  !! Number of the case, from 1
       !> Values of the swept parameters without their own column: (n)
       character(len=:), allocatable :: swept
-      integer :: blocks = 0                           !! Movable blocks
-      type(number_t) :: half_angle_deg                !! Angle from the crown to a springing [deg]
-      type(number_t) :: thickness_ratio               !! Thickness over radius
-      type(number_t) :: friction_deg                  !! Friction angle [deg]
+      integer :: blocks = 0              !! Movable blocks
+      type(number_t) :: half_angle_deg   !! Angle from the crown to a springing [deg]
+      type(number_t) :: thickness_ratio  !! Thickness over radius
+      type(number_t) :: friction_deg     !! Friction angle [deg]
       character(len=64) :: mode = ""                  !! static or dynamic
       character(len=64) :: geometry = ""              !! reference or current
       character(len=10) :: verdict = ""               !! Verdict in one word
-      type(number_t) :: critical                      !! Critical value: middle of the bracket
-      type(number_t) :: critical_low                  !! Lower end of the bracket
-      type(number_t) :: critical_high                 !! Upper end of the bracket
+      type(number_t) :: critical       !! Critical value: middle of the bracket
+      type(number_t) :: critical_low   !! Lower end of the bracket
+      type(number_t) :: critical_high  !! Upper end of the bracket
       character(len=4) :: collapses_at = ""           !! Collapsed end of the bracket: low or high
-      type(number_t) :: exact                         !! The exact value
-      type(number_t) :: relative_error                !! (critical - exact)/exact
+      type(number_t) :: exact           !! The exact value
+      type(number_t) :: relative_error  !! (critical - exact)/exact
       character(len=10) :: collapse_mode = ""         !! rotational, mixed, sliding or none
       type(number_t) :: sliding_share                 !! Slip over slip and opening
       real(wp), allocatable :: intrados_hinge_deg(:)  !! Hinges at the intrados [deg]: (n)
@@ -65,8 +65,7 @@ module dda_write_results
       !> intrados, extrados or none; blank for other structures
       character(len=8) :: springing_hinge = ""
       integer :: steps = 0  !! Time steps
-      !> Open-close iterations
-      integer :: open_close_iterations = 0
+      integer :: open_close_iterations = 0  !! Open-close iterations
       integer :: factorisations = 0  !! Factorisations
       real(wp) :: seconds = 0.0_wp   !! Wall time of the case [s]
       integer :: unknowns = 0        !! Unknowns of a block in the decisions
@@ -78,13 +77,11 @@ module dda_write_results
       type(number_t) :: law_violation
       !> Power of the loads on the mechanism of the certificate, over its upper limit
       type(number_t) :: mechanism_power
-      !> Thickness of a stable arch over its critical thickness
-      type(number_t) :: safety_thickness
+      type(number_t) :: safety_thickness  !! Thickness of a stable arch over its critical thickness
       !> Smallest and largest thrust of a joint of a stable structure [N/m]
       type(number_t) :: thrust_min, thrust_max
-      !> Time reached on the histories of a static run [s]
-      type(number_t) :: path_time
-      type(number_t) :: worst_position      !! Worst position of the leftmost axle of a vehicle [m]
+      type(number_t) :: path_time       !! Time reached on the histories of a static run [s]
+      type(number_t) :: worst_position  !! Worst position of the leftmost axle of a vehicle [m]
       character(len=8) :: worst_direction = ""  !! forward, backward; blank without a worst position
       !> Largest opening or slip rate that violates the contact law in a dynamic run [m/s]
       type(number_t) :: contact_residual

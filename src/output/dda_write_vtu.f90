@@ -142,10 +142,9 @@ contains
       real(wp), intent(in) :: point(:, :)
       !> First corner of each polygon, and one past the last: (n_polygon + 1)
       integer, intent(in) :: first_vertex(:)
-      type(field_t), intent(in) :: point_fields(:)  !! Fields with a value at each corner: (:)
-      type(field_t), intent(in) :: cell_fields(:)   !! Fields with a value for each polygon: (:)
-      !> Allocated if the file cannot be written
-      type(error_t), allocatable, intent(out) :: error
+      type(field_t), intent(in) :: point_fields(:)      !! Fields with a value at each corner: (:)
+      type(field_t), intent(in) :: cell_fields(:)       !! Fields with a value for each polygon: (:)
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the file cannot be written
 
       call write_grid(file, cell_type%polygon, point, first_vertex(2:) - 1, point_fields, &
          & cell_fields, error)
@@ -265,7 +264,7 @@ contains
    !> Row of a block
    pure function block_line(cut, block, held) result(line)
       type(cut_model_t), intent(in) :: cut
-      integer, intent(in) :: block  !! Number of the block
+      integer, intent(in) :: block                   !! Number of the block
       integer, intent(in) :: held(entity_role%fix:)  !! Its fixed, load and monitoring points: (3)
       character(len=:), allocatable :: line
       character(len=:), allocatable :: x, y, joint

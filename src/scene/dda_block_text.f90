@@ -42,8 +42,7 @@ contains
    pure function line_text(deck) result(text)
       !> The deck of the case, with its blocks; its joints have one law
       type(deck_t), intent(in) :: deck
-      !> Lines, each ended by a line feed
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! Lines, each ended by a line feed
       type(block_system_t) :: system
       type(growing_text_t) :: lines
       type(scene_t) :: scene

@@ -37,8 +37,7 @@ module dda_deck_scene
    !> Scenes of one deck as a function of the searched parameter
    type, extends(family_t) :: deck_family_t
       type(deck_t), allocatable :: deck  !! The deck of one case
-      !> The searched parameter
-      type(parameter_t) :: parameter
+      type(parameter_t) :: parameter     !! The searched parameter
    contains
       !> Make the scene of a value
       procedure :: build => build_deck_scene
@@ -167,8 +166,7 @@ contains
    !> Make the scene of a shaped arch
    pure subroutine shape_scene(deck, scene)
       type(deck_t), intent(in) :: deck
-      !> The scene; without blocks if the arch does not exist
-      type(scene_t), intent(out) :: scene
+      type(scene_t), intent(out) :: scene  !! The scene; without blocks if the arch does not exist
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
       type(fill_t) :: fill

@@ -235,8 +235,7 @@ contains
       type(fill_t), intent(in) :: fill
       type(bounded_force_t), intent(in) :: force(:)  !! Largest forces of the fill: (n)
       real(wp), intent(in) :: height(:)              !! Heights of the chords: (n) [m]
-      !> The scene; the bars are appended
-      type(scene_t), intent(inout) :: scene
+      type(scene_t), intent(inout) :: scene          !! The scene; the bars are appended
       type(bar_t), allocatable :: bar(:)
       type(bar_state_t), allocatable :: state(:)
       real(wp) :: away
@@ -266,8 +265,7 @@ contains
    !> resultant is on its left; 0 at a crown
    pure integer function live_side(fill, origin, loaded, more) result(side)
       type(fill_t), intent(in) :: fill
-      !> Origin of the coordinates of the points: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Origin of the coordinates of the points: (2) [m]
       type(loaded_point_t), intent(in) :: loaded(:)          !! Live and other loads: (n)
       type(loaded_point_t), intent(in), optional :: more(:)  !! Further loads: (m)
       real(wp) :: total(2), x

@@ -127,8 +127,7 @@ contains
    !> Set the constants of the scheme that the deck gives
    pure subroutine set_constants(deck, constants)
       type(deck_t), intent(in) :: deck
-      !> The constants; others are unchanged
-      type(limerick_constants_t), intent(inout) :: constants
+      type(limerick_constants_t), intent(inout) :: constants  !! The constants; others are unchanged
 
       call take(deck%value(limerick_close_ratio), constants%close_ratio)
       call take(deck%value(limerick_open_ratio), constants%open_ratio)
@@ -211,8 +210,7 @@ contains
    !> monitoring points, from which the state of joints is computed
    pure subroutine add_corners(deck, scene, boundary)
       type(deck_t), intent(in) :: deck
-      !> The scene; edges that coincide in part are split there
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(in) :: scene  !! The scene; edges that coincide in part are split there
       type(boundary_t), intent(out) :: boundary
       type(measured_point_t), allocatable :: measured(:)
       integer :: b, n, v
@@ -271,9 +269,8 @@ contains
    !> Points of the plan, and fixed points of its fixed blocks
    pure subroutine take_points(plan, load_factor, boundary)
       type(block_plan_t), intent(in) :: plan
-      real(wp), intent(in) :: load_factor  !! Factor of live loads
-      !> The points of the scene; points may be added
-      type(boundary_t), intent(inout) :: boundary
+      real(wp), intent(in) :: load_factor          !! Factor of live loads
+      type(boundary_t), intent(inout) :: boundary  !! The points of the scene; points may be added
       type(held_point_t), allocatable :: held(:)
       integer :: b, i, n, v
 

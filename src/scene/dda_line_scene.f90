@@ -34,8 +34,7 @@ contains
    !> Cut the lines of a deck into blocks, once, with their points; a deck without lines is
    !> unchanged
    pure subroutine cut_lines(deck, error)
-      !> The deck; the lines are replaced by blocks and points
-      type(deck_t), intent(inout) :: deck
+      type(deck_t), intent(inout) :: deck  !! The deck; the lines are replaced by blocks and points
       type(error_t), allocatable, intent(out) :: error  !! Allocated if the lines cannot be cut
 
       if (.not. allocated(deck%lines)) return

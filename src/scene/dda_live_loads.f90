@@ -28,8 +28,7 @@ contains
    pure subroutine add_live_loads(deck, scene, fill)
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(inout) :: scene  !! The scene; forces outside all blocks are omitted
-      !> Fill that spreads the axle loads
-      type(fill_t), intent(in), optional :: fill
+      type(fill_t), intent(in), optional :: fill  !! Fill that spreads the axle loads
       type(loaded_point_t), allocatable :: live(:)
 
       if (has_group(deck, live_group)) then
@@ -70,8 +69,7 @@ contains
    !> Points and forces of &live
    pure subroutine live_lists(deck, origin, point, force)
       type(deck_t), intent(in) :: deck
-      !> Origin of the blocks' coordinates: (2) [m]
-      real(wp), intent(in) :: origin(2)
+      real(wp), intent(in) :: origin(2)  !! Origin of the blocks' coordinates: (2) [m]
       real(wp), allocatable, intent(out) :: point(:, :)  !! Points from the origin: (2, n) [m]
       real(wp), allocatable, intent(out) :: force(:, :)  !! The forces: (2, n) [N/m]
       integer :: n

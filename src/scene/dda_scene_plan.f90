@@ -28,11 +28,9 @@ module dda_scene_plan
       !> Joint strength: the distribution of forces determines which joint breaks first
       integer :: strength = 4
       integer :: displacement = 5  !! Displacement that means collapse: strain contributes to it
-      !> Output of joint forces without a search: strain distributes them
-      integer :: forces = 6
+      integer :: forces = 6  !! Output of joint forces without a search: strain distributes them
       integer :: original = 7  !! Shi's scheme, which has strain
-      !> Blocks from files, with their own joint laws and stresses
-      integer :: files = 8
+      integer :: files = 8  !! Blocks from files, with their own joint laws and stresses
    end type strain_reason_enum
 
    !> Names of the reasons
@@ -42,20 +40,16 @@ module dda_scene_plan
    type :: scene_plan_t
       !> Unknowns of a block in the decisions: 6, or 3 without strain
       integer :: unknowns = n_unknown
-      !> Reason, one of strain_reason
-      integer :: reason = 0
-      !> True if velocities are kept from step to step
-      logical :: velocities = .false.
-      !> True in current geometry
-      logical :: moving = .false.
+      integer :: reason = 0            !! Reason, one of strain_reason
+      logical :: velocities = .false.  !! True if velocities are kept from step to step
+      logical :: moving = .false.      !! True in current geometry
       !> True if joints have cohesion, tensile strength or residual friction
       logical :: strength = .false.
       !> True for a row of blocks in reference geometry, each with two neighbours only
       logical :: row = .false.
       !> True for a chain: a row of rigid blocks, stored in arrays without pattern and search
       logical :: chain = .false.
-      !> True if the left half of a symmetric row suffices
-      logical :: halved = .false.
+      logical :: halved = .false.  !! True if the left half of a symmetric row suffices
    end type scene_plan_t
 
 contains

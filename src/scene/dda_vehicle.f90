@@ -162,8 +162,7 @@ contains
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)  !! Origin of the coordinates of the blocks: (2) [m]
-      !> The loads: (n)
-      type(loaded_point_t), allocatable :: loaded(:)
+      type(loaded_point_t), allocatable :: loaded(:)  !! The loads: (n)
       real(wp), allocatable :: cut(:), force(:), point(:, :)
       integer, allocatable :: block(:)
       real(wp) :: half, middle, top, width, x

@@ -93,8 +93,7 @@ contains
    pure subroutine find_collapse(family, search, start, limit, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      !> Where to begin
-      real(wp), intent(in) :: start
+      real(wp), intent(in) :: start  !! Where to begin
       !> The end of the range on the side that stands [unit of the parameter]
       real(wp), intent(out) :: limit
       !> Receives the first collapse, or a verdict where both ends agree

@@ -41,8 +41,7 @@ contains
    pure subroutine decide(scene, decision, album, onward, verdict_only, stands)
       type(scene_t), intent(in) :: scene  !! The scene at its beginning
       type(decision_t), intent(out) :: decision
-      !> Receives pictures of the run that decides
-      type(album_t), intent(inout), optional :: album
+      type(album_t), intent(inout), optional :: album  !! Receives pictures of the run that decides
       !> Where a dynamic run goes on and where it ended
       type(march_t), intent(inout), optional :: onward
       !> True if forces and motions of what stands are not asked for
@@ -264,8 +263,7 @@ contains
    pure subroutine record_rest(scene, proof, decision)
       type(scene_t), intent(in) :: scene
       type(graph_verdict_t), intent(in) :: proof
-      !> Receives them; what its outcome counts is kept
-      type(decision_t), intent(inout) :: decision
+      type(decision_t), intent(inout) :: decision  !! Receives them; what its outcome counts is kept
 
       decision%outcome%verdict = verdict%stable
       decision%flow = proof%flow

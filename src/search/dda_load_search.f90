@@ -21,13 +21,12 @@ submodule (dda_critical) dda_load_search
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
       real(wp) :: half = 0.0_wp  !! Its error
-      type(limit_t) :: limit  !! The associated limit, with the sign of the side
+      type(limit_t) :: limit     !! The associated limit, with the sign of the side
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
       logical :: stands_upright = .true.  !! True if the path leads further than its dead loads
       logical :: falls_dead = .false.     !! True if no forces balance the dead loads
-      !> Coefficient of a live load that is none beside the dead loads
-      real(wp) :: least = 0.0_wp
+      real(wp) :: least = 0.0_wp  !! Coefficient of a live load that is none beside the dead loads
       type(graph_verdict_t) :: proof      !! Collapse, or equilibrium at the end of the range
    end type side_t
 

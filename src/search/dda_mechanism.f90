@@ -37,8 +37,7 @@ module dda_mechanism
       real(wp) :: sliding_share = 0.0_wp
       !> Hinges at the intrados, as angles from the crown, each once: (n) [deg]
       real(wp), allocatable :: intrados_deg(:)
-      !> Hinges at the extrados, likewise: (n) [deg]
-      real(wp), allocatable :: extrados_deg(:)
+      real(wp), allocatable :: extrados_deg(:)  !! Hinges at the extrados, likewise: (n) [deg]
       !> intrados, extrados or none: where the springings turn; blank where there is no arch
       character(len=8) :: springing = ""
    end type mechanism_t
@@ -79,8 +78,7 @@ contains
 
    !> The mechanism of the last step of a collapse
    pure subroutine mechanism_of(contacts, joint_angle_deg, mechanism, motion)
-      !> Contacts at the end of the collapse
-      type(contacts_t), intent(in) :: contacts
+      type(contacts_t), intent(in) :: contacts  !! Contacts at the end of the collapse
       !> Angle of each joint from the crown, or none where there is no arch: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
       type(mechanism_t), intent(out) :: mechanism
@@ -117,12 +115,9 @@ contains
    !> Role of every joint in the last step; openings small beside the largest motion are elastic. A
    !> joint turns about a corner that is closed, also if it slides there
    pure function role_of_joint(contacts, largest) result(role)
-      !> Contacts at the end of a step
-      type(contacts_t), intent(in) :: contacts
-      !> Largest displacement in the step, of `largest_of` [m]
-      real(wp), intent(in) :: largest
-      !> One of mechanism_role each: (n_joint)
-      integer :: role(size(contacts%face))
+      type(contacts_t), intent(in) :: contacts  !! Contacts at the end of a step
+      real(wp), intent(in) :: largest  !! Largest displacement in the step, of `largest_of` [m]
+      integer :: role(size(contacts%face))  !! One of mechanism_role each: (n_joint)
       real(wp) :: least
       logical :: opens(2)
       integer :: j

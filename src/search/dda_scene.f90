@@ -42,19 +42,17 @@ module dda_scene
 
    !> The chain of a family that was made last
    type :: link_t
-      logical :: known = .false.    !! True if there is one
-      real(wp) :: value = 0.0_wp    !! Its value of the parameter
-      type(chain_t) :: chain        !! The chain
+      logical :: known = .false.  !! True if there is one
+      real(wp) :: value = 0.0_wp  !! Its value of the parameter
+      type(chain_t) :: chain      !! The chain
    end type link_t
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
-      !> True if they are chains apart from strain
-      logical :: chains = .false.
+      logical :: chains = .false.  !! True if they are chains apart from strain
       type(arch_numbers_t) :: numbers  !! Then: what the arches are made from
       type(settings_t) :: chain_settings  !! Settings of their runs
-      !> Rays, which do not depend on the thickness; made once per search
-      type(arch_rays_t) :: rays
+      type(arch_rays_t) :: rays  !! Rays, which do not depend on the thickness; made once per search
       !> True if its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them
       logical :: decides_chains = .false.

@@ -52,16 +52,15 @@ module dda_search
       real(wp) :: undecided_at = 0.0_wp  !! The last undecided value
       real(wp) :: falls = 0.0_wp         !! Value nearest to critical at which the structure falls
       real(wp) :: stands = 0.0_wp        !! Value nearest to critical at which it stands
-      !> Half the width that rounding and tolerance leave to the bracket
-      real(wp) :: half = 0.0_wp
+      real(wp) :: half = 0.0_wp  !! Half the width that rounding and tolerance leave to the bracket
       real(wp) :: stop = 0.0_wp   !! Where the last collapse stops, if it does
       logical :: stops = .false.  !! True if that is known
       !> Decision at falls, if there is one; without its blocks and springs
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
-      type(link_t) :: link  !! The last chain
-      type(deficit_t) :: deficit  !! Its deficit, from which the next one starts
+      type(link_t) :: link            !! The last chain
+      type(deficit_t) :: deficit      !! Its deficit, from which the next one starts
       real(wp) :: other = 0.0_wp      !! Value at which it falls in the other direction
       logical :: has_other = .false.  !! True if it does so within the range
       integer :: others = 0           !! Values of a dynamic search beside its bracket
@@ -73,11 +72,11 @@ module dda_search
       real(wp) :: largest_jump = 0.0_wp    !! The largest of them [m]
       !> Where the path to the right jumps in its last leg, over the way to its end: (n)
       real(wp), allocatable :: jump(:)
-      logical :: current = .false.         !! True if the blocks move
-      integer :: decisions = 0             !! Number of decisions
-      integer :: steps = 0                 !! Steps of all decisions
-      integer :: passes = 0                !! Passes of the open-close loop of all decisions
-      integer :: factorisations = 0        !! Factorisations of all decisions and proposals
+      logical :: current = .false.   !! True if the blocks move
+      integer :: decisions = 0       !! Number of decisions
+      integer :: steps = 0           !! Steps of all decisions
+      integer :: passes = 0          !! Passes of the open-close loop of all decisions
+      integer :: factorisations = 0  !! Factorisations of all decisions and proposals
    end type critical_t
 
    !> A decided structure
@@ -100,14 +99,12 @@ module dda_search
       !> N1, N2, T of each joint, then the forces of restrained points; unallocated without: (3, n)
       !> [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Value of what is searched at which they carry the load
-      real(wp) :: force_at = 0.0_wp
+      real(wp) :: force_at = 0.0_wp  !! Value of what is searched at which they carry the load
       !> Velocities of the blocks' centres and spins; unallocated without: (3, n_block)
       real(wp), allocatable :: velocity(:, :)
       !> Value of what is searched at which the loads begin to drive them
       real(wp) :: motion_at = 0.0_wp
-      !> True if the blocks have the same shape there
-      logical :: same_shape = .true.
+      logical :: same_shape = .true.  !! True if the blocks have the same shape there
       !> Scene of the forces, and of the velocities where only loads are searched
       type(scene_t) :: scene
       !> Largest force or moment left on a block, over the largest load
@@ -119,12 +116,9 @@ module dda_search
       real(wp) :: power = 0.0_wp
       !> Associated limit of the load factor of a single decision, from below and from above
       real(wp) :: limit(2) = 0.0_wp
-      !> True if there is one
-      logical :: has_limit = .false.
-      !> Least and greatest thrust of a joint: (2) [N/m]
-      real(wp) :: thrust(2) = 0.0_wp
-      !> True for those that exist
-      logical :: has_thrust(2) = .false.
+      logical :: has_limit = .false.      !! True if there is one
+      real(wp) :: thrust(2) = 0.0_wp      !! Least and greatest thrust of a joint: (2) [N/m]
+      logical :: has_thrust(2) = .false.  !! True for those that exist
    end type proof_t
 
 contains

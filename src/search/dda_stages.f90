@@ -38,9 +38,8 @@ contains
       !> The decision of the last stage; its counts are those of all
       type(decision_t), intent(out) :: decision
       type(album_t), intent(inout) :: album
-      !> Where a dynamic run goes on and where it ended
-      type(march_t), intent(inout) :: onward
-      real(wp), intent(out) :: last  !! Time at which the last stage began [s]
+      type(march_t), intent(inout) :: onward  !! Where a dynamic run goes on and where it ended
+      real(wp), intent(out) :: last           !! Time at which the last stage began [s]
       real(wp), allocatable :: time(:)
 
       last = 0.0_wp
@@ -191,12 +190,10 @@ contains
    !> True for joints that have slid against friction since a state
    pure function has_slid(after, n, before) result(slid)
       type(coulomb_state_t), intent(in) :: after
-      !> Number of joints that are asked for, the first ones
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of joints that are asked for, the first ones
       !> The state before; not allocated in the first stage
       type(coulomb_state_t), allocatable, intent(in) :: before
-      !> True if they have: (n)
-      logical :: slid(n)
+      logical :: slid(n)  !! True if they have: (n)
       real(wp) :: slip(n)
 
       slip = after%slip(:n)

@@ -24,16 +24,12 @@ module dda_bar_springs
       integer, allocatable :: entry(:)
       !> Elongation and rotation by the unknowns of both blocks: (n_dof, 2, 2, n)
       real(wp), allocatable :: row(:, :, :, :)
-      !> Stiffness along and across: (2, n) [N/m]
-      real(wp), allocatable :: stiffness(:, :)
+      real(wp), allocatable :: stiffness(:, :)  !! Stiffness along and across: (2, n) [N/m]
       !> Force at the beginning of the step without bounds: (n) [N]
       real(wp), allocatable :: trial(:)
-      !> Force at the beginning: (n) [N]
-      real(wp), allocatable :: force(:)
-      !> Smallest and largest force: (2, n) [N]
-      real(wp), allocatable :: bound(:, :)
-      !> One of bar_condition: (n)
-      integer, allocatable :: condition(:)
+      real(wp), allocatable :: force(:)     !! Force at the beginning: (n) [N]
+      real(wp), allocatable :: bound(:, :)  !! Smallest and largest force: (2, n) [N]
+      integer, allocatable :: condition(:)  !! One of bar_condition: (n)
       !> Weight of the force at the end of the step: 1/2 in dynamic runs, else 1
       real(wp) :: share = 1.0_wp
    end type bar_springs_t
@@ -155,10 +151,8 @@ contains
       type(bar_springs_t), intent(in) :: bars
       !> Blocks of each entry of the matrix, in the order of its rows and columns: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      !> False to set the couplings to zero
-      logical, intent(in) :: are_stiff
-      !> Couplings: (n_dof, n_dof, n_entry)
-      real(wp), intent(inout) :: coupling(:, :, :)
+      logical, intent(in) :: are_stiff              !! False to set the couplings to zero
+      real(wp), intent(inout) :: coupling(:, :, :)  !! Couplings: (n_dof, n_dof, n_entry)
       real(wp) :: stiffness(2)
       integer :: c, e, first, i, k
 

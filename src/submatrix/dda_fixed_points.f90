@@ -32,11 +32,10 @@ module dda_fixed_points
       integer, allocatable :: equation(:)  !! Equation of its block: (n)
       !> Displacement of the point along the axis by the block's unknowns: (n_dof, n)
       real(wp), allocatable :: row(:, :)
-      !> Stiffness: (n) [N/m per metre depth]
-      real(wp), allocatable :: stiffness(:)
-      real(wp), allocatable :: target(:)  !! Target displacement in the step: (n) [m]
-      real(wp), allocatable :: rate(:)    !! Target velocity at the end of the step: (n) [m/s]
-      real(wp), allocatable :: force(:)   !! Force of the spring: (n) [N/m]
+      real(wp), allocatable :: stiffness(:)  !! Stiffness: (n) [N/m per metre depth]
+      real(wp), allocatable :: target(:)     !! Target displacement in the step: (n) [m]
+      real(wp), allocatable :: rate(:)       !! Target velocity at the end of the step: (n) [m/s]
+      real(wp), allocatable :: force(:)      !! Force of the spring: (n) [N/m]
    end type fixed_points_t
 
 contains
@@ -123,8 +122,8 @@ contains
    pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
       type(block_system_t), intent(in) :: system  !! The blocks before the step
       type(settings_t), intent(in) :: settings
-      integer, intent(in) :: i                    !! Number of the spring
-      real(wp), intent(in) :: motion(:)           !! Motion of its block in the step: (n_dof)
+      integer, intent(in) :: i           !! Number of the spring
+      real(wp), intent(in) :: motion(:)  !! Motion of its block in the step: (n_dof)
       !> The springs; row and force of this one are changed
       type(fixed_points_t), intent(inout) :: fixed
       real(wp), intent(inout) :: load(:)  !! Load of its block: (n_dof)

@@ -22,8 +22,7 @@ contains
       real(wp), intent(in) :: density    !! Mass per volume [kg/m3]
       real(wp), intent(in) :: area       !! Area of the block [m2]
       real(wp), intent(in) :: second(3)  !! Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
-      !> Symmetric matrix of the unknowns u0, v0, r0, ex, ey, gxy: (6, 6)
-      real(wp) :: mass(6, 6)
+      real(wp) :: mass(6, 6)  !! Symmetric matrix of the unknowns u0, v0, r0, ex, ey, gxy: (6, 6)
 
       mass = 0.0_wp
       associate (sxx => second(1), syy => second(2), sxy => second(3))
@@ -75,8 +74,7 @@ contains
       real(wp), intent(in) :: centroid(2)  !! Centre of gravity of the block: (2) [m]
       !> Motion of the block to this point and centre; absent for none: (6)
       real(wp), intent(in), optional :: motion(6)
-      !> Generalised load: (6)
-      real(wp) :: load(6)
+      real(wp) :: load(6)  !! Generalised load: (6)
       real(wp) :: t(2, 6)
 
       t = displacement_matrix(point, centroid)

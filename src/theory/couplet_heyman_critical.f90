@@ -80,9 +80,9 @@ contains
    elemental subroutine near_limit_solution(distance, which, beta, eta, h)
       real(wp), intent(in) :: distance  !! alpha_limit - alpha [rad]
       integer, intent(in) :: which
-      real(wp), intent(out) :: beta     !! Inner hinge [rad]
-      real(wp), intent(out) :: eta      !! Thickness ratio [-]
-      real(wp), intent(out) :: h        !! Thrust [w r]
+      real(wp), intent(out) :: beta  !! Inner hinge [rad]
+      real(wp), intent(out) :: eta   !! Thickness ratio [-]
+      real(wp), intent(out) :: h     !! Thrust [w r]
       type(limits_t) :: limits
       real(wp) :: excess, c, eta_rate
 
@@ -159,10 +159,8 @@ contains
       real(wp), intent(in) :: deficit  !! 2 - A
       real(wp), intent(in) :: excess   !! A - A_limit
       integer, intent(in) :: which     !! One of `theory`, but not Heyman
-      !> Inner hinge [rad]
-      real(wp) :: beta
-      !> w0^2 of CCR and Milankovitch
-      real(wp), parameter :: bend(2) = [0.0075248_wp, 0.0024009_wp]
+      real(wp) :: beta  !! Inner hinge [rad]
+      real(wp), parameter :: bend(2) = [0.0075248_wp, 0.0024009_wp]  !! w0^2 of CCR and Milankovitch
       !> Coefficients of 1 to w^4
       real(wp), parameter :: fit(5, 2) = reshape([ &
          3.86421_wp, -4.71057_wp, 7.06753_wp, -6.76118_wp, 3.00812_wp, &

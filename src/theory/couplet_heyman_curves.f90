@@ -20,10 +20,9 @@ contains
 
    !> A(beta) - A(alpha), exact to the last digits for any two angles
    elemental real(wp) function embrace_difference(beta, alpha, alpha_tail) result(difference)
-      real(wp), intent(in) :: beta   !! One angle, (0, pi) [rad]
-      real(wp), intent(in) :: alpha  !! The other, (0, pi) [rad]
-      !> True half angle minus alpha; 0 if alpha is exact [rad]
-      real(wp), intent(in) :: alpha_tail
+      real(wp), intent(in) :: beta        !! One angle, (0, pi) [rad]
+      real(wp), intent(in) :: alpha       !! The other, (0, pi) [rad]
+      real(wp), intent(in) :: alpha_tail  !! True half angle minus alpha; 0 if alpha is exact [rad]
       real(wp) :: s, d
 
       if (4.0_wp*beta < alpha) then

@@ -71,8 +71,7 @@ contains
       integer, intent(in) :: facets(:)
       !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
       real(wp), intent(in) :: friction
-      !> True if the two springing joints cannot slide
-      logical, intent(in) :: springing_no_slip
+      logical, intent(in) :: springing_no_slip  !! True if the two springing joints cannot slide
       type(discrete_solution_t), intent(out) :: solution
       type(ring_t) :: ring
 
@@ -95,8 +94,7 @@ contains
                                            solution)
       !> Number of voussoirs of the whole arch, 1 or more; an odd number has no joint at the crown
       integer, intent(in) :: voussoirs
-      !> Half angle of embrace, in (0, pi) [rad]
-      real(wp), intent(in) :: half_angle
+      real(wp), intent(in) :: half_angle  !! Half angle of embrace, in (0, pi) [rad]
       real(wp), intent(in) :: friction
       logical, intent(in) :: springing_no_slip
       !> Critical state; joints are counted as in equal_voussoir_joints
@@ -145,8 +143,8 @@ contains
 
    !> True if the arguments describe an arch: finite, in range, increasing, and of matching sizes
    pure logical function makes_sense(joint_angle, facets, friction)
-      real(wp), intent(in) :: joint_angle(:)     !! Joints of one half: (:) [rad]
-      integer, intent(in) :: facets(:)           !! Chords of each voussoir: (:)
+      real(wp), intent(in) :: joint_angle(:)  !! Joints of one half: (:) [rad]
+      integer, intent(in) :: facets(:)        !! Chords of each voussoir: (:)
       real(wp), intent(in) :: friction
       real(wp), parameter :: pi = acos(-1.0_wp)  !! 180 degrees [rad]
       integer :: n

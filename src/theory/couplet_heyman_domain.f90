@@ -15,10 +15,9 @@ contains
 
    !> Record the first invalid element, unless a fault is recorded already
    pure subroutine set_fault(argument, valid, fault)
-      integer, intent(in) :: argument  !! Place of the argument in the call, from 1
-      logical, intent(in) :: valid(:)  !! True for valid elements: (:)
-      !> Argument and element, 0 and 0 if there is no fault: (2)
-      integer, intent(inout) :: fault(2)
+      integer, intent(in) :: argument     !! Place of the argument in the call, from 1
+      logical, intent(in) :: valid(:)     !! True for valid elements: (:)
+      integer, intent(inout) :: fault(2)  !! Argument and element, 0 and 0 if there is no fault: (2)
 
       if (fault(1) > 0 .or. all(valid)) return
       fault(1) = argument

@@ -40,8 +40,7 @@ module couplet_heyman_equations
 
    !> Limit of a theory, and its largest inner hinge
    type :: limits_t
-      !> Largest half angle of embrace; the thrust vanishes there [rad]
-      real(wp) :: alpha_limit
+      real(wp) :: alpha_limit  !! Largest half angle of embrace; the thrust vanishes there [rad]
       real(wp) :: alpha_limit_tail  !! True angle minus alpha_limit [rad]
       real(wp) :: embrace_limit     !! A there, eq. (9)
       real(wp) :: eta_limit         !! Thickness ratio there

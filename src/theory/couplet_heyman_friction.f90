@@ -31,8 +31,7 @@ module couplet_heyman_friction
       real(wp) :: mu_rotational  !! Above this the arch collapses by rotation alone
       real(wp) :: mu_mixed       !! Below this no thickness admits equilibrium
       real(wp) :: h_mixed        !! Thrust at mu_mixed [w r]
-      !> Joint of the haunch that slides at mu_mixed, from the crown [rad]
-      real(wp) :: beta_slip
+      real(wp) :: beta_slip  !! Joint of the haunch that slides at mu_mixed, from the crown [rad]
       real(wp) :: beta_mixed, eta_mixed  !! Inner hinge there [rad], and thickness ratio
       !> True if at mu_rotational the springing slides first, not the haunch
       logical :: springing_slides

@@ -119,8 +119,7 @@ contains
    elemental function printed_hinge(alpha, a, which) result(beta)
       real(wp), intent(in) :: alpha, a
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp) :: beta
+      real(wp) :: beta  !! Inner hinge [rad]
       !> The only root below 90 degrees [rad]
       real(wp), parameter :: farthest = 0.5_wp*acos(-1.0_wp)
       real(wp) :: low, high, value

@@ -106,8 +106,7 @@ contains
       real(wp), intent(in) :: friction          !! Friction angle; from pi/2 on no slip [rad]
       logical, intent(in) :: springing_no_slip  !! True if the last joint cannot slide
       type(ring_t), intent(inout) :: ring       !! The ring; its limits of the deficit are set
-      !> 90 degrees [rad]
-      real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
+      real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)  !! 90 degrees [rad]
       integer :: j, last
 
       if (friction >= quarter) return
@@ -128,8 +127,7 @@ contains
       real(wp), intent(in) :: excess  !! x - W
       integer, intent(in) :: side     !! +1 or -1: the sense of the inequality
       integer, intent(in) :: joint    !! Index of the joint
-      !> The ring; its limits of the deficit are narrowed
-      type(ring_t), intent(inout) :: ring
+      type(ring_t), intent(inout) :: ring  !! The ring; its limits of the deficit are narrowed
       real(wp) :: bound
       logical :: caps_deficit
 
@@ -274,8 +272,7 @@ contains
       type(pinch_t), intent(inout) :: pinch  !! The active joints; its deficit is updated
       real(wp), intent(out) :: eta           !! Thickness ratio at which the gaps vanish [-]
       logical, intent(out) :: solved         !! True if the iteration has converged
-      !> Quadratic convergence takes 3 to 8
-      integer, parameter :: most_steps = 60
+      integer, parameter :: most_steps = 60  !! Quadratic convergence takes 3 to 8
       !> Relative step after which the next one is round-off
       real(wp), parameter :: last_but_one = 1.0e-8_wp
       real(wp) :: eta_step, deficit_step
