@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import pytest
@@ -35,11 +34,6 @@ def test_check_says_the_points(tmp_path: Path) -> None:
     assert "2 fixed or prescribed, 1 loaded, 1 monitoring" in done.stdout
 
 
-def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
-    deck = write(tmp_path, BLOCK, "&analysis mode = 'dynamic' /")
-    assert "x.blocks:1: warning: nothing is fixed" in run_dda("check", deck).stderr
-
-
 def test_warnings_name_file_and_line(tmp_path: Path) -> None:
     twice = BLOCK.replace("1 2\n", "1 2\n1 2\n")
     deck = write(tmp_path, BASE + twice + twice.replace("2\n", "4\n").replace(" 0\n", " 2\n"))
@@ -49,19 +43,6 @@ def test_warnings_name_file_and_line(tmp_path: Path) -> None:
         # the same words for another line are counted, not repeated
         (line,) = done.stderr.splitlines()
         assert line.endswith("x.blocks:6: warning: corners given twice are merged (and 1 more like it)")
-
-
-@pytest.mark.parametrize("share, verdict", [(0.99, "stable"), (1.01, "collapsed")])
-def test_a_load_on_a_joint_acts_on_the_block_that_is_named(tmp_path: Path, share: float, verdict: str) -> None:
-    """A block of weight 2 w slides under a force of 2 w tan(friction) at its foot; its base does not."""
-    force = share * 2.0 * 25000.0 * math.tan(math.radians(20.0))
-    groups = "&material unit_weight = 25000.0 /\n&joint friction_deg = 20 /"
-    on_block = write(tmp_path, BASE + BLOCK + f"load block 2 0 0 {force!r} 0\n", groups)
-    done = run_dda("run", on_block, "--out", tmp_path / "out")
-    assert done.stderr == "" and rows_of(tmp_path / "out/results.csv")[0]["verdict"] == verdict
-    on_base = write(tmp_path, BASE + BLOCK + f"load block 1 0 0\n0 {force!r} 0\n", groups)
-    done = run_dda("run", on_base, "--out", tmp_path / "out")
-    assert done.stderr == "" and rows_of(tmp_path / "out/results.csv")[0]["verdict"] == "stable"
 
 
 @pytest.mark.parametrize(
@@ -100,29 +81,10 @@ def test_doubtful_blocks_are_warned_of_with_file_and_line(tmp_path: Path, blocks
     ), done.stderr
 
 
-def test_a_missing_file_is_bad_input(tmp_path: Path) -> None:
-    deck = tmp_path / "y.nml"
-    deck.write_text("&scene kind = 'blocks', geometry = 'none.blocks' /\n")
-    done = run_dda("check", deck)
-    assert done.returncode == 2
-    assert "none.blocks" in done.stderr and "no such file" in done.stderr
-
-
 def test_blocks_that_are_all_fixed_stand_where_they_are(tmp_path: Path) -> None:
     done = run_dda("run", write(tmp_path, BASE), "--out", tmp_path / "out", "--quiet")
     assert done.returncode == 0
     assert rows_of(tmp_path / "out" / "results.csv")[0]["verdict"] == "stable"
-
-
-def test_measured_point_sinks_by_the_strain_of_its_block(tmp_path: Path) -> None:
-    """w H^2/2E and the give of the two corner springs, W/2p with p = 100 E t/l."""
-    groups = "&material unit_weight = 25000.0, poisson = 0.0 /\n&analysis geometry = 'current' /"
-    deck = write(tmp_path, BASE + BLOCK + "measure 0.5 2\n", groups)
-    assert run_dda("run", deck, "--out", tmp_path / "out", "--quiet").returncode == 0
-    last = rows_of(tmp_path / "out" / "points.csv")[-1]
-    sinks = 25000.0 * 2.0**2 / (2.0 * 5e9) + 50000.0 / (2.0 * 100.0 * 5e9 * 0.5)
-    assert float(last["v"]) == pytest.approx(-sinks, rel=1e-5)
-    assert float(last["u"]) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_pictures_show_joints_that_come_and_go(tmp_path: Path) -> None:
@@ -153,13 +115,6 @@ def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(tmp_path: Pat
         assert done.returncode == 0, done.stderr
     assert (tmp_path / "whole/case_1.restart").read_bytes() == (tmp_path / "rest/case_1.restart").read_bytes()
     assert rows_of(tmp_path / "whole/points.csv")[30:] == rows_of(tmp_path / "rest/points.csv")
-
-
-def test_a_restart_file_that_is_not_there_is_bad_input(tmp_path: Path) -> None:
-    groups = "&analysis mode = 'dynamic',\n restart = 'none.restart' /"
-    done = run_dda("run", write(tmp_path, BASE + BLOCK, groups), cwd=tmp_path)
-    assert done.returncode == 2
-    assert "x.nml:3: error: there is no restart file 'none.restart'" in done.stderr
 
 
 def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda
+from dda_command import rows_of
 from test_live_loads import SEARCH, rows
 
 ASSOCIATED = "&analysis flow = 'associated' /\n"
@@ -29,15 +29,6 @@ def limit(tmp_path: Path, live: str, strength: float, own: str = "") -> tuple[fl
     (row,) = rows(tmp_path, deck, BLOCK + f"live {live}\n")
     assert row["verdict"] == "found"
     return float(row["exact_low"]), float(row["exact_high"])
-
-
-@pytest.mark.parametrize("strength", [2.01, 2.5, 3.0, 3.9999, 4.0, 4.0001, 5.0, 20.0, 1e3, 1e6])
-def test_a_block_turns_over_about_the_strip_that_bears_it(tmp_path: Path, strength: float) -> None:
-    """Pushed half way up: the moment is the weight times half of what is left of the width."""
-    low, high = limit(tmp_path, "0 1.5 1 0", strength, "own")
-    exact = 2.0 * (1.0 - 2.0 / strength) / 2.0 / 1.5
-    assert low <= exact * (1 + 1e-12) and exact * (1 - 1e-12) <= high
-    assert high - low <= 1e-10 * exact + 1e-11
 
 
 @pytest.mark.parametrize("flow", ["associated", "coulomb"])
@@ -67,17 +58,6 @@ def test_a_corner_of_a_pier_bears_nothing_where_joints_crush(tmp_path: Path) -> 
     assert all(float(joint["normal_force"]) == float(joint["force_y"]) == 0.0 for joint in corners)
 
 
-@pytest.mark.parametrize("place", [0.5, 0.6, 0.7, 0.9])
-@pytest.mark.parametrize("strength", [3.0, 5.0, 50.0])
-def test_a_column_bears_up_to_its_strength(tmp_path: Path, place: float, strength: float) -> None:
-    """N (1 - N/S)/2 = P e with N = 2 + P."""
-    low, high = limit(tmp_path, f"{place!r} 2 0 -1", strength, "own")
-    slope = 4.0 / strength - 1.0 + 2.0 * (place - 0.5)
-    most = (-slope + math.sqrt(slope**2 + 4.0 / strength * (2.0 - 4.0 / strength))) / (2.0 / strength)
-    assert low <= most * (1 + 1e-12) and most * (1 - 1e-12) <= high
-    assert high - low <= 1e-10 * most
-
-
 @pytest.mark.parametrize("place", [0.5, 0.6, 0.9])
 @pytest.mark.parametrize("strength", [1e4, 1e6, 1e9])
 def test_a_column_of_any_strength_bears_up_to_it(tmp_path: Path, place: float, strength: float) -> None:
@@ -94,19 +74,6 @@ def test_what_hangs_on_a_pin_is_carried_at_any_factor(tmp_path: Path, held: str,
     deck = "&joint friction_deg = 45 /\n" + ASSOCIATED + SEARCH + material(50.0)
     (row,) = rows(tmp_path, deck, BLOCK + held + "live 0.5 2 0 -1\n")
     assert row["verdict"] == verdict
-
-
-def test_the_weaker_material_counts(tmp_path: Path) -> None:
-    blocks = BLOCK.replace("block\n0 0", "block material 2\n0 0") + "live 0 1.5 1 0\n"
-    deck = "&joint friction_deg = 85 /\n" + ASSOCIATED + SEARCH
-    found = []
-    for own, other in ((5.0, 4.0), (4.0, 5.0)):
-        text = blocks + f"material 2 compressive_strength {other!r}\n"
-        found.append(float(rows(tmp_path, deck + material(own), text)[0]["critical"]))
-    assert found == pytest.approx([1.0 / 3.0, 1.0 / 3.0], rel=1e-9)
-    text = blocks + "material 2 compressive_strength 4\n"
-    (row,) = rows(tmp_path, deck + "&material unit_weight = 1 /\n", text)
-    assert float(row["critical"]) == pytest.approx(1.0 / 3.0, rel=1e-9)
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(1 - 1e-6, "stable"), (1 + 1e-6, "collapsed")])
@@ -194,24 +161,6 @@ def test_great_strengths_are_none(tmp_path: Path) -> None:
         assert float(row["critical"]) == pytest.approx(float(bare["critical"]), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        ("&analysis flow = 'associated', geometry = 'current' /\n", "needs mode = 'static' and geometry = 'reference'"),
-        ("&analysis mode = 'dynamic', duration = 1 /\n", "needs mode = 'static' and geometry = 'reference'"),
-        (ASSOCIATED + "&joint cohesion = 1e3 /\n", "needs joints without cohesion and tension"),
-        (ASSOCIATED + "&search parameter = 'gravity_direction_deg', low = -90, high = -60 /\n",
-         "search horizontal_coefficient"),
-    ],
-)
-def test_what_knows_no_strength_is_refused(tmp_path: Path, more: str, message: str) -> None:
-    (tmp_path / "x.blocks").write_text(BLOCK)
-    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0) + more)
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert message in done.stderr and done.stderr.startswith("x.nml:")
-
-
 @pytest.mark.parametrize("strength", [2.5, 5.0, 1e3])
 def test_a_block_under_coulomb_friction_turns_over_or_slides(tmp_path: Path, strength: float) -> None:
     """Pushed half way up it turns about its strip, or slides at the friction of its weight."""
@@ -250,26 +199,6 @@ def test_joints_that_need_no_slip_have_the_limit_of_steep_friction(tmp_path: Pat
     (row,) = rows(tmp_path, bridge.format(friction) + material(1792000.0, 26690.0), head="")
     assert row["verdict"] == "found"
     assert float(row["critical"]) == pytest.approx(float(steep["critical"]), rel=1e-8)
-
-
-def test_stages_under_coulomb_friction_are_refused_beside_a_strength(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(BLOCK + "block\n0 2\n1 2\n1 3\n0 3\nremove block 3 at 1\n")
-    deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0)
-    (tmp_path / "x.nml").write_text(deck)
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "need flow = 'associated' in stages" in done.stderr
-    (tmp_path / "x.nml").write_text(deck + ASSOCIATED)
-    assert run_dda("check", "x.nml", cwd=tmp_path).returncode == 0
-
-
-def test_corners_on_edges_are_refused(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(BLOCK + "block\n0.5 2\n1 3\n0 3\n")
-    deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0) + ASSOCIATED
-    (tmp_path / "x.nml").write_text(deck)
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "x.blocks:6: error: compressive_strength needs joints with a width" in done.stderr
 
 
 @pytest.mark.parametrize("share", [0.5, 0.99, 0.999, 1.001, 1.01, 1.5, 10.0])

@@ -87,27 +87,3 @@ def test_an_undecided_search_says_how_many_blocks_it_had(tmp_path: Path, scene: 
     search = "&search parameter = 'friction_deg' /\n&analysis geometry = 'current', steps = 1 /\n"
     ((row,), joints) = run(tmp_path, f"{scene}\n{search}", status=3)
     assert (row["verdict"], row["blocks"], joints) == ("undecided", blocks, [])
-
-
-@pytest.mark.parametrize(
-    ("law", "more", "told"),
-    [
-        ("", "", "50"),
-        ("joint 1 2 friction_deg 35\n", "", ""),
-        ("joint 2 1 friction_deg 35\n", "", ""),
-        ("joint 1 2 cohesion 1e3\n", "", "50"),
-        ("joint 1 2 friction_deg 35\n", "block material 2\n5 0\n6 0\n6 2\n5 2\n", "50"),
-        ("joint 1 2 friction_deg 35\njoint 2 2 friction_deg 9\n", "block material 2\n5 0\n6 0\n6 2\n5 2\n", ""),
-        ("joint 1 2 friction_deg 35\n", "block fixed\n-5 0\n-4 0\n-4 2\n-5 2\n", ""),
-        ("joint 1 2 friction_deg 35\n", "block\n5 0\n6 0\n6 2\n5 2\n", "50"),
-    ],
-)
-def test_friction_is_reported_where_a_joint_may_have_it(tmp_path: Path, law: str, more: str, told: str) -> None:
-    """The base is of material 1, the block on it of material 2."""
-    text = BASE + BLOCK.replace("block", "block material 2") + more + "material 2 young 1e9\n" + law
-    (tmp_path / "x.blocks").write_text(text)
-    deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
-    assert run(tmp_path, deck)[0][0]["friction_deg"] == told
-    # a value that the deck gives or sweeps is shown
-    sweep = "&sweep parameter = 'friction_deg', values = 20, 30 /\n"
-    assert [row["friction_deg"] for row in run(tmp_path, deck + sweep)[0]] == ["20", "30"]

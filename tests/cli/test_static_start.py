@@ -6,29 +6,15 @@ from pathlib import Path
 
 import pytest
 from block_scene import block, on_slope, rows_of, run_blocks
-from dda_command import run_dda
 
 TIME = "&analysis mode = 'dynamic', geometry = '{}', time_step = 1e-3, duration = 0.2, steps = 100000, start = '{}' /\n"
 TABLES = "&output energy = .true., reactions = .true. /\n"
-WEIGHT = 5 * 2240 * 9.81
 
 
 def column() -> str:
     """Five cubes on a base."""
     blocks = "".join(block([(0.0, k), (1.0, k), (1.0, k + 1.0), (0.0, k + 1.0)]) for k in range(5))
     return block([(-5.0, -1.0), (5.0, -1.0), (5.0, 0.0), (-5.0, 0.0)], "fixed") + blocks
-
-
-@pytest.mark.parametrize("geometry", ["reference", "current"])
-def test_an_elastic_column_in_balance_does_not_swing(tmp_path: Path, geometry: str) -> None:
-    most = {}
-    for start in ("unloaded", "static"):
-        row = run_blocks(tmp_path, column(), "&material young = 1e7 /\n" + TIME.format(geometry, start) + TABLES)
-        assert row["verdict"] == "completed"
-        most[start] = max(float(line["kinetic"]) for line in rows_of(tmp_path / "out" / "energy.csv"))
-    assert most["static"] < 1e-9 < 100.0 < most["unloaded"]
-    reactions = [float(line["fy"]) for line in rows_of(tmp_path / "out" / "reactions.csv")]
-    assert reactions == pytest.approx([WEIGHT] * len(reactions), rel=1e-6)
 
 
 def test_the_blocks_begin_with_their_velocities(tmp_path: Path) -> None:
@@ -86,13 +72,3 @@ def test_a_search_in_time_begins_in_balance(tmp_path: Path) -> None:
     row = run_blocks(tmp_path, scene, keys)
     assert row["verdict"] == "found"
     assert float(row["critical"]) == pytest.approx(9.81 * 0.25, rel=1e-5)
-
-
-@pytest.mark.parametrize(("keys", "needs"), [
-    ("mode = 'static'", "mode = 'dynamic', got 'static'"), ("mode = 'limerick'", "mode = 'dynamic', got 'limerick'"),
-    ("mode = 'dynamic', restart = 'x.restart'", "no restart, got one")])
-def test_only_dynamic_runs_from_their_beginning_have_a_start(tmp_path: Path, keys: str, needs: str) -> None:
-    (tmp_path / "deck.nml").write_text(f"&analysis {keys}, start = 'static' /\n")
-    done = run_dda("check", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert f"deck.nml:1: error: analysis%start needs {needs}" in done.stderr

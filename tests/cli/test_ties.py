@@ -91,10 +91,3 @@ def test_ties_that_are_none_are_refused(tmp_path: Path, tie: str, message: str) 
     done = run_dda("check", "x.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr == f"x.nml:4: error: {message}\n"
-
-
-def test_a_file_of_blocks_has_bars_instead(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text("block\n0 0\n1 0\n1 1\n")
-    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n&tie x1 = 0 /\n")
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2 and "x.nml:2: error: &tie needs an arch" in done.stderr

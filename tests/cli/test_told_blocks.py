@@ -34,16 +34,6 @@ def area_of(corners: list[tuple[float, ...]]) -> float:
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, ends)) / 2
 
 
-def test_blocks_of_an_arch_have_its_area_and_its_springings_are_fixed(tmp_path: Path) -> None:
-    rows = rows_of(run(tmp_path, "&arch voussoirs = 8 /\n") / "blocks.csv")
-    corners = corners_of(rows)
-    area = sum(area_of(corners[block]) for block in range(1, 9))
-    assert area == pytest.approx(8 * math.sin(math.radians(22.5)) / 2 * (10.75**2 - 9.25**2))
-    assert {row["block"] for row in rows if row["state"] == "fixed"} == {"9", "10"}
-    assert all(u == v == 0.0 for block in (9, 10) for *_, u, v in corners[block])
-    assert [row["vertex"] for row in rows[:4]] == ["1", "2", "3", "4"]
-
-
 @pytest.mark.parametrize("deck", ["stack", "goodman_bray", "dry_wall_2x4"])
 def test_forces_of_the_joints_carry_every_block(tmp_path: Path, deck: str) -> None:
     options = ["--out", str(tmp_path / "out"), "--quiet", "--set", "output%joints=.true."]
@@ -67,27 +57,6 @@ def test_forces_of_the_joints_carry_every_block(tmp_path: Path, deck: str) -> No
         assert total[block][0] == pytest.approx(-push * load, abs=1e-4 * largest)
 
 
-def test_mechanism_of_a_search_is_reported_beside_the_arch_that_stands(tmp_path: Path) -> None:
-    folder = run(tmp_path, "&arch voussoirs = 36 /\n&search /\n")
-    (result,) = rows_of(folder / "results.csv")
-    joints = rows_of(folder / "joints.csv")
-    for side in ("intrados", "extrados"):
-        told = {float(angle) for angle in result[f"{side}_hinge_deg"].split(";")}
-        hinges = [float(row["angle_deg"]) for row in joints if row["mechanism"] == f"hinge_{side}"]
-        assert {round(abs(angle), 6) for angle in hinges} == told
-    assert {row["mechanism"] for row in joints} == {"none", "hinge_intrados", "hinge_extrados"}
-    corners = corners_of(rows_of(folder / "blocks.csv"))
-    moves = [math.hypot(u, v) for block in corners.values() for *_, u, v in block]
-    assert max(moves) == pytest.approx(1.0, abs=1e-12)
-    # the crown falls, and the mechanism is symmetric but for rounding: 1e-12 of the weights against the
-    # acceleration of an arch that lacks 5e-9 of its thickness
-    crown = corners[18][1]
-    assert crown[3] < -0.5
-    for left, right in ((9, 28), (4, 33)):
-        for side in (0, 1):
-            assert corners[left][side][2] == pytest.approx(-corners[right][1 - side][2], abs=1e-3)
-
-
 def test_sliding_springings_are_reported_with_their_way(tmp_path: Path) -> None:
     text = "&arch voussoirs = 36 /\n&joint friction_deg = 20 /\n&search /\n"
     joints = rows_of(run(tmp_path, text) / "joints.csv")
@@ -103,38 +72,6 @@ def test_sliding_springings_are_reported_with_their_way(tmp_path: Path) -> None:
         assert float(row["slides_x"]) == pytest.approx(-1.0, abs=1e-12)
         assert float(row["slides_y"]) == pytest.approx(0.0, abs=1e-12)
     assert all(row["slides_x"] == "" for row in joints if row not in slides)
-
-
-def test_a_block_slides_down_its_slope(tmp_path: Path) -> None:
-    options = ["--out", str(tmp_path / "out"), "--quiet"]
-    assert run_dda("run", BENCHMARKS / "slope.nml", *options).returncode == 0
-    results = {row["case"]: row for row in rows_of(tmp_path / "out/results.csv")}
-    falls = [row for row in rows_of(tmp_path / "out/joints.csv") if results[row["case"]]["verdict"] == "collapsed"]
-    assert falls
-    for row in falls:
-        assert row["mechanism"] == "sliding"
-        way = float(row["slides_x"]), float(row["slides_y"])
-        sign = 1.0 if row["block_1"] == "1" else -1.0
-        assert sign * way[0] == pytest.approx(math.cos(math.radians(30)), abs=1e-9)
-        assert sign * way[1] == pytest.approx(-math.sin(math.radians(30)), abs=1e-9)
-
-
-def test_displacement_of_a_falling_block_is_exact(tmp_path: Path) -> None:
-    options = ["--out", str(tmp_path / "out"), "--quiet"]
-    assert run_dda("run", BENCHMARKS / "free_fall.nml", *options).returncode == 0
-    last = rows_of(tmp_path / "out/points.csv")[-1]
-    time = float(last["time"])
-    for corners in corners_of(rows_of(tmp_path / "out/blocks.csv")).values():
-        for *_, u, v in corners:
-            assert u == pytest.approx(0.0, abs=1e-10)
-            assert v == pytest.approx(-0.5 * 9.81 * time**2, rel=1e-10)
-
-
-def test_blocks_held_by_points_are_reported(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text("block\n0 0\n1 0\n1 1\n0 1\nfix 0 0\nfix 1 0\nblock\n0 1\n1 1\n1 2\n0 2\n")
-    folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
-    states = {row["block"]: row["state"] for row in rows_of(folder / "blocks.csv")}
-    assert states == {"1": "held", "2": "free"}
 
 
 def test_far_blocks_are_reported_in_the_coordinates_of_the_user(tmp_path: Path) -> None:
@@ -188,16 +125,3 @@ def test_joints_and_blocks_of_many_cases_are_written_on_demand(
         assert any(word in said for word in words) != silent, said
         assert (f"output%{name} = .true." in said) != silent, said
     assert len(log) == cases + 1
-
-
-def test_a_run_without_joints_is_resumed(tmp_path: Path) -> None:
-    text = "&search /\n&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 101 /\n"
-    folder = run(tmp_path, text)
-    before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    again = run_dda("run", "deck.nml", "--resume", cwd=tmp_path)
-    assert "101 of 101 cases are already computed" in again.stdout
-    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
-    # with the joints of one case asked for, it is another question
-    asked = run_dda("run", "deck.nml", "--set", "output%joints=.true.", "--cases", "3", cwd=tmp_path)
-    assert asked.returncode == 0
-    assert {row["case"] for row in rows_of(folder / "joints.csv")} == {"3"}

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from block_scene import block, run_blocks
-from dda_command import run_dda
 
 HEIGHT = 30.0
 
@@ -76,37 +75,6 @@ def wall() -> str:
         block([(-10.0, -2.0), (10.0, -2.0), (10.0, 0.0), (-10.0, 0.0)], "fixed")
         + block([(0.0, 0.0), (3.0, 0.0), (3.0, 5.0), (0.0, 5.0)])
     )
-
-
-def test_the_level_at_which_a_wall_falls_is_found(tmp_path: Path) -> None:
-    deck = "&material unit_weight=24000 /\n&joint friction_deg=80 /\n"
-    # it turns about its right corner: gw (12.5 level - 125/3) = W b/2
-    level = (24000.0 * 15.0 * 1.5 / 9810.0 + 125.0 / 3.0) / 12.5
-    assert level > 5.0
-    water = "water -10 0 0 0 factor 0\n"
-    row = run_blocks(tmp_path, wall() + water, deck + "&search parameter='water_rise' low=0 high=9 /\n")
-    assert row["verdict"] == "found"
-    assert float(row["critical"]) == pytest.approx(level, rel=1e-6)
-
-
-BAD = {
-    "one point": ("water 0 1", "two points or more"),
-    "odd": ("water 0 1 2", "two points or more"),
-    "backwards": ("water 1 1 0 1", "from left to right"),
-    "word": ("water 0 1 1 1 salty", "got 'salty'"),
-    "factor": ("water 0 1 1 1 factor 2", "factor must be a number from 0 to 1, got 2"),
-    "times": ("water 0 1 1 1\n1 0\n0 1", "increasing times"),
-}
-
-
-@pytest.mark.parametrize("case", BAD)
-def test_bad_water_is_refused_with_its_line(case: str, tmp_path: Path) -> None:
-    line, message = BAD[case]
-    (tmp_path / "scene.blocks").write_text(wall() + line + "\n")
-    (tmp_path / "scene.nml").write_text("&scene kind='blocks' geometry='scene.blocks' /\n")
-    done = run_dda("check", "scene.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "scene.blocks:11: error: " in done.stderr and message in done.stderr
 
 
 def test_water_that_rises_in_time_brings_the_wall_down_at_its_level(tmp_path: Path) -> None:
