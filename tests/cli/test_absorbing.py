@@ -84,26 +84,6 @@ def test_pulse_in_a_column_does_not_come_back(tmp_path: Path, geometry: str, bas
     assert energy[-1] + end["damping"] + end["numerical"] + contacts == pytest.approx(end["work"], rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("entry", "message"),
-    [
-        ("absorb 5 5 6 5", "expected a line along faces of blocks, got one along none"),
-        ("absorb 0 0 2 0 z", "expected x, y, p_speed or s_speed, got 'z'"),
-        ("absorb 0 0 2 0 p_speed 0", "p_speed must be a number [m/s] above 0, got 0"),
-        ("absorb 0 0 2 0 x y", "expected one direction, got both x and y"),
-        ("absorb 0 0 2", "expected 4 numbers after 'absorb'"),
-    ],
-)
-def test_bad_entries_are_refused(tmp_path: Path, entry: str, message: str) -> None:
-    (tmp_path / "scene.blocks").write_text(block(SQUARE) + entry + "\n")
-    (tmp_path / "deck.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'scene.blocks' /\n&analysis mode = 'dynamic' /\n"
-    )
-    done = run_dda("check", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert f"scene.blocks:6: error: {message}" in done.stderr
-
-
 def test_modes_without_time_say_that_they_do_not_absorb(tmp_path: Path) -> None:
     scene = block(SQUARE, "fixed") + block([(0, 1), (2, 1), (2, 2), (0, 2)]) + "absorb 0 1 0 2\n"
     (tmp_path / "scene.blocks").write_text(scene)

@@ -173,23 +173,6 @@ def test_an_arch_that_cannot_be_is_refused_by_its_line(tmp_path: Path, arch: str
         assert ";" in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("deck", "words"),
-    [
-        ("&arch rise = 3 /\n&search parameter = 'thickness_ratio' /\n", "expected a span, got none"),
-        ("&arch shape = 'flat', lune_deg = 5 /\n&search parameter = 'thickness_ratio' /\n", "expected a span"),
-        ("&arch shape = 'flat', span = 2, thickness = 0.3 /\n&analysis mode = 'limerick' /\n", "limerick"),
-        ("&arch radius = 1, lune_deg = 5 /\n&analysis geometry = 'current' /\n", "static run"),
-        ("&arch radius = 1, lune_deg = 5 /\n&load horizontal_coefficient = 0.1 /\n", "downwards alone"),
-    ],
-)
-def test_what_no_method_has_is_refused(tmp_path: Path, deck: str, words: str) -> None:
-    (tmp_path / "bad.nml").write_text(deck)
-    done = run_dda("run", "bad.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert words in done.stderr
-
-
 def test_every_length_of_a_shape_is_searched(tmp_path: Path) -> None:
     """The width of buttresses on which an arch just stands: wider stands, narrower falls."""
     arch = "&arch shape = 'parabolic', span = 4, rise = 1.5, thickness = 0.4, voussoirs = 12, buttress_height = 2"
@@ -205,23 +188,3 @@ def test_every_length_of_a_shape_is_searched(tmp_path: Path) -> None:
 def test_the_table_of_shapes_holds_every_curve() -> None:
     assert {row["shape"] for row in rows_of(DATA / "arch_shapes.csv")} >= {
         "segmental", "circular", "pointed", "elliptic", "parabolic", "catenary", "basket"}
-
-
-@pytest.mark.parametrize(("shape", "has_area"), [
-    ("shape = 'elliptic', rise = 0.5", False), ("shape = 'circular', rise = 1.0", False),
-    ("shape = 'basket', rise = 0.6", False), ("shape = 'segmental', rise = 0.4", True),
-    ("shape = 'parabolic', rise = 0.5", True)])
-@pytest.mark.parametrize("command", ["check", "run"])
-def test_a_single_voussoir_between_level_springings_is_refused_where_it_has_no_area(
-    tmp_path: Path, shape: str, has_area: bool, command: str
-) -> None:
-    """Corners of level joints lie on a line; two voussoirs, or joints that lean, make blocks."""
-    arch = f"&arch {shape}, span = 2, thickness = 0.2, voussoirs = {{}} /\n"
-    (tmp_path / "x.nml").write_text(arch.format(1))
-    done = run_dda(command, "x.nml", cwd=tmp_path)
-    assert done.returncode == (0 if has_area else 2), done.stderr
-    if not has_area:
-        assert done.stderr == ("x.nml:1: error: arch%voussoirs: expected voussoirs with an area, got one whose corners "
-                               "lie on a line; raise voussoirs or thickness\n")
-    (tmp_path / "x.nml").write_text(arch.format(2))
-    assert run_dda(command, "x.nml", cwd=tmp_path).returncode == 0

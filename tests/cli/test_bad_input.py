@@ -145,17 +145,6 @@ def test_quiet_does_not_silence_errors(tmp_path: Path) -> None:
     assert_refused(tmp_path, "deck.nml", 1, "radius", "--quiet")
 
 
-def test_gravity_may_be_zero_where_the_weight_is_given(tmp_path: Path) -> None:
-    (tmp_path / "deck.nml").write_text("&load gravity = 0 /\n&material unit_weight = 22e3 /\n")
-    assert run_dda("check", "deck.nml", cwd=tmp_path).returncode == 0
-
-
-@pytest.mark.parametrize("half_angle", ["90", "90.0", "9e1"])
-def test_half_angle_may_repeat_the_last_joint(tmp_path: Path, half_angle: str) -> None:
-    (tmp_path / "deck.nml").write_text(f"&arch joints_deg = 0, 50, 90, half_angle_deg = {half_angle} /\n")
-    assert run_dda("check", "deck.nml", cwd=tmp_path).returncode == 0
-
-
 def test_other_decks_still_run(tmp_path: Path) -> None:
     (tmp_path / "first.nml").write_text(GOOD)
     (tmp_path / "bad.nml").write_text("&arch\n thickness_ratio = 2 /\n")
@@ -188,12 +177,6 @@ def test_two_good_decks_of_the_same_name_do_not_share_a_folder(tmp_path: Path) -
     assert done.stderr.startswith("two/deck.nml:1: error: ")
 
 
-def test_only_good_cases_are_computed_or_none(tmp_path: Path) -> None:
-    text = "&sweep\n parameter = 'half_angle_deg'\n values = 45, 90, 180\n/\n"
-    (tmp_path / "deck.nml").write_text(text)
-    assert_refused(tmp_path, "deck.nml", 3, "180")
-
-
 #: The unit test of decks has more
 SETTINGS = {
     "without-value": ("arch%radius", "arch%radius"),
@@ -217,14 +200,6 @@ def test_errors_of_set_name_set(tmp_path: Path, setting: str) -> None:
     assert not (tmp_path / "deck").exists()
 
 
-def test_second_set_is_distinguished_from_the_first(tmp_path: Path) -> None:
-    (tmp_path / "deck.nml").write_text(GOOD)
-    good, bad = "arch%radius=5", "joint%friction_deg=-5"
-    done = run_dda("run", "deck.nml", "--set", good, "--set", bad, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith("--set:2: error: ")
-
-
 @pytest.mark.parametrize("cases", ["2", "1--1", "x", "1, 1", "1.0", "1-1-1"])
 def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
     (tmp_path / "deck.nml").write_text(GOOD)
@@ -232,13 +207,6 @@ def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
     assert done.returncode == 2
     assert re.fullmatch(r"--cases:1: error: expected cases from 1 to 1, got '.*'; write them like 1-4,7\n", done.stderr)
     assert not (tmp_path / "deck").exists()
-
-
-def test_set_of_what_is_swept_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "deck.nml").write_text("&sweep parameter='radius', values=1, 2 /\n")
-    done = run_dda("run", "deck.nml", "--set", "arch%radius=5", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "--set" in done.stderr
 
 
 COMMAND_LINES = {

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda
+from dda_command import rows_of
 from test_live_loads import SEARCH, rows
 
 #: Prestwood: kN/m at collapse, each exact for its model; about 60 were measured
@@ -122,49 +122,3 @@ def pressures(path: Path, coefficient: float) -> list[float]:
         if left + right > 1e-9:
             found.append(coefficient * 20e3 * (surface - 0.5 * (low + high)) * abs(high - low))
     return sorted(found)
-
-
-def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
-    """What the springings carry is the weight of the arch and of the fill above its extrados."""
-    deck = (
-        "&arch shape = 'segmental', span = 4, rise = 1, thickness = 0.5, voussoirs = 9 /\n"
-        "&material unit_weight = 20e3 /\n&fill height = 0.4, unit_weight = 15e3 /\n"
-    )
-    (row,) = rows(tmp_path, deck, head="")
-    assert row["verdict"] == "stable"
-    inner = 2.5
-    outer, half = inner + 0.5, math.asin(2.0 / 2.5)
-    ends = [outer * math.sin(half * (2 * k / 9 - 1)) for k in range(10)]
-    heights = [outer * math.cos(half * (2 * k / 9 - 1)) for k in range(10)]
-    above = sum((b - a) * (outer + 0.4 - (u + v) / 2.0) for a, b, u, v in zip(ends, ends[1:], heights, heights[1:]))
-    # an odd number of voussoirs: the highest chord lies below the crown of the circle
-    above -= (outer - max(heights)) * (ends[-1] - ends[0])
-    arch = 9 * math.sin(2 * half / 9) * (outer**2 - inner**2) / 2.0
-    up = 0.0
-    for joint in rows_of(tmp_path / "x" / "joints.csv"):
-        if max(int(joint["block_1"]), int(joint["block_2"])) > 9:
-            up += abs(float(joint["force_y"]))
-    assert up == pytest.approx(20e3 * arch + 15e3 * above, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("fill", "words"),
-    [
-        ("&fill height = -0.1, unit_weight = 20e3 /", "from 0"),
-        ("&fill unit_weight = 20e3 /", "expected height and unit_weight"),
-        ("&fill height = 0.1, unit_weight = 1, passive_share = 0.5 /", "expected friction_deg"),
-        ("&fill height = 0.1, unit_weight = 1, passive_coefficient = 1 /\n&analysis geometry = 'current' /",
-         "expected passive_stiffness"),
-        ("&fill height = 0.1, unit_weight = 1, backing_height = 1 /\n&joint cohesion = 1 /",
-         "expected passive_stiffness"),
-        ("&fill height = 0.1, unit_weight = 1 /\n&vehicle axles = 1, position = 20 /", "none at position 20"),
-        ("&scene kind = 'blocks', geometry = 'x.blocks' /\n&fill height = 0.1, unit_weight = 1 /", "&fill"),
-    ],
-)
-def test_fill_that_cannot_be_is_refused(tmp_path: Path, fill: str, words: str) -> None:
-    (tmp_path / "x.blocks").write_text("block fixed\n0 0\n1 0\n0 1\n")
-    arch = "" if "&scene" in fill else "&arch radius = 5, half_angle_deg = 60 /\n"
-    (tmp_path / "bad.nml").write_text(arch + fill + "\n")
-    done = run_dda("run", "bad.nml", cwd=tmp_path)
-    assert done.returncode == 2, done.stdout
-    assert words in done.stderr

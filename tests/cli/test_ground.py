@@ -56,19 +56,6 @@ def test_a_record_moves_the_ground_second_order_in_the_step(tmp_path: Path) -> N
     assert errors[2] < 1e-3 * abs(place)
 
 
-@pytest.mark.parametrize("step", [0.003, 0.05, 0.11])
-def test_no_step_loses_any_of_a_records_impulse(tmp_path: Path, step: float) -> None:
-    """The velocity after the record is its integral, to rounding, whatever the step."""
-    (tmp_path / "q.txt").write_text(RECORD.replace(",", " ").replace('"', ""))
-    status, message = run(
-        tmp_path, BLOCKS + "base_acceleration file 'q.txt' scale 9.81\n", FREE.format(more=f", time_step = {step}"))
-    assert status == 0, message
-    velocity, _ = drift(TIMES, [9.81 * share for share in SHARES], 0.6)
-    last, end = rows(tmp_path, "points")[-2:]
-    told = (float(end["u"]) - float(last["u"])) / (float(end["time"]) - float(last["time"]))
-    assert told == pytest.approx(-velocity, abs=1e-11)
-
-
 def test_quantities_and_both_homes_of_a_record_agree(tmp_path: Path) -> None:
     """A ramp of velocity is a constant acceleration, and so is a parabola; in the file of blocks as in &ground."""
     (tmp_path / "a.csv").write_text("0,1.5\n0.6,1.5\n")
@@ -128,18 +115,6 @@ def test_a_record_of_forces_brings_in_its_impulse(tmp_path: Path) -> None:
     assert speed == pytest.approx(240.0 / 4480.0, rel=1e-6)
 
 
-def test_a_pulse_in_the_deck_is_that_of_a_file(tmp_path: Path) -> None:
-    """A sine of one period comes to rest again, farther by a T^2/2 pi; a rectangle leaves a T behind."""
-    for pulse, far in (
-        ("'sine', frequency = 4.0", 2.0 * 0.25**2 / (2 * math.pi)),
-        ("'rectangular', duration = 0.13", 2.0 * 0.13**2 / 2 + 2.0 * 0.13 * (0.6 - 0.13)),
-    ):
-        group = f"&ground pulse = {pulse}, amplitude = 1.0, scale = 2.0, direction_deg = 180.0 /\n"
-        status, message = run(tmp_path, BLOCKS, group + FREE.format(more=", time_step = 0.001"))
-        assert status == 0, message
-        assert float(rows(tmp_path, "points")[-1]["u"]) == pytest.approx(far, rel=2e-4)
-
-
 def test_an_amplitude_brings_a_record_to_it(tmp_path: Path) -> None:
     """Decks of one amplitude are equal whatever the record's unit, and are swept by record and amplitude."""
     (tmp_path / "One.csv").write_text("0,0\n0.1,4\n0.2,-8\n0.3,0\n")
@@ -169,34 +144,6 @@ def test_a_changed_record_is_another_deck(tmp_path: Path) -> None:
         assert ("already" in done.stdout + done.stderr) == bool(words), done.stdout + done.stderr
 
 
-BAD_RECORDS = {
-    "empty": ("", "is empty"),
-    "words": ("time,a\nno numbers\n", "at least two rows"),
-    "one-row": ("0,1\n", "at least two rows"),
-    "backwards": ("t,a\n0,1\n0.2,1\n0.1,1\n", ":4: error: expected a time after 0.2 s, got 0.1"),
-    "twice": ("0,1\n0,1\n", ":2: error: expected a time after 0 s"),
-    "hole": ("0,1\n0.1,\n0.2,1\n", ":2: error: expected a number of at most 1e30 in column 2, got ''"),
-    "short": ("0 1\n0.1\n", ":2: error: expected a number"),
-    "text": ("0 1\n0.1 nought\n", "got 'nought'"),
-    "nan": ("0 1\n0.1 nan\n", "got 'nan'"),
-    "huge": ("0 1\n0.1 1e31\n", "at most 1e30"),
-    "late-header": ("0 1\n0.1 2\ntime a\n", ":3: error: expected a number"),
-    "binary": ("0 1\n0.1 \x01\n", ":2: error: expected plain text"),
-}
-
-
-@pytest.mark.parametrize("name", list(BAD_RECORDS))
-@pytest.mark.parametrize("home", ["blocks", "deck"])
-def test_a_bad_record_is_refused_with_its_line(tmp_path: Path, name: str, home: str) -> None:
-    text, words = BAD_RECORDS[name]
-    (tmp_path / "q.csv").write_text(text)
-    blocks = BLOCKS + ("base_acceleration file 'q.csv'\n" if home == "blocks" else "")
-    group = "&ground record = 'q.csv' /\n" if home == "deck" else ""
-    status, message = run(tmp_path, blocks, group + FREE.format(more=""), command="check")
-    assert status == 2 and words in message and message.count("\n") == 1, message
-    assert message.startswith("q.csv:") or "q.csv" in message
-
-
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -223,56 +170,6 @@ def test_a_line_that_names_a_record_badly_is_refused(tmp_path: Path, line: str, 
     (tmp_path / "q.csv").write_text(RECORD)
     status, message = run(tmp_path, BLOCKS + line + "\n", FREE.format(more=""), command="check")
     assert status == 2 and words in message and message.count("\n") == 1, message
-
-
-TIME = "&analysis mode = 'dynamic', geometry = 'current' /"
-
-
-@pytest.mark.parametrize(
-    ("groups", "line", "words"),
-    [
-        ("&ground pulse = 'sine', amplitude = 1,\n frequency = 2 /", 1, "needs mode = 'dynamic', got 'static'"),
-        (f"&ground scale = 2 /\n{TIME}", 1, "needs a pulse or a record, got none"),
-        (f"&ground pulse = 'sine', amplitude = 1 /\n{TIME}", 1, "needs frequency for a sine"),
-        (f"&ground pulse = 'rectangular', amplitude = 1 /\n{TIME}", 1, "needs duration for a rectangular pulse"),
-        (f"&ground pulse = 'rectangular', duration = 1,\n frequency = 1, amplitude = 2 /\n{TIME}", 2, "no effect"),
-        (f"&ground pulse = 'sine', amplitude = 1, frequency = 1,\nunit = 2 /\n{TIME}", 2, "ground%unit has no effect"),
-        (f"&ground pulse = 'sine',\nrecord = 'q.csv' /\n{TIME}", 2, "got both"),
-        (f"&ground record = 'q.csv',\ncolumns = '1' /\n{TIME}", 2, "two or three columns"),
-        (f"&ground\nrecord = 'no.csv' /\n{TIME}", 2, "there is no such file"),
-        (f"{TIME}\n&ground record = 'q.csv' /\n&sweep parameter = 'record',\ntexts = 'no.csv' /", 4, "no such file"),
-        ("&analysis\ncollapse_rotation_deg = 45 /", 2, "needs mode = 'dynamic', got 'static'"),
-        (f"{TIME[:-2]},\n collapse_point = 1 /", 2, "collapse_point needs scene%kind = 'blocks', got 'arch'"),
-        ("&analysis mode = 'dynamic' /\n&search parameter = 'radius', low = 1, high = 2 /", 2, "geometry = 'current'"),
-        (f"{TIME}\n&search parameter = 'radius', low = 1, high = 2 /", 2, "needs analysis%duration"),
-        (f"{TIME[:-2]}, duration = 1 /\n&search\nparameter = 'friction_deg' /", 3, "search%low and search%high"),
-        ("&search parameter = 'ground%amplitude', low = 1, high = 2 /", 1, "needs mode = 'dynamic'"),
-        ("&search parameter = 'restitution', low = 0, high = 1 /", 1, "needs mode = 'dynamic'"),
-        (f"{TIME[:-2]}, duration = 1 /\n&search parameter = 'time_step', low = 1, high = 2 /", 2, "of the method"),
-    ],
-)
-def test_what_the_ground_cannot_be_is_refused(tmp_path: Path, groups: str, line: int, words: str) -> None:
-    (tmp_path / "q.csv").write_text(RECORD)
-    (tmp_path / "a.nml").write_text(groups + "\n")
-    done = run_dda("check", "a.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"a.nml:{line}: error: ") and words in done.stderr, done.stderr
-
-
-@pytest.mark.parametrize(
-    ("more", "groups", "words"),
-    [
-        ("base_acceleration 1 0\n", "&ground pulse = 'sine', amplitude = 1, frequency = 1 /", "ground is at rest"),
-        ("", "&ground scale = 2 /", "moves the ground, got none"),
-        ("", "&analysis collapse_point = 2, collapse_displacement = 1 /", "from 1 to 1, got 2"),
-        ("", "&analysis collapse_point = 1 /", "needs collapse_displacement"),
-    ],
-)
-def test_what_a_file_of_blocks_contradicts_is_refused(tmp_path: Path, more: str, groups: str, words: str) -> None:
-    group = groups.replace("/", ", mode = 'dynamic', geometry = 'current' /") if "analysis" in groups else (
-        f"{groups}\n{TIME}")
-    status, message = run(tmp_path, BLOCKS + more, group + "\n", command="check")
-    assert status == 2 and words in message, message
 
 
 def test_a_message_shows_no_byte_that_is_no_letter(tmp_path: Path) -> None:

@@ -104,12 +104,6 @@ def test_limit_is_linear_in_the_penetration_and_exact_without_any(tmp_path: Path
     assert slopes[1] > 1.5 * slopes[0]
 
 
-def test_search_whose_ends_agree_ends_with_their_verdict(tmp_path: Path) -> None:
-    (row,) = results_of(tmp_path, "&arch voussoirs = 12 /\n" + MODE + "&search low = 0.13, high = 0.15 /\n")
-    assert row["verdict"] == "stable"
-    assert row["critical"] == ""
-
-
 def test_jobs_do_not_change_a_bit(tmp_path: Path) -> None:
     deck = MODE + "&arch voussoirs = 8 /\n&sweep parameter = 'thickness_ratio', values = 0.1, 0.12 /\n"
     (tmp_path / "one").mkdir()
@@ -129,13 +123,6 @@ def test_steps_that_are_spent_leave_it_stable_with_a_remark(tmp_path: Path) -> N
     )
     assert row["verdict"] == "stable"
     assert "still moving" in (tmp_path / "out" / "log.txt").read_text()
-
-
-def test_dynamic_run_is_completed(tmp_path: Path) -> None:
-    (row,) = results_of(
-        tmp_path, "&arch voussoirs = 4 /\n&limerick dynamic = .true. /\n" "&analysis mode = 'limerick', steps = 20 /\n")
-    assert row["verdict"] == "completed"
-    assert row["steps"] == "20"
 
 
 @pytest.mark.parametrize(
@@ -188,25 +175,6 @@ def block_on_slope(folder: Path, friction: float) -> str:
     material = "2.0 20.0 1e6 0.2 0 0 0 0 0 0 0 0 0"
     (folder / "slope.ana").write_text(f"0 3000 1 1 0.001 0.01\n{material}\n{friction} 0 0\n")
     return "&scene kind = 'lines', geometry = 'slope.geo', analysis = 'slope.ana' /\n"
-
-
-@pytest.mark.parametrize("friction, verdict", [(21.0, "stable"), (19.0, "collapsed")])
-def test_block_of_a_file_stands_on_a_slope_flatter_than_its_friction(
-    tmp_path: Path, friction: float, verdict: str
-) -> None:
-    deck = block_on_slope(tmp_path, friction) + "&analysis mode = 'limerick' /\n"
-    (row,) = results_of(tmp_path, deck)
-    assert row["verdict"] == verdict
-    assert row["blocks"] == "1"
-    (joint,) = rows_of(tmp_path / "out" / "joints.csv")
-    # 2 m2 of 20 kN/m3 on 20 degrees; where it slides, up to the last step's jitter
-    assert float(joint["normal_force"]) == pytest.approx(
-        40 * math.cos(math.radians(20)), rel=0.001 if verdict == "stable" else 0.1
-    )
-    if verdict == "stable":
-        assert abs(float(joint["shear_force"])) == pytest.approx(40 * math.sin(math.radians(20)), rel=0.001)
-    else:
-        assert row["collapse_mode"] == "sliding"
 
 
 def test_friction_of_a_file_is_searched(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import pytest
@@ -11,7 +10,6 @@ from dda_command import rows_of, run_dda, run_deck
 GROUND = "block fixed\n -2 -1\n 4 -1\n 4 0\n -2 0\n"
 BLOCK = "block\n 0 0\n 1 0\n 1 2\n 0 2\n"
 # 2 m2 of 20 kN/m3
-WEIGHT = 40e3
 MATERIAL = "&material density = 2000.0, unit_weight = 20e3, young = 1e9 /\n"
 MODE = "&analysis mode = 'limerick' /\n"
 
@@ -37,12 +35,6 @@ def run(folder: Path, blocks: str, groups: str = MATERIAL + MODE, *options: str)
     run_deck(folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}", "--quiet", *options)
     (row,) = rows_of(folder / "x" / "results.csv")
     return row
-
-
-def normal_force(folder: Path) -> float:
-    """Normal force of the only joint."""
-    (joint,) = rows_of(folder / "x" / "joints.csv")
-    return float(joint["normal_force"])
 
 
 @pytest.mark.parametrize(
@@ -78,15 +70,6 @@ def test_check_counts_the_blocks_of_the_file(tmp_path: Path) -> None:
     assert "half size     3 m" in done.stdout
 
 
-@pytest.mark.parametrize("rows", ["0 -10e3", "\n 0 0 -10e3", "\n 0 0 -10e3\n 5 0 -10e3",
-                                  "\n 0 0 0\n 1 0 -20e3\n 2 0 -10e3"],
-                         ids=["constant", "one row", "two rows", "three rows"])
-def test_load_adds_to_the_weight(tmp_path: Path, rows: str) -> None:
-    row = run(tmp_path, GROUND + BLOCK + f"load 0.5 1 {rows}\n")
-    assert row["verdict"] == "stable"
-    assert normal_force(tmp_path) == pytest.approx(WEIGHT + 10e3, rel=1e-3)
-
-
 def test_load_that_comes_late_overturns(tmp_path: Path) -> None:
     """At the upper corner a quarter of the weight is just borne: 40 kN 0.5 m = 2 m 10 kN."""
     late = "load 0 2\n 0 0 0\n 100 {} 0\n"
@@ -102,31 +85,10 @@ def test_steps_that_end_before_the_load_leave_it_undecided(tmp_path: Path) -> No
     assert "step limit reached before the last record of a load" in done.stdout
 
 
-def test_held_points_carry_a_block_without_ground(tmp_path: Path) -> None:
-    assert run(tmp_path, BLOCK + "fix 0.2 0.2\nfix 0.8 0.2\n")["verdict"] == "stable"
-    # about one point it turns, for its centre lies above
-    assert run(tmp_path, BLOCK + "fix 0.2 0.2\n")["verdict"] == "collapsed"
-
-
 def test_held_line_carries_every_block_that_it_crosses(tmp_path: Path) -> None:
     beside = polygon((1, 0), (2, 0), (2, 2), (1, 2))
     assert run(tmp_path, BLOCK + beside + "fix_line -1 1 3 1\n")["verdict"] == "stable"
     assert run(tmp_path, BLOCK + beside + "fix_line -1 1 0.9 1\n")["verdict"] == "collapsed"
-
-
-def test_materials_have_their_own_weights(tmp_path: Path) -> None:
-    run(tmp_path, GROUND + BLOCK.replace("block", "block material 2") + "material 2 density 500 unit_weight 7000\n")
-    assert normal_force(tmp_path) == pytest.approx(14e3, rel=1e-3)
-
-
-@pytest.mark.parametrize("own, other, verdict", [(12.0, 60.0, "stable"), (10.0, 60.0, "collapsed")])
-def test_law_is_that_of_the_two_materials(tmp_path: Path, own: float, other: float, verdict: str) -> None:
-    """A push of 0.2 needs 11.3 degrees between the two, whatever the others are."""
-    blocks = GROUND + BLOCK.replace("block", "block material 2") + "material 2\n"
-    laws = f"joint 1 2 friction_deg {own}\njoint 2 2 friction_deg {other}\n"
-    row = run(tmp_path, blocks + laws, MATERIAL + MODE + f"&joint friction_deg = {other} /\n"
-              "&load horizontal_coefficient = 0.2 /\n")
-    assert row["verdict"] == verdict
 
 
 def test_measured_point_ends_where_its_corner_does(tmp_path: Path) -> None:
@@ -141,19 +103,6 @@ def test_measured_point_ends_where_its_corner_does(tmp_path: Path) -> None:
     assert float(last["v"]) == pytest.approx(float(corner["v"]), rel=1e-12)
     # it sinks by the penetration that the penalty aims at, 4e-4 of the half size of 3 m, and strain
     assert float(last["v"]) == pytest.approx(-1.2e-3, rel=0.1)
-
-
-def test_blocks_fly_with_their_velocities(tmp_path: Path) -> None:
-    flying = BLOCK.replace("block", "block velocity 3 4 0")
-    row = run(tmp_path, flying + "measure 0.5 1\n", MATERIAL + "&limerick dynamic = .true. /\n"
-              "&analysis mode = 'limerick', steps = 100, time_step = 0.01, "
-              "max_displacement_ratio = 0.1 /\n")
-    assert row["verdict"] == "completed"
-    last = rows_of(tmp_path / "x" / "points.csv")[-1]
-    assert float(last["time"]) == pytest.approx(1.0, rel=1e-12)
-    assert float(last["u"]) == pytest.approx(3.0, rel=1e-9)
-    # unit weight over density is 10 m/s2
-    assert float(last["v"]) == pytest.approx(4.0 - 5.0, rel=1e-9)
 
 
 def test_stress_at_the_beginning_lets_go(tmp_path: Path) -> None:
@@ -216,17 +165,3 @@ def test_every_mode_of_a_sweep_is_checked(tmp_path: Path) -> None:
     done = run_dda("run", "x.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("x.blocks:11: error: ")
-
-
-def test_slope_holds_by_friction(tmp_path: Path) -> None:
-    """A block slides on a slope of 20 degrees with less friction than that."""
-    turn = complex(math.cos(math.radians(20)), math.sin(math.radians(20)))
-
-    def turned(*corners: complex, head: str = "block") -> str:
-        return polygon(*(((c * turn).real, (c * turn).imag) for c in corners), head=head)
-
-    blocks = (turned(-4 - 1j, 4 - 1j, 4 + 0j, -4 + 0j, head="block fixed") + turned(-1 + 0j, 1 + 0j, 1 + 1j, -1 + 1j))
-    row = run(tmp_path, blocks, MATERIAL + "&analysis mode = 'limerick', steps = 40000 /\n"
-              "&search parameter = 'friction_deg', low = 10, high = 30, tolerance = 1e-2 /\n")
-    assert float(row["critical"]) == pytest.approx(20.0, rel=0.01)
-    assert row["collapse_mode"] == "sliding"

@@ -59,19 +59,6 @@ def test_arches_of_the_original_stand_when_rigid(tmp_path: Path, path: Path) -> 
     assert row_of(tmp_path, "held", text)["verdict"] == "stable"
 
 
-def test_a_deck_key_goes_before_the_file(tmp_path: Path) -> None:
-    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.12, voussoirs=12 /\n")
-    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
-    scene = "&scene kind='lines', geometry='ring.geo', analysis='ring_plain.ana' /\n"
-    assert row_of(tmp_path, "a", scene)["verdict"] == "stable"
-    low = row_of(tmp_path, "b", scene + "&joint friction_deg=10 /\n")
-    assert (low["verdict"], low["friction_deg"]) == ("collapsed", "10")
-    found = row_of(tmp_path, "c", scene + "&search parameter='friction_deg' /\n")
-    assert found["verdict"] == "found"
-    same = row_of(tmp_path, "d", "&arch thickness_ratio=0.12, voussoirs=12 /\n" "&search parameter='friction_deg' /\n")
-    assert float(found["critical"]) == pytest.approx(float(same["critical"]), rel=1e-8)
-
-
 def test_two_steps_and_a_parapet_stand(tmp_path: Path) -> None:
     text = (INPUT / "terrace.nml").read_text()
     for name in ("terrace.geo", "terrace.ana"):

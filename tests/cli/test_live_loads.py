@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from bridges import rings, spans
-from dda_command import rows_of, run_dda, run_deck
+from dda_command import rows_of, run_deck
 
 DATA = Path(__file__).parents[1] / "data"
 GROUND = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\n"
@@ -56,15 +56,6 @@ def test_a_small_live_load_keeps_its_digits_beside_weight(tmp_path: Path, force:
     assert float(row["exact_high"]) - float(row["exact_low"]) < 1e-12 * factor
 
 
-@pytest.mark.parametrize(("friction", "factor"), [(50, TURNS), (5, WEIGHT * math.tan(math.radians(5)) / 1000.0)])
-@pytest.mark.parametrize("flow", ["coulomb", "associated"])
-def test_a_pushed_block_turns_or_slides(tmp_path: Path, friction: float, factor: float, flow: str) -> None:
-    (row,) = rows(tmp_path, f"&joint friction_deg = {friction} /\n&analysis flow = '{flow}' /\n" + SEARCH)
-    assert row["verdict"] == "found" and row["collapses_at"] == "high"
-    assert float(row["critical"]) == pytest.approx(factor, rel=1e-9)
-    assert_proven(row, factor)
-
-
 def test_decisions_flip_where_the_search_says(tmp_path: Path) -> None:
     values = [-TURNS * 1.001, -TURNS * 0.999, 0.0, TURNS * 0.999999, TURNS * 1.000001, 1e6]
     sweep = f"&sweep parameter = 'load_factor', values = {', '.join(map(repr, values))} /\n"
@@ -72,28 +63,11 @@ def test_decisions_flip_where_the_search_says(tmp_path: Path) -> None:
     assert verdicts == ["collapsed", "stable", "stable", "stable", "collapsed", "collapsed"]
 
 
-def test_both_directions_are_searched(tmp_path: Path) -> None:
-    search = "&search parameter = 'load_factor', low = -100.0, high = 5.0 /\n"
-    (row,) = rows(tmp_path, search)
-    assert float(row["critical"]) == pytest.approx(-TURNS, rel=1e-8) and row["collapses_at"] == "low"
-
-
-def test_a_dead_load_stays(tmp_path: Path) -> None:
-    """A dead push of 4000 N at the same corner leaves the rest to the live one."""
-    (row,) = rows(tmp_path, SEARCH, PUSHED + "load 0 2 4000 0\n")
-    assert float(row["critical"]) == pytest.approx(TURNS - 4.0, rel=1e-9)
-
-
 @pytest.mark.parametrize("keys", ["", ", low = -5.0, high = 5.0", ", low = -5.0, high = 0.0"])
 def test_what_falls_without_live_loads_has_no_factor(tmp_path: Path, keys: str) -> None:
     search = SEARCH.replace(" /", keys + " /")
     (row,) = rows(tmp_path, search, PUSHED + "load 0 2 40000 0\n")
     assert row["verdict"] == "collapsed" and row["critical"] == ""
-
-
-def test_a_load_that_only_presses_is_carried_at_any_factor(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, SEARCH, GROUND + BLOCK + "live block 2 0.5 2 0 -1000\n")
-    assert row["verdict"] == "stable" and row["critical"] == ""
 
 
 @pytest.mark.parametrize("row", table("practice_multi_span.csv"), ids=lambda row: "-".join(list(row.values())[:8]))
@@ -177,45 +151,3 @@ def test_the_place_of_a_load_is_swept(tmp_path: Path) -> None:
     left, inner, right = (float(row["critical"]) for row in rows(tmp_path, deck + SEARCH, head=""))
     assert left == pytest.approx(right, rel=1e-9)
     assert inner > 1.2 * left
-
-
-LIVE = "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&live x = {x}, y = {y}, fy = {fy} /\n"
-
-DEAD = "&scene kind = 'blocks', geometry = 'dead.blocks' /\n"
-ARCH = LIVE.format(x=0.1, y=1.0, fy=-1.0)
-
-REFUSED = {
-    "no-live-load": (1, SEARCH, "live load"),
-    "no-live-load-of-blocks": (2, DEAD + SEARCH, "live load"),
-    "a-factor-of-nothing": (1, "&load load_factor = 2.0 /\n", "live load"),
-    "a-swept-factor-of-nothing": (1, "&sweep parameter = 'load_factor', values = 1, 2 /\n", "live load"),
-    "outside": (2, LIVE.format(x=0.5, y=2.0, fy=-1.0), "none"),
-    "inside-the-opening": (2, LIVE.format(x=0.0, y=0.5, fy=-1.0), "none"),
-    "lists-of-two-lengths": (2, LIVE.format(x="0.1, 0.2", y=1.0, fy=-1.0), "live%y"),
-    "forces-of-another-length": (2, LIVE.format(x=0.1, y=1.0, fy="-1.0, 2.0"), "live%fy"),
-    "no-place": (1, "&live fy = -1.0 /\n", "x and y"),
-    "no-force": (2, LIVE.format(x=0.1, y=1.0, fy=0.0), "fx or fy"),
-    "the-original-scheme": (2, ARCH + "&analysis mode = 'limerick' /\n", "limerick"),
-    "a-shape-that-is-searched": (3, ARCH + "&search /\n", "shape"),
-    "nothing-horizontal": (1, "&load live_horizontal = .true. /\n", "horizontal_coefficient"),
-    "a-fixed-block": (2, DEAD + "&live x = -2, y = -0.5, fy = 1 /\n", "fixed"),
-    "a-swept-place": (3, ARCH + "&sweep parameter = 'x(1)', values = 0.1, 3.0 /\n", "none"),
-}
-
-
-@pytest.mark.parametrize(("line", "deck", "word"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_is_refused_with_its_line(tmp_path: Path, line: int, deck: str, word: str) -> None:
-    (tmp_path / "dead.blocks").write_text(GROUND + BLOCK)
-    (tmp_path / "x.nml").write_text(deck)
-    for command in ("check", "run"):
-        done = run_dda(command, "x.nml", cwd=tmp_path)
-        assert done.returncode == 2
-        assert done.stderr.startswith(f"x.nml:{line}: error: ") and word in done.stderr
-        assert not (tmp_path / "x").exists()
-
-
-def test_a_live_line_is_read_as_a_load(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "live 9 9 1 0\n")
-    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n")
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2 and done.stderr.startswith("x.blocks:11: error: expected a point of a block")

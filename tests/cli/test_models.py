@@ -427,29 +427,6 @@ def test_strength_goes_with_weight_and_size(tmp_path: Path, key: str, low: float
     assert float(row["critical"]) == pytest.approx(value, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "deck, line, words",
-    [
-        ("&analysis mode = 'limerick',\n restart = 'a.restart' /", 2, "mode = 'dynamic'"),
-        ("&analysis mode = 'limerick',\n duration = 1 /\n&limerick dynamic = T /", 2, "mode = 'dynamic'"),
-        ("&analysis mode = 'limerick',\n damping = 1 /", 2, "mode = 'dynamic'"),
-        ("&analysis mode = 'static',\n damping = 1 /", 2, "mode = 'dynamic'"),
-        ("&analysis mode = 'limerick',\n restitution = 0.5 /\n&limerick dynamic = T /", 2, "mode = 'dynamic'"),
-        ("&analysis mode = 'limerick',\n unknowns = 3 /", 2, "mode = 'static' or 'dynamic', got 'limerick'"),
-        ("&analysis mode = 'limerick' /\n&output energy = .true. /", 2, "mode = 'static' or 'dynamic'"),
-        ("&analysis mode = 'limerick' /\n&output restart = .true. /", 2, "mode = 'static' or 'dynamic'"),
-        ("&sweep parameter = 'mode', texts = 'static', 'dynamic' /\n&search /", 2, "geometry = 'current'"),
-        ("&sweep parameter = 'mode', texts = 'static', 'limerick' /\n&analysis geometry = 'reference' /", 2,
-         "blocks always move"),
-    ],
-)
-def test_keys_that_a_mode_has_no_use_for_are_refused(tmp_path: Path, deck: str, line: int, words: str) -> None:
-    (tmp_path / "a.nml").write_text(deck + "\n")
-    done = run_dda("check", "a.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"a.nml:{line}: error: ") and words in done.stderr
-
-
 def test_check_says_what_is_run_and_searched(tmp_path: Path) -> None:
     write_files(tmp_path)
     (tmp_path / "a.nml").write_text(scene("blocks") + "&analysis mode = 'dynamic' /\n")

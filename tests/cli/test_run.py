@@ -36,54 +36,6 @@ def names_in(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-# help and version
-
-
-@pytest.mark.parametrize("arguments", [[], ["--help"], ["help"]], ids=["none", "--help", "help"])
-def test_help_lists_the_subcommands(arguments: list[str]) -> None:
-    done = run_dda(*arguments)
-    assert done.returncode == 0
-    assert done.stderr == ""
-    for word in ("dda run DECK", "dda check DECK", "--version", "Exit status"):
-        assert word in done.stdout
-
-
-@pytest.mark.parametrize("verb", ["run", "check"])
-def test_help_of_a_subcommand(verb: str) -> None:
-    done = run_dda("help", verb)
-    assert done.returncode == 0
-    assert done.stdout.startswith(f"dda {verb} DECK [DECK ...]")
-    assert run_dda(verb, "--help").stdout == done.stdout
-
-
-@pytest.mark.parametrize("option", ["--out DIR", "--jobs N", "--set group%key=value", "--resume", "--quiet"])
-def test_help_of_run_names_the_option(option: str) -> None:
-    assert option in run_dda("help", "run").stdout
-
-
-def test_help_of_keys_names_the_keys_of_the_contract() -> None:
-    keys = """&scene title kind geometry analysis
-        &arch radius thickness_ratio half_angle_deg voussoirs joints_deg facet_deg springing
-        &material density unit_weight young poisson plane
-        &joint friction_deg cohesion tension
-        &load gravity gravity_direction_deg horizontal_coefficient
-        &analysis mode geometry steps max_displacement_ratio time_step penalty_ratio
-        collapse_displacement
-        &search parameter low high tolerance
-        &sweep parameter values texts first last count linked
-        &output frames vtu joints"""
-    printed = run_dda("help", "keys").stdout
-    assert [key for key in keys.split() if key not in printed] == []
-
-
-def test_version_is_a_name_and_numbers() -> None:
-    done = run_dda("--version")
-    assert done.returncode == 0
-    name, version = done.stdout.split()
-    assert name == "dda"
-    assert all(part.isdigit() for part in version.split("."))
-
-
 # exit statuses
 
 
@@ -261,16 +213,6 @@ def test_deck_without_an_ending_is_left_alone(tmp_path: Path) -> None:
     assert run_dda("run", "deck", "--out", "results", cwd=tmp_path).returncode == 0
 
 
-@pytest.mark.parametrize("line_end", ["\r\n", "\r"], ids=["windows", "old-mac"])
-def test_line_ends_do_not_change_the_results(tmp_path: Path, line_end: str) -> None:
-    text = "&scene\n title = 'a, b; \"c\"' ! a title\n/\n&arch\n thickness_ratio = 0.12\n/\n"
-    write_decks(tmp_path, unix=text)
-    (tmp_path / "other.nml").write_bytes(text.replace("\n", line_end).encode())
-    assert run_dda("run", "unix.nml", "other.nml", cwd=tmp_path).returncode == 0
-    tables = [(tmp_path / deck / "joints.csv").read_bytes() for deck in ("unix", "other")]
-    assert tables[0] == tables[1]
-
-
 # what is printed
 
 
@@ -345,14 +287,6 @@ def test_set_may_switch_joints_off(tmp_path: Path) -> None:
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
     left_out = ("joints.csv", "reactions.csv", *PROOFS)
     assert names_in(tmp_path / "deck") == [name for name in FILES if name not in left_out]
-
-
-def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:
-    write_decks(tmp_path, deck=STABLE)
-    setting = "search%parameter=thickness_ratio"
-    assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    (row,) = cases_of(tmp_path / "deck")
-    assert row["verdict"] == "found"
 
 
 def test_long_set_is_not_cut(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from bridges import spans
 from dda_command import rows_of, run_dda
-from test_live_loads import BLOCK, GROUND, SEARCH, WEIGHT, rows, table
+from test_live_loads import SEARCH, rows, table
 
 ARCH = "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&material unit_weight = 1.0 /\n"
 
@@ -21,37 +21,6 @@ def bridge(spans_wanted: int) -> str:
 def axles(text: str) -> str:
     """A deck of a bridge with a vehicle."""
     return f"&material unit_weight = 1.0 /\n&joint friction_deg = 35 /\n&vehicle {text} /\n" + SEARCH
-
-
-def test_an_axle_is_a_live_load_on_the_block_below(tmp_path: Path) -> None:
-    """Beside the middle of a block: no factor topples it; on a cantilever it does."""
-    cantilever = GROUND + BLOCK + "block\n0 2\n3 2\n3 2.5\n0 2.5\n"
-    (row,) = rows(tmp_path, "&vehicle axles = 1000, length = 0, position = 1.5 /\n" + SEARCH, cantilever)
-    # the upper block falls over the edge at 1 m: its weight half a metre beyond it already
-    assert row["verdict"] == "collapsed"
-    cantilever = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
-    (row,) = rows(tmp_path, "&vehicle axles = 1000, length = 0, position = 1.5 /\n" + SEARCH, cantilever)
-    upper = 0.75 * 2240.0 * 9.81
-    both = upper * 0.25 + WEIGHT * 0.5
-    # about the edge of the lower block at 1 m: the upper one alone, or both about the foot
-    assert float(row["critical"]) == pytest.approx(min(upper * 0.25, both) / (1000.0 * 0.5), rel=1e-8)
-
-
-def test_a_spread_axle_is_its_middle_on_one_block(tmp_path: Path) -> None:
-    wide = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
-    found = []
-    for length in (0.0, 0.2):
-        (row,) = rows(tmp_path, f"&vehicle axles = 1000, length = {length}, position = 1.3 /\n" + SEARCH, wide)
-        found.append(float(row["critical"]))
-    assert found[0] == pytest.approx(found[1], rel=1e-9)
-
-
-def test_what_hangs_over_an_end_is_not_carried(tmp_path: Path) -> None:
-    """Half of the axle is above the block, so it carries twice the factor of half an axle there."""
-    wide = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
-    (half,) = rows(tmp_path, "&vehicle axles = 1000, length = 0.2, position = 1.5 /\n" + SEARCH, wide)
-    (whole,) = rows(tmp_path, "&vehicle axles = 500, length = 0.1, position = 1.45 /\n" + SEARCH, wide)
-    assert float(half["critical"]) == pytest.approx(float(whole["critical"]), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -113,29 +82,6 @@ def test_a_search_without_an_answer_says_its_limit_and_how_far_it_came(tmp_path:
     if row["verdict"] == "undecided":
         reached = (tmp_path / "x" / "log.txt").read_text().split(" at ")[1].split()[0]
         assert 1.0 < float(reached) <= float(row["exact_high"])
-
-
-REFUSED = {
-    "no-axles": ("&vehicle position = 0 /\n", "axles"),
-    "no-position": ("&vehicle axles = 1 /\n", "position"),
-    "spacings": ("&vehicle axles = 1, 2, position = 0 /\n", "spacings"),
-    "worst-and-position": ("&vehicle axles = 1, position = 0, worst = T /\n" + SEARCH, "position"),
-    "worst-of-nothing": ("&vehicle axles = 1, worst = T /\n", "load_factor"),
-    "worst-of-what-moves": (
-        "&vehicle axles = 1, worst = T /\n&analysis geometry = 'current' /\n" + SEARCH, "reference"),
-    "beside-the-arch": ("&vehicle axles = 1, position = 100 /\n", "above a block"),
-    "the-original-scheme": ("&vehicle axles = 1, position = 0 /\n&analysis mode = 'limerick' /\n", "limerick"),
-    "a-shape-that-is-searched": ("&vehicle axles = 1, position = 0 /\n&search /\n", "shape"),
-}
-
-
-@pytest.mark.parametrize(("deck", "word"), REFUSED.values(), ids=REFUSED)
-def test_what_cannot_be_is_refused_with_its_line(tmp_path: Path, deck: str, word: str) -> None:
-    (tmp_path / "x.nml").write_text(deck)
-    done = run_dda("run", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.startswith("x.nml:") and ": error: " in done.stderr and word in done.stderr
-    assert len(done.stderr.splitlines()) == 1
 
 
 def test_an_arch_that_falls_unless_both_sides_lean_carries_nothing_where_the_axle_stands_worst(tmp_path: Path) -> None:
