@@ -65,42 +65,6 @@ def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(tm
     assert float(row["critical"]) == pytest.approx(math.tan(math.radians(7.61)), rel=1e-7)
 
 
-def quarter_period(amplitude: float, frequency: float) -> float:
-    """A quarter of a pendulum's period, by the arithmetic-geometric mean of Gauss [s]."""
-    a, b = 1.0, math.cos(amplitude / 2.0)
-    for _ in range(20):
-        a, b = (a + b) / 2.0, math.sqrt(a * b)
-    return math.pi / (2.0 * a * frequency)
-
-
-@pytest.mark.parametrize("amplitude_deg", [20.0, 60.0, 150.0])
-def test_a_pendulum_keeps_its_period_and_gains_no_energy(tmp_path: Path, amplitude_deg: float) -> None:
-    """A bar held at the middle of its end, let go; the step is of second order."""
-    amplitude, width, height = math.radians(amplitude_deg), 0.1, 1.0
-    c, s = math.cos(amplitude), math.sin(amplitude)
-    hanging = [(-width / 2, -height), (width / 2, -height), (width / 2, 0.0), (-width / 2, 0.0)]
-    blocks = block(*((c * x - s * y, s * x + c * y) for x, y in hanging))
-    blocks += f"fix 0 0\nmeasure {s * height!r} {-c * height!r}\n"
-    gyration = (width**2 + height**2) / 12.0 + height**2 / 4.0
-    exact = quarter_period(amplitude, math.sqrt(9.81 * height / 2.0 / gyration))
-    errors = []
-    for step in (4e-3, 2e-3):
-        motion = "mode = 'dynamic', geometry = 'current', max_displacement_ratio = 1.0"
-        groups = f"&analysis {motion}, time_step = {step}, duration = 4.0, steps = 100000 /\n"
-        groups += "&material young = 1e12 /\n&output energy = .true. /"
-        points = run(tmp_path, blocks, groups, "points")
-        rows = rows_of(tmp_path / "out" / "energy.csv")
-        stored = [sum(float(row[n]) for n in ("kinetic", "elastic", "gravity")) for row in rows]
-        assert max(stored) - stored[0] < 1e-3 * 2240.0 * width * height * 9.81 * height
-        angle = [math.atan2(float(p["x"]), -float(p["y"])) for p in points]
-        k = next(i for i, value in enumerate(angle) if value < 0.0)
-        before, time = float(points[k - 1]["time"]), float(points[k]["time"])
-        found = before + (time - before) * angle[k - 1] / (angle[k - 1] - angle[k])
-        errors.append(abs(found / exact - 1.0))
-    assert errors[1] < 1e-4
-    assert math.log2(errors[0] / errors[1]) > 1.8
-
-
 @pytest.mark.parametrize("far", ["1e11", "1e15", "-1e30"])
 def test_a_block_led_farther_than_any_step_goes_is_undecided(tmp_path: Path, far: str) -> None:
     blocks = BASE + rectangle(0.0, 0.0, 1.0, 1.0) + f"displacement 0.5 0.5 0 {far}\n"

@@ -8,8 +8,6 @@ import pytest
 from block_scene import block
 from dda_command import rows_of, run_deck
 
-GRAVITY = 9.81
-
 
 def rectangle(left: float, low: float, right: float, high: float, words: str = "") -> str:
     """A rectangle of a file of blocks."""
@@ -62,30 +60,3 @@ def test_excavation_leaves_the_forces_of_the_final_shape(tmp_path: Path, skip: t
     assert {int(line["block"]) for line in rows_of(tmp_path / "out" / "blocks.csv")} == set(range(1, 28)) - set(skip)
     reactions = rows_of(tmp_path / "out" / "reactions.csv")
     assert {line["block"] for line in reactions} == {"1"}
-
-
-@pytest.mark.parametrize("unknowns", [3, 6])
-@pytest.mark.parametrize("keys", ["", ", start = 'static'"])
-def test_a_block_that_is_built_while_nothing_can_move_falls_from_then_on(
-    tmp_path: Path, unknowns: int, keys: str
-) -> None:
-    """The only movable block, above the ground: it fell from the beginning."""
-    dynamic = (f"&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.41, time_step = 0.003,"
-               f" unknowns = {unknowns}{keys} /\n")
-    run(tmp_path, BASE + rectangle(0, 1, 1, 2) + "add block 2 at 0.3\nmeasure 0.5 1.5\n", dynamic)
-    ways = rows_of(tmp_path / "out" / "points.csv")
-    assert float(ways[-1]["time"]) == pytest.approx(0.41, abs=1e-12)
-    for way in ways:
-        time = max(0.0, float(way["time"]) - 0.3)
-        assert float(way["v"]) == pytest.approx(-GRAVITY * time**2 / 2.0, abs=1e-12)
-        assert float(way["vy"]) == pytest.approx(-GRAVITY * time, abs=1e-12)
-
-
-def test_time_goes_on_between_a_block_that_goes_and_one_that_comes(tmp_path: Path) -> None:
-    """From 0.1 to 0.25 s nothing can move."""
-    dynamic = "&analysis mode = 'dynamic', geometry = 'current', steps = 100000, duration = 0.4, time_step = 0.004 /\n"
-    run(tmp_path, BASE + rectangle(0, 1, 1, 2) + rectangle(3, 1, 4, 2)
-        + "remove block 2 at 0.1\nadd block 3 at 0.25\nmeasure 3.5 1.5\n", dynamic)
-    last = rows_of(tmp_path / "out" / "points.csv")[-1]
-    assert float(last["time"]) == pytest.approx(0.4, abs=1e-12)
-    assert float(last["v"]) == pytest.approx(-GRAVITY * 0.15**2 / 2.0, abs=1e-12)

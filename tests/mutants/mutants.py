@@ -39,7 +39,7 @@ COLUMNS = ("number", "package", "file", "line", "kind", "before", "after", "resu
 LEVELS = ("package", "unit", "physics", "suite")
 #: What ctest runs at the levels that are asked of several faults at once
 PROGRAMS = {"physics": ("command_unit", "physics", "command_physics"),
-            "suite": ("every_model", "cli", "post", "fuzz_blocks", "fuzz_restart", "fuzz")}
+            "suite": ("every_model", "cli", "motion", "post", "fuzz_blocks", "fuzz_restart", "fuzz")}
 #: A run of `dda` may take so many seconds of processor
 MOST_SECONDS = 60
 
