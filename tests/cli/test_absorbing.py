@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from block_scene import block
-from dda_command import run_dda, run_deck
+from dda_command import run_deck
 
 SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
 
@@ -82,15 +82,3 @@ def test_pulse_in_a_column_does_not_come_back(tmp_path: Path, geometry: str, bas
     contacts = end["friction"] + end["impact"]
     assert abs(contacts) < 1e-6 * end["work"]
     assert energy[-1] + end["damping"] + end["numerical"] + contacts == pytest.approx(end["work"], rel=1e-9)
-
-
-def test_modes_without_time_say_that_they_do_not_absorb(tmp_path: Path) -> None:
-    scene = block(SQUARE, "fixed") + block([(0, 1), (2, 1), (2, 2), (0, 2)]) + "absorb 0 1 0 2\n"
-    (tmp_path / "scene.blocks").write_text(scene)
-    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'scene.blocks' /\n")
-    done = run_dda("check", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 0
-    assert "scene.blocks:11: warning: absorb has no effect: mode = 'static' has no time" in done.stderr
-    done = run_dda("check", "deck.nml", "--set", "analysis%mode=limerick", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "mode = 'limerick' has no absorbing boundaries" in done.stderr

@@ -28,34 +28,6 @@ def run(folder: Path, blocks: str, groups: str, *settings: str, command: str = "
     return done.returncode, done.stderr
 
 
-def drift(times: list[float], accelerations: list[float], end: float) -> tuple[float, float]:
-    """Velocity and displacement of a ground that starts at rest, exact for lines between the times."""
-    velocity = place = 0.0
-    for t0, t1, a0, a1 in zip(times, times[1:], accelerations, accelerations[1:], strict=False):
-        h = t1 - t0
-        place += velocity * h + a0 * h**2 / 2 + (a1 - a0) * h**2 / 6
-        velocity += (a0 + a1) / 2 * h
-    return velocity, place + velocity * (end - times[-1])
-
-
-TIMES, SHARES = [0.0, 0.1, 0.25, 0.4], [0.2, -0.5, 0.3, 0.0]
-
-
-def test_a_record_moves_the_ground_second_order_in_the_step(tmp_path: Path) -> None:
-    """A free block goes as the record's double integral says; its error falls as the square of the step."""
-    (tmp_path / "Quake 1.csv").write_text(RECORD)
-    ground = "base_acceleration file 'Quake 1.csv' columns time east scale 9.81\n"
-    _, place = drift(TIMES, [9.81 * share for share in SHARES], 0.6)
-    errors = []
-    for step in (0.04, 0.02, 0.01):
-        status, message = run(tmp_path, BLOCKS + ground, FREE.format(more=f", time_step = {step}"))
-        assert status == 0, message
-        errors.append(abs(float(rows(tmp_path, "points")[-1]["u"]) + place))
-        print(f"{step:6.3f} {errors[-1]:.3e}")
-    assert errors[0] / errors[2] == pytest.approx(16.0, rel=0.25)
-    assert errors[2] < 1e-3 * abs(place)
-
-
 def test_quantities_and_both_homes_of_a_record_agree(tmp_path: Path) -> None:
     """A ramp of velocity is a constant acceleration, and so is a parabola; in the file of blocks as in &ground."""
     (tmp_path / "a.csv").write_text("0,1.5\n0.6,1.5\n")
@@ -102,17 +74,6 @@ def test_a_led_point_follows_its_record(tmp_path: Path) -> None:
     assert status == 0, message
     end = rows(tmp_path, "points")[-1]
     assert (float(end["u"]), float(end["v"])) == pytest.approx((0.02, -0.008), abs=1e-9)
-
-
-def test_a_record_of_forces_brings_in_its_impulse(tmp_path: Path) -> None:
-    """A force that grows evenly to 960 N in 0.5 s gives 4480 kg a speed of 240/4480 m/s."""
-    (tmp_path / "f.csv").write_text("0,0\n0.5,960\n0.5000001,0\n")
-    load = "".join(f"load 0.5 {y} file 'f.csv' columns 1 2 0 scale 0.5\n" for y in (0.5, 1.5))
-    status, message = run(tmp_path, BLOCKS + load, FREE.format(more=", time_step = 0.03"))
-    assert status == 0, message
-    last, end = rows(tmp_path, "points")[-2:]
-    speed = (float(end["u"]) - float(last["u"])) / (float(end["time"]) - float(last["time"]))
-    assert speed == pytest.approx(240.0 / 4480.0, rel=1e-6)
 
 
 def test_an_amplitude_brings_a_record_to_it(tmp_path: Path) -> None:

@@ -13,17 +13,6 @@ from limerick_files import HAS_XML, HELD
 
 ROOT = Path(__file__).parents[2]
 DECKS = ROOT / "input" / "limerick"
-DAMPED = """<?xml version="1.0"?>
-<DDA><Analysis>
-<Numtimesteps timesteps="10"/><Maxtimestep maxtimestep="0.01"/>
-<Maxdisplacement maxdisplacement="0.001"/><Autotimestep flag="yes"/>
-<Autopenalty flag="yes" pfactor="50"/><ContactDamping value="5"/>
-<Blockmaterial type="1"><Unitmass>2</Unitmass><Unitweight>20</Unitweight>
-<Youngsmod>1e6</Youngsmod><Poissonratio>0.2</Poissonratio><Damping>0</Damping>
-<Istress>0 0 0</Istress><Ivelocity>0 0 0</Ivelocity><Istrain>0 0 0</Istrain></Blockmaterial>
-<Jointproperties type="1"><Friction>30</Friction><Cohesion>0</Cohesion><Tensile>0</Tensile>
-</Jointproperties></Analysis></DDA>
-"""
 MODE = "&analysis mode = 'limerick', steps = 20000, collapse_displacement = 0.5 /\n"
 
 
@@ -185,35 +174,6 @@ def test_friction_of_a_file_is_searched(tmp_path: Path) -> None:
     )
     assert row["verdict"] == "found"
     assert float(row["critical"]) == pytest.approx(20.0, rel=0.01)
-
-
-@pytest.mark.skipif(not HAS_XML, reason="the program was built without libxml2")
-def test_contact_damping_of_a_file_is_that_of_the_deck(tmp_path: Path) -> None:
-    scene = block_on_slope(tmp_path, 10.0)
-    mode = "&analysis mode = 'limerick', steps = 40 /\n"
-    fast = "&limerick dynamic = .true., contact_damping = {} /\n"
-    (tmp_path / "slope.ana").write_text(DAMPED.replace("<Analysis>", '<Analysis><Analysistype type="dynamic"/>'))
-    rows = {}
-    for name, text in {"file": mode, "same": mode + fast.format(5), "none": mode + fast.format(0)}.items():
-        results_of(tmp_path, scene + text + "&output blocks = .true. /\n")
-        rows[name] = (tmp_path / "out" / "blocks.csv").read_text()
-    assert rows["file"] == rows["same"] != rows["none"]
-
-
-@pytest.mark.skipif(not HAS_XML, reason="the program was built without libxml2")
-def test_gravity_of_a_file_is_turned_on_first(tmp_path: Path) -> None:
-    scene = block_on_slope(tmp_path, 10.0)
-    turned_on = (
-        '<Gravity flag="yes"><Gravitysteplimit val="300"/><Normaltolerance val="1e-3"/>'
-        '<Sheartolerance val="1e-3"/></Gravity>'
-    )
-    text = DAMPED.replace("<Analysis>", f'<Analysis><Analysistype type="dynamic"/>{turned_on}')
-    (tmp_path / "slope.ana").write_text(text.replace('value="5"', 'value="0"'))
-    mode = "&analysis mode = 'limerick', steps = 40 /\n"
-    results_of(tmp_path, scene + mode)
-    settled = (tmp_path / "out" / "blocks.csv").read_text()
-    results_of(tmp_path, scene + mode + "&limerick gravity_steps = 0 /\n")
-    assert settled != (tmp_path / "out" / "blocks.csv").read_text()
 
 
 @pytest.mark.parametrize("search", [False, True])

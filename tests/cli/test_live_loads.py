@@ -63,13 +63,6 @@ def test_decisions_flip_where_the_search_says(tmp_path: Path) -> None:
     assert verdicts == ["collapsed", "stable", "stable", "stable", "collapsed", "collapsed"]
 
 
-@pytest.mark.parametrize("keys", ["", ", low = -5.0, high = 5.0", ", low = -5.0, high = 0.0"])
-def test_what_falls_without_live_loads_has_no_factor(tmp_path: Path, keys: str) -> None:
-    search = SEARCH.replace(" /", keys + " /")
-    (row,) = rows(tmp_path, search, PUSHED + "load 0 2 40000 0\n")
-    assert row["verdict"] == "collapsed" and row["critical"] == ""
-
-
 @pytest.mark.parametrize("row", table("practice_multi_span.csv"), ids=lambda row: "-".join(list(row.values())[:8]))
 def test_spans_on_piers_carry_what_the_linear_programme_says(tmp_path: Path, row: dict[str, str]) -> None:
     deck = f"&material unit_weight = 1.0 /\n&joint friction_deg = {friction_of(row['friction'])} /\n" + SEARCH

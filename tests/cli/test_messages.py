@@ -20,26 +20,6 @@ def test_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     assert assert_whole(done.stderr)["file"] == "taken/run.lock"
 
 
-MISSPELT = {
-    "&arhc /\n": "&arch",
-    "&serach /\n": "&search",
-    "&arch vousoirs = 36 /\n": "voussoirs",
-    "&joint fricton = 30 /\n": "friction_deg",
-    "&analysis max_displacement = 0.1 /\n": "max_displacement_ratio",
-    "&search parameter = 'thiknes_ratio' /\n": "thickness_ratio",
-    "&arch springing = 'no_slip' /\n": "'no-slip'",
-    "&material plane = 'stres' /\n": "'stress'",
-}
-
-
-@pytest.mark.parametrize("text", MISSPELT)
-def test_misspelt_name_is_shown_the_nearest(tmp_path: Path, text: str) -> None:
-    (tmp_path / "deck.nml").write_text(text)
-    fault = assert_whole(run_dda("check", "deck.nml", cwd=tmp_path).stderr)["fault"]
-    near = re.search(r"(?:nearest known \w+ is|did you mean) (.+?)(?:\?|$)", fault)
-    assert near and near[1] == MISSPELT[text]
-
-
 @pytest.mark.parametrize(
     ("arguments", "meant"),
     [(["rnu", "deck.nml"], "run"), (["run", "deck.nml", "--quite"], "--quiet")],
@@ -75,13 +55,6 @@ SQUARE_XML = f"<DDA><Geometry><Jointlist>{JOINTS}</Jointlist></Geometry></DDA>"
 LINES = (SQUARE.replace("0.01", "0.6", 1), SQUARE_XML[:-2])
 ANALYSES = ("2 5 1 1 0.01 0.01\n1 1 1 0.2 0 0 0 0 0 0 0 0 0\n30 0 0\n",
             (INPUT / "terrace_ddaml.ana").read_text().replace("Unitmass", "Mass"))
-
-
-@pytest.mark.parametrize("group", ["search", "sweep"])
-def test_a_list_key_is_refused_with_an_item_that_its_list_has(tmp_path: Path, group: str) -> None:
-    (tmp_path / "deck.nml").write_text(f"&vehicle axles = 1e3, position = 0 /\n&{group} parameter = 'axles' /\n")
-    stderr = run_dda("check", "deck.nml", cwd=tmp_path).stderr
-    assert stderr == f"deck.nml:2: error: {group}%parameter: axles is a list; name one item, such as axles(1)\n"
 
 
 @pytest.mark.parametrize("text", LINES if HAS_XML else LINES[:1])

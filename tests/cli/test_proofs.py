@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from test_loading_path import run_wall
-from test_live_loads import BLOCK, GROUND, PUSHED, SEARCH, TURNS, WEIGHT, rows, table
+from test_live_loads import BLOCK, GROUND, PUSHED, WEIGHT, rows, table
 
 ARCH = (
     "&arch radius = 1.0, half_angle_deg = {}, voussoirs = {}, thickness_ratio = {} /\n"
@@ -62,50 +62,6 @@ def test_thrust_between_two_walls_has_no_upper_bound(tmp_path: Path) -> None:
     least = WEIGHT / 2.0 / math.tan(math.radians(30.0))
     assert float(row["thrust_min"]) == pytest.approx(least, rel=1e-8)
     assert row["thrust_max"] == ""
-
-
-def test_a_bed_joint_has_no_thrust(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, "&output thrust_joint = 1 /\n")
-    assert row["verdict"] == "stable" and row["thrust_min"] == row["thrust_max"] == ""
-
-
-def test_what_stands_has_the_limit_of_its_load_factor(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, "&load load_factor = 2.0 /\n")
-    assert row["verdict"] == "stable"
-    assert float(row["exact_low"]) <= TURNS <= float(row["exact_high"])
-    assert float(row["exact_high"]) - float(row["exact_low"]) < 1e-8 * TURNS
-
-
-def test_forces_that_carry_are_written(tmp_path: Path) -> None:
-    """Weight and push at the ground, by hand."""
-    rows(tmp_path, "")
-    (joint,), motion = proofs(tmp_path)
-    assert motion == []
-    assert {joint["block_1"], joint["block_2"]} == {"1", "2"}
-    assert float(joint["normal_1"]) + float(joint["normal_2"]) == pytest.approx(WEIGHT, rel=1e-9)
-    assert abs(float(joint["shear"])) == pytest.approx(1000.0, rel=1e-9)
-    ends = [float(joint[name]) for name in ("x_1", "x_2")]
-    moment = sum(x * float(joint[n]) for x, n in zip(ends, ("normal_1", "normal_2")))
-    assert moment == pytest.approx(0.5 * WEIGHT + 2.0 * 1000.0, rel=1e-9)
-
-
-def test_a_mechanism_is_written(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, "&load load_factor = 12.0 /\n")
-    forces, (block,) = proofs(tmp_path)
-    assert forces == [] and row["imbalance"] == ""
-    u, v, spin = (float(block[name]) for name in ("u", "v", "spin"))
-    power = 12000.0 * (u - spin) - WEIGHT * v
-    assert power > 0.0 and 0.0 < float(row["mechanism_power"]) <= 1.0
-    assert float(row["law_violation"]) < 1e-9
-    # it turns to the right, and no corner goes into the ground
-    assert spin < 0.0 and min(v + 0.5 * spin, v - 0.5 * spin) >= -1e-9
-
-
-def test_a_search_writes_both_sides(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, SEARCH)
-    forces, motion = proofs(tmp_path)
-    assert {joint["value"] for joint in forces} == {row["exact_low"]}
-    assert {block["value"] for block in motion} == {row["exact_high"]}
 
 
 def test_a_collapse_below_the_associated_limit_has_no_proof(tmp_path: Path) -> None:

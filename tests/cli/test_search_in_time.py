@@ -52,28 +52,6 @@ def test_the_slowest_sine_carries_farthest(tmp_path: Path) -> None:
     assert float(row["critical"]) == pytest.approx(math.sqrt(1.0 / (2 * math.pi * LIMIT)), rel=3e-4)
 
 
-def test_an_answer_that_is_not_monotone_is_said(tmp_path: Path) -> None:
-    """Both ends fall, one to the left and one to the right; what stands is between."""
-    row, log, _ = search(tmp_path, FREE, sine(-9.0, 11.0))
-    assert row["verdict"] == "found" and row["collapses_at"] == "low"
-    assert float(row["critical"]) == pytest.approx(-EXACT, rel=3e-4)
-    assert "not monotone: the answer changes again between" in log
-    low, high = (float(word) for word in log.split("between ")[1].split(" and "))
-    assert low < EXACT < high
-
-
-def test_ends_that_agree_are_reported_with_what_is_between(tmp_path: Path) -> None:
-    for low, high, verdict in ((0.1, 1.0, "stable"), (8.0, 20.0, "collapsed")):
-        row, log, _ = search(tmp_path, FREE, sine(low, high))
-        assert row["verdict"] == verdict and row["critical"] == ""
-        assert log == f"1 {verdict} 7 values between the ends agree with them"
-
-
-def test_a_measured_point_means_collapse(tmp_path: Path) -> None:
-    row, _, _ = search(tmp_path, FREE, sine(1.0, 20.0, collapse=", collapse_point = 1"))
-    assert float(row["critical"]) == pytest.approx(EXACT, rel=3e-4)
-
-
 def test_what_still_moves_away_is_undecided(tmp_path: Path) -> None:
     """A rectangular pulse leaves a free block with a speed: it passes any distance later."""
     groups = sine(0.1, 1.0).replace("'sine'", "'rectangular'").replace(f"frequency = {1 / PERIOD}", "duration = 0.1")
@@ -92,14 +70,6 @@ def test_a_block_that_lies_flat_is_not_said_to_survive(tmp_path: Path) -> None:
     assert row["verdict"] == "completed"
     assert "turned by 9" in log and "less than collapse_rotation_deg = 95: this may be a collapse; set 45" in log
     assert search(tmp_path, SLENDER, groups.format(45))[0]["verdict"] == "collapsed"
-
-
-def test_a_run_without_search_says_that_it_collapsed(tmp_path: Path) -> None:
-    """One run on either side of the exact amplitude, with its end and the time of the collapse."""
-    groups = sine(1.0, 2.0).split("&search")[0]
-    for share, verdict in ((0.99, "completed"), (1.01, "collapsed")):
-        row, _, _ = search(tmp_path, FREE, groups, "--set", f"ground%amplitude={share * EXACT}")
-        assert row["verdict"] == verdict
 
 
 def test_a_block_is_overturned_by_the_pulse_of_rigid_rocking(tmp_path: Path) -> None:
