@@ -98,12 +98,6 @@ def test_a_slope_in_benches_has_its_area(tmp_path: Path) -> None:
     assert sum(float(row["area"]) for row in rows) == pytest.approx(600.0 + 750.0, rel=1e-12)
 
 
-def test_joints_run_through_rock_that_is_still_there(tmp_path: Path) -> None:
-    text = TUNNEL.format(form="plain").replace("sides=20", "sides=20 excavated=.false.")
-    rows = blocks_of(draw(text, tmp_path))
-    assert sum(float(row["area"]) for row in rows) == pytest.approx(1200.0, rel=1e-9)
-
-
 BAD = {
     "no outline": ("&lines /\n", "map.nml:1: error: &lines: expected an &outline"),
     "unknown key": (

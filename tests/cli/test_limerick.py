@@ -114,25 +114,6 @@ def test_steps_that_are_spent_leave_it_stable_with_a_remark(tmp_path: Path) -> N
     assert "still moving" in (tmp_path / "out" / "log.txt").read_text()
 
 
-@pytest.mark.parametrize(
-    "text, message",
-    [
-        ("&analysis mode = 'limerick', geometry = 'reference' /", "blocks always move"),
-        (
-            "&analysis mode = 'limerick' /\n&limerick dynamic = T /\n&search /",
-            "with velocities it ends 'completed'",
-        ),
-        ("&analysis mode = 'limerick' /\n&limerick overlap_deg = 60 /", "overlap_deg"),
-    ],
-    ids=["geometry", "dynamic search", "range"],
-)
-def test_bad_decks_are_refused(tmp_path: Path, text: str, message: str) -> None:
-    (tmp_path / "deck.nml").write_text(text + "\n")
-    done = run_dda("check", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert message in done.stderr
-
-
 def test_plan_says_the_half_size_that_all_is_compared_with(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text(MODE + "&arch voussoirs = 12, thickness_ratio = 0.12 /\n")
     done = run_dda("check", "deck.nml", cwd=tmp_path)

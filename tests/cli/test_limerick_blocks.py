@@ -77,14 +77,6 @@ def test_load_that_comes_late_overturns(tmp_path: Path) -> None:
     assert run(tmp_path, GROUND + BLOCK + late.format(10.5e3))["verdict"] == "collapsed"
 
 
-def test_steps_that_end_before_the_load_leave_it_undecided(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "load 0 2\n 0 0 0\n 1e6 1e5 0\n")
-    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + MODE)
-    done = run_dda("run", "x.nml", "--set", "analysis%steps=3000", cwd=tmp_path)
-    assert done.returncode == 3
-    assert "step limit reached before the last record of a load" in done.stdout
-
-
 def test_held_line_carries_every_block_that_it_crosses(tmp_path: Path) -> None:
     beside = polygon((1, 0), (2, 0), (2, 2), (1, 2))
     assert run(tmp_path, BLOCK + beside + "fix_line -1 1 3 1\n")["verdict"] == "stable"

@@ -131,12 +131,3 @@ def test_a_block_that_hangs_is_strained_by_its_weight_too(tmp_path: Path, shape:
     found = strain(tmp_path, SHAPES[shape], PRESSED, gravity, above=above)
     exact = hooke((0.0, PRESSED[1] + DENSITY * gravity * above, 0.0), "stress")
     assert found == pytest.approx(exact, rel=1e-9, abs=1e-9 * max(map(abs, exact)))
-
-
-def test_a_static_run_of_blocks_on_which_nothing_bears_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text("block\n0 0\n1 0\n1 1\n0 1\nfix 0.5 0.5\n")
-    deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n&load gravity = 0 /\n"
-    (tmp_path / "x.nml").write_text(deck)
-    done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "x.blocks:1: error: expected a load, got none" in done.stderr

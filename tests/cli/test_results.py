@@ -70,26 +70,6 @@ def test_swept_parameters_without_a_column_get_one(tmp_path: Path) -> None:
     assert [rows[6][name] for name in columns] == ["0.3", "60", "no-slip", "5", "50"]
 
 
-@pytest.mark.parametrize("joints", [".true.", ".false."])
-def test_joints_are_written_where_wanted(tmp_path: Path, joints: str) -> None:
-    text = f"&arch thickness_ratio = 0.12 /\n&output joints = {joints} /\n"
-    run_deck(tmp_path, text)
-    assert (tmp_path / "deck" / "joints.csv").exists() == (joints == ".true.")
-
-
-def test_columns_of_a_run_without_search(tmp_path: Path) -> None:
-    (row,) = run_deck(
-        tmp_path,
-        "&arch half_angle_deg = 80, voussoirs = 35, thickness_ratio = 0.12 /\n" "&joint friction_deg = 45 /\n")
-    assert [row[name] for name in ("deck", "case", "blocks")] == ["deck", "1", "35"]
-    assert numbers(row, "half_angle_deg", "thickness_ratio", "friction_deg") == [80, 0.12, 45]
-    assert [row["mode"], row["geometry"]] == ["static", "reference"]
-    for name in ("critical", "critical_low", "critical_high", "collapses_at", "relative_error"):
-        assert row[name] == ""
-    assert all(int(row[name]) > 0 for name in ("steps", "open_close_iterations", "factorisations"))
-    assert 0.0 < float(row["seconds"]) < 60.0
-
-
 @pytest.mark.parametrize(
     ("name", "group", "text"),
     [
@@ -214,25 +194,6 @@ def test_no_slip_springings_change_the_answer(tmp_path: Path) -> None:
     assert [row["verdict"] for row in run_deck(tmp_path, text)] == ["collapsed", "stable"]
 
 
-def test_joint_sweep_moves_the_haunch(tmp_path: Path) -> None:
-    text = """&arch joints_deg = 0, 50, 90, facet_deg = 0.5 /
-        &search /
-        &sweep parameter = 'joints_deg(2)', first = 40, last = 60, count = 5 /"""
-    rows = run_deck(tmp_path, text)
-    assert [float(row["joints_deg(2)"]) for row in rows] == [40, 45, 50, 55, 60]
-    assert [angles(row, "intrados_hinge_deg") for row in rows] == [[40], [45], [50], [55], [60]]
-
-
-def test_joints_and_equal_voussoirs_are_the_same_arch(tmp_path: Path) -> None:
-    rows = [
-        run_deck(tmp_path, f"&arch {arch} /\n&search /\n")[0]
-        for arch in ("joints_deg = 0, 30, 60, 90", "voussoirs = 6", "voussoirs = 6, facet_deg = 30")
-    ]
-    critical = [float(row["critical"]) for row in rows]
-    assert critical == pytest.approx([critical[0]] * 3, rel=1e-12)
-    assert [row["blocks"] for row in rows] == ["6"] * 3
-
-
 def test_sweep_and_single_run_agree_bit_for_bit(tmp_path: Path) -> None:
     swept = run_deck(tmp_path, "&search /\n&sweep parameter = 'voussoirs', values = 7, 36 /\n")
     (single,) = run_deck(tmp_path, "&search /\n&arch voussoirs = 36 /\n")
@@ -325,15 +286,6 @@ def test_collapse_of_a_chain_is_that_of_its_joint_graph(tmp_path: Path, arch: st
         assert len(chain) == len(graph[name]) > 30
         for mine, others in zip(chain, graph[name], strict=True):
             assert numbers(mine, *columns) == pytest.approx(numbers(others, *columns), abs=1e-7 * largest)
-
-
-def test_joints_of_every_case_are_written(tmp_path: Path) -> None:
-    text = """&arch thickness_ratio = 0.2 /
-        &sweep parameter = 'voussoirs', values = 4, 9 /
-        &sweep parameter = 'radius', values = 1, 2 /"""
-    run_deck(tmp_path, text)
-    cases = [joint["case"] for joint in read_joints(tmp_path)]
-    assert cases == [1] * 5 + [2] * 5 + [3] * 10 + [4] * 10
 
 
 # the scene plan

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import random
 import re
@@ -18,11 +17,6 @@ from dda_command import rows_of, run_dda
 DECK = """&search /
 &sweep parameter = 'half_angle_deg', values = 60, 90, 120 /
 &sweep parameter = 'voussoirs', values = 4, 7, 12, 36 /
-"""
-MOVING = """&arch voussoirs = 6, thickness_ratio = 0.1 /
-&analysis geometry = 'current' /
-&output frames = 3 /
-&sweep parameter = 'radius', values = 5, 8, 10, 12 /
 """
 UNDECIDED = """&arch thickness_ratio = 0.12 /
 &analysis geometry = 'current' /
@@ -107,29 +101,6 @@ def test_row_cut_anywhere_is_computed_again(tmp_path: Path, seed: int) -> None:
     assert sum(again[case] == times[case] for case in times) >= rows
 
 
-@pytest.mark.parametrize("table", ["joints.csv", "log.txt"])
-def test_rows_of_an_unfinished_case_leave_no_trace(tmp_path: Path, table: str) -> None:
-    out = write_deck(tmp_path)
-    run(tmp_path)
-    whole = tables(out)
-    lines = (out / "results.csv").read_text().splitlines(keepends=True)
-    (out / "results.csv").write_text("".join(lines[:-3]))
-    cut(out / table, (out / table).stat().st_size - 5)
-    assert run(tmp_path, "--resume").returncode == 0
-    assert tables(out) == whole
-
-
-def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
-    out = write_deck(tmp_path)
-    run(tmp_path)
-    whole = tables(out)
-    lines = (out / "joints.csv").read_text().splitlines(keepends=True)
-    (out / "joints.csv").write_text("".join(line for line in lines if not line.startswith("5,")))
-    done = run(tmp_path, "--resume")
-    assert "11 of 12 cases are already computed" in done.stdout
-    assert tables(out) == whole
-
-
 @pytest.mark.parametrize(
     "damage",
     [
@@ -154,20 +125,6 @@ def test_damaged_row_is_not_taken_as_good(tmp_path: Path, damage) -> None:
     (out / "results.csv").write_text("".join(lines))
     assert run(tmp_path, "--resume").returncode == 0
     assert tables(out) == whole
-
-
-def test_frames_of_unfinished_cases_are_made_again(tmp_path: Path) -> None:
-    out = write_deck(tmp_path, MOVING)
-    assert run(tmp_path).returncode == 0
-    whole = tables(out)
-    lines = (out / "results.csv").read_text().splitlines(keepends=True)
-    (out / "results.csv").write_text("".join(lines[:3]))
-    cut(out / "frames.csv", (out / "frames.csv").stat().st_size * 3 // 4)
-    (out / "frames" / "case_3.pvd").unlink()
-    done = run(tmp_path, "--resume")
-    assert "2 of 4 cases" in done.stdout
-    assert tables(out) == whole
-    assert (out / "frames" / "case_3.pvd").exists()
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
-import signal
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
@@ -74,23 +72,6 @@ def test_a_dynamic_run_may_take_the_steps_of_its_duration(tmp_path: Path) -> Non
     (row,) = cases_of(tmp_path / "deck")
     assert row["verdict"] == "completed"
     assert int(row["steps"]) >= 600
-
-
-def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
-    sweep = "&sweep parameter = 'steps', values = 400, 1, 400 /\n"
-    write_decks(tmp_path, deck=STABLE + "&analysis geometry = 'current' /\n" + sweep)
-    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
-    verdicts = [row["verdict"] for row in cases_of(tmp_path / "deck")]
-    assert verdicts == ["stable", "undecided", "stable"]
-    assert "step limit" in (tmp_path / "deck" / "log.txt").read_text()
-
-
-def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
-    write_decks(tmp_path, deck="&search /\n&analysis geometry = 'current', steps = 1 /\n")
-    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
-    (row,) = cases_of(tmp_path / "deck")
-    assert row["verdict"] == "undecided"
-    assert row["critical"] == row["critical_low"] == row["critical_high"] == ""
 
 
 # results that cannot be written
@@ -346,26 +327,6 @@ def test_more_jobs_than_cases_do_no_harm(tmp_path: Path, jobs: str) -> None:
     done = run_dda("run", "deck.nml", "--jobs", jobs, cwd=tmp_path)
     assert done.returncode == 0
     assert len(cases_of(tmp_path / "deck")) == 2
-
-
-def test_rows_survive_a_kill(tmp_path: Path) -> None:
-    many = "&sweep parameter = 'radius', first = 1, last = 100, count = 100000 /\n"
-    write_decks(tmp_path, deck=STABLE + many + "&output joints = .false. /\n")
-    table = tmp_path / "deck" / "results.csv"
-    with subprocess.Popen(
-        [os.environ["DDA"], "run", "deck.nml", "--quiet"], cwd=tmp_path, stdin=subprocess.DEVNULL
-    ) as process:
-        patience = time.monotonic() + 60.0
-        while not table.exists() or table.stat().st_size < 10000:
-            assert process.poll() is None
-            assert time.monotonic() < patience
-            time.sleep(0.01)
-        process.send_signal(signal.SIGKILL)
-    rows = cases_of(tmp_path / "deck")
-    assert table.read_text().endswith("\n")
-    assert 20 < len(rows) < 100000
-    assert [int(row["case"]) for row in rows] == list(range(1, len(rows) + 1))
-    assert all(row["verdict"] == "stable" and row["seconds"] for row in rows)
 
 
 @pytest.mark.parametrize("name", ["-dash.nml", "--quiet", "--", "-"])
