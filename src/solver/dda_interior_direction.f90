@@ -79,7 +79,7 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
 
-      if (springs%is_wide .or. .not. turn%left > turn%accepted) return
+      if (springs%asked_wide .or. .not. turn%left > turn%accepted) return
       call add_digits(graph, path%mass, springs)
       if (.not. springs%is_wide) return
       call respond_to_live_load(graph, path, springs, turn)

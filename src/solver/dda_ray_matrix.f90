@@ -27,8 +27,8 @@ module dda_ray_matrix
       type(block_factor_t) :: factor
       !> Numbers of the factor with more digits
       real(rk), allocatable :: wide(:)
-      !> True if that one is used
-      logical :: is_wide = .false.
+      !> True if that one is used, and if it was asked for
+      logical :: is_wide = .false., asked_wide = .false.
       !> True if the factor exists
       logical :: usable = .false.
       !> Unit of length: [m]
@@ -84,6 +84,7 @@ contains
          end associate
       end do
       springs%is_wide = .false.
+      springs%asked_wide = .false.
       call factorise(springs%matrix, springs%factor)
       springs%usable = springs%factor%usable
       springs%n_factorisation = springs%n_factorisation + 1
@@ -130,6 +131,7 @@ contains
             & matmul(pushed(:, :, side), transpose(arm(:, :, 3 - side)))
       end do
       call factorise_wide(springs%factor%plan, diagonal, coupling, springs%wide, springs%is_wide)
+      springs%asked_wide = .true.
       springs%usable = springs%usable .or. springs%is_wide
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine add_digits
