@@ -144,13 +144,19 @@ def test_corner_that_rolls_begins_to_slip_where_friction_is_used_up() -> None:
         [states[1].x, states[1].vx, states[1].spin], abs=1e-7)
 
 
-def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
-    """Two free blocks turn towards one another: a corner slides along an edge that turns, and off its end."""
+def corner_on_an_edge(turn: float, along: float) -> World:
+    """A bar that turns towards a free square and has met its lowest corner, without friction and gravity."""
     world = World((0.0, 0.0))
     world.add(rectangle(-1.0, -0.2, 2.0, 0.4), (0.0, 0.0, 1.0))
-    world.add(turned(rectangle(-0.3, -0.3, 0.6, 0.6), 0.7), (0.0, 0.0, 0.0))
-    world.place[1, :2] = 0.5, 0.2 - min(y for _, y in world.corners(np.array([[0.0] * 3, [0.0, 0.0, 0.0]]))[1])
+    world.add(turned(rectangle(-0.3, -0.3, 0.6, 0.6), turn), (0.0, 0.0, 0.0))
+    world.place[1, :2] = along, 0.2 - min(y for _, y in world.corners(np.zeros((2, 3)))[1])
     world.run(1e-3)
+    return world
+
+
+def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
+    """Two free blocks turn towards one another: a corner slides along an edge that turns, and off its end."""
+    world = corner_on_an_edge(0.7, 0.5)
     (contact,), kept = world.touching(), world.energy()
     for _ in range(20):
         world.run(0.02)
@@ -163,11 +169,7 @@ def test_corner_on_a_turning_edge_does_no_work_without_friction() -> None:
 
 def test_corner_of_an_edge_that_a_block_has_left_pushes_it_no_more() -> None:
     """A corner slides off its edge: the end of the edge is near the block then, and separates from it."""
-    world = World((0.0, 0.0))
-    world.add(rectangle(-1.0, -0.2, 2.0, 0.4), (0.0, 0.0, 1.0))
-    world.add(turned(rectangle(-0.3, -0.3, 0.6, 0.6), 1.02), (0.0, 0.0, 0.0))
-    world.place[1, :2] = 0.9, 0.2 - min(y for _, y in world.corners(np.array([[0.0] * 3, [0.0, 0.0, 0.0]]))[1])
-    world.run(1e-3)
+    world = corner_on_an_edge(1.02, 0.9)
     kept = world.energy()
     world.run(0.8)
     assert world.lost > 0.0 and world.energy() == pytest.approx(kept, rel=1e-7)

@@ -14,9 +14,9 @@ module graph_path
       type(loading_path_t) :: path
       !> Load, forces and motion
       type(coulomb_state_t) :: state
-      !> What grows
+      !> Rates of forces and motion with the load
       type(path_rate_t) :: rate
-      !> How the last piece of it went
+      !> Outcome of the last piece of the path
       type(path_result_t) :: result
    end type path_walk_t
 
