@@ -26,6 +26,7 @@ module dda_contact_transfer
       real(wp) :: slip = 0.0_wp       !! Slip that the springs still carry [m]
       real(wp) :: stiffness = 0.0_wp  !! Stiffness of the springs [N/m per metre depth]
       real(wp) :: tension = 0.0_wp    !! Tensile strength [N/m]
+      logical :: carries = .false.    !! True if its joint carries a force
       logical :: passed_on = .false.  !! True if a contact of the next step continues it
    end type past_contact_t
 
@@ -156,7 +157,8 @@ contains
                list(n)%block = joint%block
                list(n)%place = k
                list(n)%force = [force(k), force(3)*joint%contact(k)%share]
-               if (sum(force(1:2)) > 0.0_wp) list(n)%force(2) = force(3)*force(k)/sum(force(1:2))
+               list(n)%carries = sum(force(1:2)) > 0.0_wp
+               if (list(n)%carries) list(n)%force(2) = force(3)*force(k)/sum(force(1:2))
                list(n)%slip = slip_at(system%moved, joint%contact(k)) &
                   & - contacts%past_slip(j)
                list(n)%stiffness = contacts%springs%stiffness(j)
@@ -356,8 +358,8 @@ contains
       end do
    end function same_contact
 
-   !> The nearest previous contact of the same blocks that is not yet continued and has a force or
-   !> tensile strength, or 0
+   !> The nearest previous contact of the same blocks that is not yet continued and whose joint
+   !> carries a force, or that has tensile strength, or 0
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
       type(block_system_t), intent(in) :: system
       type(past_contact_t), intent(in) :: past(:)
@@ -374,7 +376,7 @@ contains
       do m = place_in(past_pair, pair), size(past)
          if (past_pair(m) /= pair) exit
          associate (old => past(order(m)))
-            if (old%passed_on .or. .not. old%force(1) + old%tension > 0.0_wp) cycle
+            if (old%passed_on .or. .not. (old%carries .or. old%tension > 0.0_wp)) cycle
             distance = norm2(system%moved(:, old%contact%vertex) &
                & - system%moved(:, contact%vertex))
          end associate
