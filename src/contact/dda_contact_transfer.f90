@@ -30,8 +30,9 @@ module dda_contact_transfer
       logical :: passed_on = .false.  !! True if a contact of the next step continues it
    end type past_contact_t
 
-   !> Share of the joint length within which an open end counts for slip
-   real(wp), parameter :: closeness = 1.0e-4_wp
+   !> Share of the joint length within which an open end counts for slip: beyond the rounding of
+   !> gaps, and so little that a hinge slips at its closed end alone
+   real(wp), parameter :: closeness = 1.0e-6_wp
 
 contains
 

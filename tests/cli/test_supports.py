@@ -86,6 +86,8 @@ def test_springings_collapse_as_blocks_by_hand(tmp_path: Path, support: str, way
 @pytest.mark.parametrize(("count", "half_angle_deg", "support", "ways"), [
     (15, 80.0, "left_dx = -5e-3, right_dx = 5e-3", ((-5e-3, 0.0), (5e-3, 0.0))),
     (11, 60.0, "left_dx = -15e-3", ((-15e-3, 0.0), (0.0, 0.0))),
+    (9, 49.7, "left_dx = -8.92e-3, left_dy = 7.81e-3, right_dx = -6.2e-3", ((-8.92e-3, 7.81e-3), (-6.2e-3, 0.0))),
+    (16, 76.0, "left_dy = -6.08e-3, right_dx = -3.4e-3, right_dy = 2.84e-3", ((0.0, -6.08e-3), (-3.4e-3, 2.84e-3))),
     (16, 70.0, "right_dx = 4e-3, right_dy = -8e-3", ((0.0, 0.0), (4e-3, -8e-3))),
     (9, 85.0, "left_dy = -6e-3, right_dx = -9e-3", ((0.0, -6e-3), (-9e-3, 0.0)))])
 def test_displaced_springings_move_voussoirs_as_blocks_by_hand(
