@@ -202,38 +202,30 @@ contains
       end associate
    end function forces_around
 
-   !> Keep the angular momentum of each pair of blocks: the rows of a joint between turned edges
-   !> may lie off one line. The two blocks give back what that brings in by one change of spin
-   pure subroutine keep_moment(run, after)
-      !> The run, with the springs that half of the forces have acted by; spins are changed
-      type(run_t), intent(inout) :: run
-      !> The springs after the step, which the other half acts by
-      type(joint_springs_t), intent(in) :: after
-      real(wp) :: change(size(run%step%velocity, 2)), half_way(6, size(run%system%area)), moment
+   !> Keep the angular momentum of each pair of blocks: the rows of a joint half way between turned
+   !> edges may lie off one line. The two blocks give back what that brings in by one change of spin
+   pure subroutine keep_moment(run, velocity)
+      type(run_t), intent(in) :: run
+      !> Velocities that the forces of the motion have changed: (n_dof, n_equation)
+      real(wp), intent(inout) :: velocity(:, :)
+      real(wp) :: change(size(velocity, 2)), half_way(6, size(run%system%area))
       integer :: j, pair(2)
 
       change = 0.0_wp
-      associate (step => run%step)
-         half_way = (run%system%motion + step%after%motion)/2.0_wp
-         do j = 1, size(run%contacts%joint)
-            pair = after%equation(:, j)
-            if (any(pair == 0)) cycle
-            moment = step%dt/sum(run%equations%mass(3, 3, pair)) &
-               & *(excess(run, run%contacts%springs, j, step%state%force(:, j), half_way) &
-               & + excess(run, after, j, step%mean_force(:, j) - step%state%force(:, j), &
-               & step%after%motion))
-            change(pair) = change(pair) - moment
-         end do
-         step%velocity(3, :) = step%velocity(3, :) + change
-      end associate
+      half_way = (run%system%motion + run%step%after%motion)/2.0_wp
+      do j = 1, size(run%contacts%joint)
+         pair = run%contacts%springs%equation(:, j)
+         if (any(pair == 0)) cycle
+         change(pair) = change(pair) - run%step%dt*excess(run, j, half_way) &
+            & /sum(run%equations%mass(3, 3, pair))
+      end do
+      velocity(3, :) = velocity(3, :) + change
    end subroutine keep_moment
 
-   !> Moment of the forces of a joint on both its blocks
-   pure real(wp) function excess(run, springs, j, force, motion)
+   !> Moment of the force of a joint on both its blocks
+   pure real(wp) function excess(run, j, motion)
       type(run_t), intent(in) :: run
-      type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: j              !! Number of the joint
-      real(wp), intent(in) :: force(3)      !! Its forces: (3) [N/m]
       real(wp), intent(in) :: motion(:, :)  !! Motion of the blocks: (6, n_block)
       real(wp) :: turn(3)
       integer :: b, side
@@ -241,7 +233,7 @@ contains
       excess = 0.0_wp
       do side = 1, 2
          b = run%contacts%joint(j)%block(side)
-         turn = matmul(springs%row(1:3, :, side, j), force)
+         turn = matmul(run%contacts%springs%row(1:3, :, side, j), run%step%state%force(:, j))
          excess = excess + turn(3) + cross(run%system%centroid(:, b) + motion(1:2, b), turn(1:2))
       end do
    end function excess

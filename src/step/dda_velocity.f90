@@ -51,8 +51,10 @@ module dda_velocity
       real(wp), allocatable :: part(:, :)
       !> Forces up to an impact that ends the step; none where there is none: (3, n_joint) [N/m]
       real(wp), allocatable :: force_before(:, :)
-      !> Velocities by constant acceleration: (n_dof, n_equation)
+      !> Velocities by constant acceleration, with the moments of pairs kept: (n_dof, n_equation)
       real(wp), allocatable :: steady(:, :)
+      !> Energy of motion before moments are kept [J/m]
+      real(wp) :: energy = 0.0_wp
       !> Blocks whose strain follows its load: (n_block)
       logical, allocatable :: follows(:)
       !> Rates at which their strain opens the contacts and lets them slip: (3, n_joint) [m/s]
@@ -73,7 +75,7 @@ contains
 
       call see_impacts(run, impact)
       associate (step => run%step, equations => run%equations)
-         before = kinetic_energy(equations, impact%steady)
+         before = impact%energy
          allowed = before - sum(step%state%force*step%state%increment) + energy_noise*before
          step%restitution = 1.0_wp
          step%fastest_impact = 0
@@ -204,6 +206,8 @@ contains
       at_end = meets_at_end(run, meets)
       associate (start => packed_velocity(run%system, size(run%step%state%motion, 1)))
          impact%steady = 2.0_wp/run%step%dt*run%step%state%motion - start
+         impact%energy = kinetic_energy(run%equations, impact%steady)
+         call keep_moment(run, impact%steady)
          if (at_end) then
             before = relative_displacement(impact%springs, impact%steady) - run%step%dt &
                & *parting_acceleration(run%equations, run%contacts%springs, 0.0_wp*start, &
@@ -272,7 +276,6 @@ contains
          if (.not. step%has_velocity) return
          step%velocity = state%motion/step%dt
       end associate
-      call keep_moment(run, impact%springs)
    end subroutine solve_rates
 
    !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M/dt v - B1' f
