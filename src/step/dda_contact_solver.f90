@@ -24,7 +24,7 @@ module dda_contact_solver
    implicit none
    private
 
-   public :: group_joints, hold_work, max_energy_gain, settle_contacts
+   public :: group_joints, hold_work, max_energy_gain, motion_tolerance, settle_contacts
 
    !> Gap tolerance over the free fall of the longest step
    real(wp), parameter :: gap_tolerance = 1.0e-7_wp
