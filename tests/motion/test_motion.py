@@ -21,7 +21,10 @@ FOUND = [("elastic_row", 8128002), ("elastic_row", 9119004), ("elastic_row", 101
          ("polygon_on_resting", 9830000), ("spin_rough_gravity", 9501009), ("spin_rough_gravity", 8100000),
          ("spin_rough_gravity", 8100002), ("spin_rough_gravity", 9620021), ("spin_smooth_gravity", 9830002),
          ("flight", 50), ("flight", 73), ("flight", 86), ("polygons_meet", 12500002),
-         ("polygons_meet", 47150003), ("polygons_meet", 48000081)]
+         ("polygons_meet", 47150003), ("polygons_meet", 48000042), ("polygons_meet", 48000081),
+         ("polygons_meet", 13700016)]
+#: Seeds whose corners roll, some onto an edge
+ROLLING = [("polygons_meet", 13700016), ("polygons_meet", 48000042), ("spin_rough_gravity", 9620021)]
 #: Seeds whose answers depended on the step or the unknowns
 DEPENDED = [("touching_row", 2711000)]
 
@@ -54,3 +57,13 @@ def test_seeds_that_were_wrong_are_exact(family: str, seed: int, tmp_path: Path)
 def test_seeds_that_depended_on_the_step_do_not(family: str, seed: int, tmp_path: Path) -> None:
     found = run.ask_steps(Path(os.environ["DDA"]), tmp_path, family, seed)
     assert not found.wrong and not found.is_slow, found.wrong
+
+
+@pytest.mark.parametrize(("family", "seed"), ROLLING)
+def test_errors_of_rolling_fall_by_four_with_half_the_step(family: str, seed: int, tmp_path: Path) -> None:
+    scene = run.scene_of(family, seed)
+    errors = []
+    for step in (2e-3, 1e-3, 5e-4):
+        one = run.run_scene(Path(os.environ["DDA"]), tmp_path / str(step), scene, time_step=step)
+        errors.append(max(abs(check.value(one) - check.expected) / check.tolerance for check in scene.checks))
+    assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([4.0, 4.0], rel=0.07)
