@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -67,3 +68,11 @@ def test_errors_of_rolling_fall_by_four_with_half_the_step(family: str, seed: in
         one = run.run_scene(Path(os.environ["DDA"]), tmp_path / str(step), scene, time_step=step)
         errors.append(max(abs(check.value(one) - check.expected) / check.tolerance for check in scene.checks))
     assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([4.0, 4.0], rel=0.07)
+
+
+def test_rolling_loses_energy_by_contacts_alone(tmp_path: Path) -> None:
+    """Without weight and friction the column `numerical` is rounding."""
+    scene = run.scene_of("polygons_meet", 13700016)
+    scene = replace(scene, groups=scene.groups + "&output energy = T /\n")
+    rows = run.run_scene(Path(os.environ["DDA"]), tmp_path, scene).energy
+    assert max(abs(row["numerical"]) for row in rows) < 1e-12 * rows[0]["kinetic"]
