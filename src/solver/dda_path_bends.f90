@@ -163,19 +163,36 @@ contains
       type(event_t), intent(in) :: limit     !! The limit
       type(event_t), intent(inout) :: first  !! The first one so far
       real(wp) :: after(2), before(2), share
+      logical :: leaves
 
       if (limit%kind == event%kind .and. limit%joint == event%joint &
          & .and. limit%corner == event%corner) return
       after = left_to_event(joints, state, rates, limit)
-      if (.not. after(1) < -weak_force) return
+      ! rates that may be none lead to no limit
+      if (.not. after(1) < -weak_force - event%distance*rates%still &
+         & /joints%graph%compliance(limit%joint)) return
       before = left_to_event(joints, last, rates, limit)
+      leaves = before(1) > weak_force .or. before(2) > 0.0_wp
       share = 0.5_wp
-      if (before(1) > weak_force) share = before(1)/(before(1) - after(1))
+      if (leaves) share = root_of([max(0.0_wp, before(1)), event%distance*before(2), after(1)])
       if (.not. share*event%distance < first%distance) return
       first = event_t(share*event%distance)
-      if (before(1) > weak_force) first = event_t(first%distance, limit%kind, limit%joint, &
-         & limit%corner)
+      if (leaves) first = event_t(first%distance, limit%kind, limit%joint, limit%corner)
    end subroutine see_limit
+
+   !> The first positive root of a parabola, of which the end is negative
+   pure real(wp) function root_of(part) result(root)
+      real(wp), intent(in) :: part(3)  !! Its value, not negative, and slope at 0, its value at 1
+      real(wp) :: bend, spread
+
+      bend = part(3) - part(1) - part(2)
+      spread = sqrt(max(0.0_wp, part(2)**2 - 4.0_wp*bend*part(1)))
+      if (part(2) > 0.0_wp) then
+         root = -0.5_wp*(part(2) + spread)/bend
+      else
+         root = 2.0_wp*part(1)/(spread - part(2))
+      end if
+   end function root_of
 
    !> A state whose joints do not crush, at a share of its load at which they crush by little
    module procedure begin_to_crush
