@@ -29,8 +29,8 @@ contains
    module procedure follow_bend
       type(coulomb_state_t) :: last
       type(event_t) :: aim
-      integer :: try
       integer, parameter :: most_tries = 60
+      integer :: try
 
       last = state
       event = next_event(path%joints, state, rates, longest)
@@ -106,7 +106,8 @@ contains
             step%opening = step%opening + more*onward%opening
             step%force = step%force + more*onward%force
          end if
-         if (maxval(abs(step%motion)) > max(largest, weak_force)) return
+         ! forces that count as none may move soft blocks far: no other state
+         if (maxval(abs(step%motion)) > largest .and. maxval(abs(rest)) > weak_force) return
          call go_ahead(path%joints, step, 1.0_wp, state)
       end do
    end subroutine walk
@@ -130,9 +131,12 @@ contains
       type(coulomb_state_t), intent(in) :: last, state
       type(rates_t), intent(in) :: rates  !! Rates of the first one
       type(event_t), intent(in) :: event
+      real(wp) :: still
       integer :: i, j
 
       first = event
+      ! slip by forces that count as none
+      still = weak_force*max(1.0_wp, maxval(abs(rates%motion)))
       do j = 1, size(state%slip)
          do i = 1, 2
             if (joints%end_role(i, j) == end_role%contact) call see_limit(joints, last, state, &
@@ -147,7 +151,7 @@ contains
                & event_kind%slides_back, j, 0), first)
          else if (abs(state%face(3, j)) == face%slides) then
             ! the joint turns back on the way
-            if (real(state%face(3, j), wp)*(state%slip(j) - last%slip(j)) > weak_force &
+            if (real(state%face(3, j), wp)*(state%slip(j) - last%slip(j)) > still &
                & .and. first%distance > 0.5_wp*event%distance) &
                & first = event_t(0.5_wp*event%distance)
          end if

@@ -16,6 +16,20 @@ BRIDGE = (
     "&joint friction_deg = 40 /\n&vehicle axles = 1000, position = -2.4 /\n" + ASSOCIATED + SEARCH
 )
 
+TURNING = (
+    "&arch shape = 'segmental', span = 11.6, voussoirs = 18, rise = 5.382, crown_thickness = 0.5979, "
+    "springing_thickness = 1.056, spans = 3, pier_width = 3.086, pier_height = 3.816, rings = 4 /\n"
+    "&joint friction_deg = 42.95 /\n&material compressive_strength = 13700000.0 /\n"
+    "&fill height = 0.2281, unit_weight = 17840.0, passive_coefficient = 0.2791 /\n"
+    "&vehicle axles = 107600.0, 54290.0, 57510.0, 105400.0, 45750.0, spacings = 2.562, 5.057, 2.418, 1.123, "
+    "length = 0.3, position = -4.16 /\n",
+    "&arch shape = 'basket', span = 3.324, voussoirs = 18, rise = 0.7025, thickness = 0.2446, spans = 3, "
+    "pier_width = 0.9312, pier_height = 1.163, rings = 4 /\n"
+    "&joint friction_deg = 23.64 /\n&material compressive_strength = 606900.0, unit_weight = 22020.0 /\n"
+    "&fill height = 0.2189, unit_weight = 20450.0, spread = 0.25, backing_height = 0.8063 /\n"
+    "&vehicle axles = 101900.0, 63650.0, spacings = 1.4, length = 0.3, position = -0.104 /\n",
+)
+
 
 def material(strength: float, weight: float = 1.0) -> str:
     """Blocks of a weight and a strength."""
@@ -227,3 +241,12 @@ def test_a_search_finds_the_strength_of_two_blocks_between_walls(tmp_path: Path)
         "&search parameter = 'compressive_strength', low = 1e5, high = 1e7 /\n"
     (row,) = rows(tmp_path, deck, beam(2.0, 0.5))
     assert float(row["critical"]) == pytest.approx(4e5, rel=1e-7)
+
+
+@pytest.mark.parametrize("deck", TURNING)
+def test_rings_whose_joints_turn_back_from_their_limits_are_decided(tmp_path: Path, deck: str) -> None:
+    """Joints near their limits leave them and come back: the path aims at where they do, step by step."""
+    (row,) = rows(tmp_path, deck + "&analysis flow = 'coulomb' /\n" + SEARCH, head="")
+    assert row["verdict"] == "found"
+    assert 0.0 < float(row["critical_high"]) <= float(row["exact_high"])
+    assert int(row["factorisations"]) < 5000
