@@ -14,7 +14,6 @@ submodule (dda_compute_case) dda_worst_load
    type :: chase_t
       type(joint_graph_t) :: graph         !! The joints
       real(wp), allocatable :: dead(:, :)  !! Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
-      logical :: stands = .false.          !! True if they are carried
       integer :: missed = 0                !! Loads without a limit, before one was found
       real(wp) :: near = 0.0_wp            !! Arcs shorter than this are not halved [m]
       !> True if each load is carried at the least factor so far, or has its own limit found
@@ -41,7 +40,6 @@ contains
 
       chase%graph = graph
       chase%dead = dead
-      chase%stands = stands
       if (.not. stands) then
          call decide_load(graph, dead, decision)
          if (decision%state == load_state%falls) then
@@ -49,7 +47,6 @@ contains
             least%place = 0.5_wp*(arc(1)%from + arc(size(arc))%to)
             return
          end if
-         chase%stands = decision%state == load_state%stands
       end if
       chase%near = near
       stride = size(arc)
@@ -113,7 +110,7 @@ contains
       if (least%factor < no_limit .or. (to - from)*(arc(k)%to - arc(k)%from) <= chase%near) return
       live = 0.0_wp
       call add_live(2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), arc(k), live)
-      call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+      call find_limit(chase%graph, chase%dead, live, gap, limit, stands=.true.)
       if (limit%state == limit_state%not_converged) least%is_known = .false.
       if (limit%state /= limit_state%found) return
       call find_bounded(arc, k, from, middle, chase, least)
@@ -193,7 +190,7 @@ contains
          live = 0.0_wp
          call add_live(weights(at), arc(i), live)
          if (.not. maxval(abs(live)) > 0.0_wp) return
-         call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+         call find_limit(chase%graph, chase%dead, live, gap, limit, stands=.true.)
          if (limit%state == limit_state%not_converged) then
             ! where no limit is found at so many places none will be; at the end each one matters
             if (least%factor >= no_limit) chase%missed = chase%missed + 1
