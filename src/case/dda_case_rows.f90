@@ -257,7 +257,8 @@ contains
    end subroutine tell_open_bracket
 
    !> Fill the columns of a closed bracket. If its ends are at different distances from the value at
-   !> which the collapse stops, that value is its middle; its width is at least the rounding error
+   !> which the collapse stops, that value is its middle; its width is at least the rounding error,
+   !> and what jumps leave
    pure subroutine tell_bracket(critical, row)
       type(critical_t), intent(in) :: critical
       type(result_row_t), intent(inout) :: row
@@ -269,8 +270,8 @@ contains
       if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) middle = critical%stop
       half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
       row%critical = some_number(middle)
-      row%critical_low = some_number(middle - half)
-      row%critical_high = some_number(middle + half)
+      row%critical_low = some_number(min(middle - half, critical%reach(1)))
+      row%critical_high = some_number(max(middle + half, critical%reach(2)))
       row%collapses_at = merge("low ", "high", critical%falls < critical%stands)
       if (row%exact%known) row%relative_error = &
          & some_number((row%critical%value - row%exact%value)/row%exact%value)

@@ -12,13 +12,14 @@ module dda_load_coefficient
    use dda_path_event, only : path_end
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph, graph_verdict_t, has_friction
+   use dda_search, only : limit_t
    use dda_settings, only : flow_rule, full_push, settings_t
    implicit none
    private
 
    public :: added_loads, can_follow, carry_load, coefficient, full_loads
    public :: is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end
-   public :: with_coefficient
+   public :: values_between, with_coefficient
 
    !> Coefficient beside which round-off of constant loads is negligible
    real(wp), parameter :: many = 2.0_wp**40
@@ -154,42 +155,62 @@ contains
       live = cos(value)*live - sin(value)*full_loads(none, scene, graph)
    end function added_loads
 
-   !> Value of what is searched at which a path ended
-   pure real(wp) function value_at_end(load, far, stations, proof) result(value)
+   !> Value of what is searched at which a path ended, or at another share of its last leg
+   pure real(wp) function value_at_end(load, far, stations, proof, share) result(value)
       integer, intent(in) :: load
       real(wp), intent(in) :: far                    !! Its value at the end of the path
       type(load_stations_t), intent(in) :: stations  !! Stations of the path
       type(graph_verdict_t), intent(in) :: proof
-      real(wp) :: gravity(2)
+      real(wp), intent(in), optional :: share        !! The share
+      real(wp) :: gravity(2), reached
       integer :: i
 
       i = proof%station
+      reached = proof%share
+      if (present(share)) reached = share
       value = 0.0_wp
       if (ubound(stations%tilt, 1) == 0) return
-      associate (before => 1.0_wp - proof%share, after => proof%share)
+      associate (before => 1.0_wp - reached, after => reached)
          select case (load)
          case (searched_load%push)
             value = before*stations%push(i) + after*stations%push(i + 1)
          case (searched_load%factor)
             value = (before*stations%live(i) + after*stations%live(i + 1))*far
          case default
-            gravity = gravity_at_end(stations, proof)
+            gravity = gravity_on_leg(stations, i, reached)
             value = atan2(gravity(1), gravity(2))
          end select
       end associate
    end function value_at_end
 
-   !> Gravity where a path has ended, over that at its beginning: to the right and down
-   pure function gravity_at_end(stations, proof) result(gravity)
-      type(load_stations_t), intent(in) :: stations
+   !> Values between which a path ends as its jumps may lead elsewhere and its joints crush, up to
+   !> the associated limit
+   pure function values_between(load, far, stations, proof, limit) result(value)
+      integer, intent(in) :: load
+      real(wp), intent(in) :: far                    !! Its value at the end of the path
+      type(load_stations_t), intent(in) :: stations  !! Stations of the path
       type(graph_verdict_t), intent(in) :: proof
+      type(limit_t), intent(in) :: limit             !! The associated limit
+      real(wp) :: value(2)                           !! The least and the largest
+
+      value = [value_at_end(load, far, stations, proof, proof%reach(1)), &
+         & value_at_end(load, far, stations, proof, proof%reach(2))]
+      if (limit%known .and. abs(value(2)) > abs(limit%value(2))) value(2) = limit%value(2)
+      value = [minval(value), maxval(value)]
+   end function values_between
+
+   !> Gravity at a share of a leg, over that at the beginning of the path: to the right and down
+   pure function gravity_on_leg(stations, station, share) result(gravity)
+      type(load_stations_t), intent(in) :: stations
+      integer, intent(in) :: station  !! Station where the leg begins
+      real(wp), intent(in) :: share
       real(wp) :: gravity(2), part(2)
 
-      associate (i => proof%station)
-         part = [1.0_wp - proof%share, proof%share]*stations%weight(i:i + 1)
+      associate (i => station)
+         part = [1.0_wp - share, share]*stations%weight(i:i + 1)
          gravity = [sum(part*sin(stations%tilt(i:i + 1))), sum(part*cos(stations%tilt(i:i + 1)))]
       end associate
-   end function gravity_at_end
+   end function gravity_on_leg
 
    !> Give blocks their whole weight where a path has ended on a chord between two directions of it
    pure subroutine restore_weight(stations, proof)
@@ -199,7 +220,7 @@ contains
       real(wp) :: weight
 
       if (ubound(stations%tilt, 1) == 0) return
-      weight = norm2(gravity_at_end(stations, proof))
+      weight = norm2(gravity_on_leg(stations, proof%station, proof%share))
       proof%state%force = proof%state%force/weight
       proof%state%load = proof%state%load/weight
    end subroutine restore_weight

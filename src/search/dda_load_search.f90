@@ -7,7 +7,8 @@ submodule (dda_critical) dda_load_search
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_limit_load, only : find_limit, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
-      & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, with_coefficient
+      & is_push, knows_no_order, may_seek, restore_weight, seek_rest, value_at_end, &
+      & values_between, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_path_event, only : path_end
    use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
@@ -21,6 +22,8 @@ submodule (dda_critical) dda_load_search
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
       real(wp) :: half = 0.0_wp  !! Its error
+      !> Least and largest value, as jumps may lead elsewhere and joints crush
+      real(wp) :: reach(2) = [huge(1.0_wp), -huge(1.0_wp)]
       type(limit_t) :: limit     !! The associated limit, with the sign of the side
       !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
       real(wp), allocatable :: beyond(:, :)
@@ -196,6 +199,8 @@ contains
             proof%flow = flow_rule%associated
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
+         if (side%end == path_end%collapsed .and. proof%flow == flow_rule%coulomb) &
+            & side%reach = values_between(family%load, far, stations, proof, side%limit)
          if (is_at_limit(side)) call take_associated(last, search, side)
       end associate
    end subroutine follow_side
@@ -255,6 +260,7 @@ contains
       associate (proof => side%proof, limit => side%limit)
          proof%flow = flow_rule%associated
          side%end = path_end%collapsed
+         side%reach = [huge(1.0_wp), -huge(1.0_wp)]
          side%value = 0.5_wp*sum(limit%value)
          side%half = max(0.5_wp*abs(limit%value(2) - limit%value(1)), &
             & 4.0_wp*epsilon(1.0_wp)*abs(side%value), &
@@ -314,6 +320,7 @@ contains
          critical%falls = search%low + max(0.0_wp, right%value - right%half - low) &
             & *(search%high - search%low)/(high - low)
          call keep_collapse(scene, right, critical)
+         if (right%proof%n_jump > 0) call keep_limit(search, low, high, right, critical)
       else if (falls_left .and. .not. left%value + left%half < high) then
          critical%verdict = verdict%collapsed
          critical%falls = search%high
@@ -347,6 +354,7 @@ contains
       scale = (search%high - search%low)/(high - low)
       critical%verdict = verdict%found
       critical%half = side%half*scale
+      if (side%reach(1) <= side%reach(2)) critical%reach = search%low + (side%reach - low)*scale
       critical%falls = search%low + (side%value + outward*side%half - low)*scale
       critical%stands = search%low + (side%value - outward*side%half - low)*scale
       critical%stop = search%low + (side%value - low)*scale

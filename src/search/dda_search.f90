@@ -53,6 +53,8 @@ module dda_search
       real(wp) :: falls = 0.0_wp         !! Value nearest to critical at which the structure falls
       real(wp) :: stands = 0.0_wp        !! Value nearest to critical at which it stands
       real(wp) :: half = 0.0_wp  !! Half the width that rounding and tolerance leave to the bracket
+      !> Least and largest critical value, as jumps of the path may lead elsewhere and joints crush
+      real(wp) :: reach(2) = [huge(1.0_wp), -huge(1.0_wp)]
       real(wp) :: stop = 0.0_wp   !! Where the last collapse stops, if it does
       logical :: stops = .false.  !! True if that is known
       !> Decision at falls, if there is one; without its blocks and springs

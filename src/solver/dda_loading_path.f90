@@ -53,6 +53,9 @@ module dda_loading_path
       real(wp) :: softness = 0.0_wp
       !> Largest gap of the first state, and what supports that move have opened since
       real(wp) :: given = 0.0_wp
+      !> Largest changes of forces by the jumps so far, which are unrelated: root of the sum of
+      !> their squares [N/m]
+      real(wp) :: jumped = 0.0_wp
       !> Factorisations that it may take under the dead load, and from there to an end
       integer, public :: most_factorisations = 0
    end type loading_path_t
@@ -79,6 +82,12 @@ module dda_loading_path
       real(wp), allocatable :: jump(:)
       !> Largest displacement of a jump [m]
       real(wp) :: largest_jump = 0.0_wp
+      !> Growth beyond its length in which joints that crush may still find balance
+      real(wp) :: rest = 0.0_wp
+      !> Length of its last step, and largest rate of motion there
+      real(wp) :: step = 0.0_wp, pace = 0.0_wp
+      !> Growth that changes a force as much as the jumps have changed some, here and before
+      real(wp) :: spread = 0.0_wp
       !> Factorisations
       integer :: n_factorisation = 0
       !> Velocities of the collapse, the largest 1: (3, n_block) [1, 1, 1/m]; without
@@ -216,7 +225,7 @@ contains
       real(wp), intent(in) :: h_end
       type(path_result_t), intent(out) :: result
       type(path_rate_t) :: way
-      real(wp) :: first(3, size(rate%load, 2)), strength
+      real(wp) :: first(3, size(rate%load, 2)), before(3, size(state%force, 2)), strength
 
       allocate (result%jump(0))
       path%equations%base%n_factorisation = 0
@@ -234,6 +243,7 @@ contains
          strength = max(strength, maxval(maxval(abs(way%opening), 1)/path%joints%graph%compliance))
       end if
       first = state%load
+      before = state%force
       if (strength > 0.0_wp) then
          way%load = plain(way%load/strength)
          if (allocated(way%opening)) way%opening = plain(way%opening/strength)
@@ -251,6 +261,11 @@ contains
          call follow(path, first, way, strength*h_end, state, result)
          result%reached = result%reached/strength
          result%jump = result%jump/strength
+         result%rest = result%rest/strength
+         associate (change => path%joints%force_unit*maxval(abs(state%force - before)))
+            result%spread = result%reached*path%jumped/max(change, epsilon(change)*path%jumped, &
+               & tiny(change))
+         end associate
       end if
       if (result%end == path_end%reached) then
          result%reached = h_end

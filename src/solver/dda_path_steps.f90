@@ -118,6 +118,7 @@ contains
       if (allocated(path%joints%share)) then
          call follow_bend(path, way, rates, h_end - result%reached, state, event, found)
          if (.not. found) return
+         call see_rest(rates, event, result)
       else
          event = next_event(path%joints, state, rates, h_end - result%reached)
          call move_on(path%joints, rates, event, state)
@@ -134,6 +135,24 @@ contains
       call note_fall(end, jump, result)
       call go_back(path%joints, rates, event, last, state)
    end subroutine step_on
+
+   !> Load that a step has left to the largest one that joints bear as they crush. Near that one
+   !> the motion grows as the inverse of this load, and its rate as the inverse square
+   pure subroutine see_rest(rates, event, result)
+      type(rates_t), intent(in) :: rates  !! Rates where the step began
+      type(event_t), intent(in) :: event  !! Where it has ended
+      type(path_result_t), intent(inout) :: result
+      real(wp) :: grown, pace
+
+      pace = maxval(abs(rates%motion))
+      grown = 0.0_wp
+      if (result%pace > 0.0_wp) grown = sqrt(pace/result%pace) - 1.0_wp
+      result%rest = 0.0_wp
+      if (event%kind == event_kind%none .and. grown > 0.0_wp) &
+         & result%rest = max(0.0_wp, result%step/grown - event%distance)
+      result%step = event%distance
+      result%pace = pace
+   end subroutine see_rest
 
    !> A motion beyond this is far
    pure real(wp) function far_of(path, state)
@@ -156,9 +175,10 @@ contains
       !> Receives the jump, or how the blocks fall
       type(path_result_t), intent(inout) :: result
       type(jump_t) :: jump
-      real(wp) :: gained
+      real(wp) :: before(3, size(state%force, 2)), gained
       integer :: end
 
+      before = state%force
       jump%far = far_of(path, state)
       call nudge_to_balance(path%joints, path%equations, way%load, width, h_end - result%reached, &
          & state, jump, gained, end, way%opening)
@@ -166,8 +186,12 @@ contains
          result%jump = [result%jump, result%reached]
          result%largest_jump = max(result%largest_jump, jump%way)
          result%reached = min(h_end, result%reached + gained)
+         result%pace = 0.0_wp
+         path%jumped = hypot(path%jumped, path%joints%force_unit*maxval(abs(state%force - before)))
          width = min(width, gained)
       else
+         ! where joints crush the load falls by less than was tried
+         if (allocated(path%joints%share)) result%rest = max(result%rest, gained)
          call note_fall(end, jump, result)
       end if
    end subroutine jump_on

@@ -61,6 +61,11 @@ contains
          verdict%station = i - 1
          verdict%share = result%reached
          verdict%jump = result%jump
+         verdict%reach = result%reached + [-result%spread, result%spread]
+         ! until it jumps the path goes one way
+         if (verdict%n_jump == size(result%jump)) verdict%reach(1) = max(verdict%reach(1), &
+            & minval([result%reached, result%jump]))
+         verdict%reach = max(0.0_wp, verdict%reach + [-result%rest, result%rest])
       end do
       verdict%state = state
       call conclude(result, verdict)

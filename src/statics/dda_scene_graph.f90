@@ -55,6 +55,8 @@ module dda_scene_graph
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0
       real(wp) :: share = 0.0_wp         !! Likewise
+      !> Least and largest share, as jumps may lead elsewhere and joints crush
+      real(wp) :: reach(2) = 0.0_wp
       real(wp), allocatable :: jump(:)   !! Shares of that leg at which the path jumps: (n)
       integer :: n_jump = 0              !! Jumps on the path
       real(wp) :: largest_jump = 0.0_wp  !! The largest of them [m]

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from crushing_bridges import crushing_bridge
 from dda_command import rows_of
 from test_live_loads import SEARCH, rows
 
@@ -250,3 +251,19 @@ def test_rings_whose_joints_turn_back_from_their_limits_are_decided(tmp_path: Pa
     assert row["verdict"] == "found"
     assert 0.0 < float(row["critical_high"]) <= float(row["exact_high"])
     assert int(row["factorisations"]) < 5000
+
+
+def test_a_path_ends_at_the_load_that_its_joints_tend_to(tmp_path: Path) -> None:
+    """Nothing slides in this collapse, so that the associated limit, found by forces alone, is the right value."""
+    bridge, place = crushing_bridge(985140)
+    (row,) = rows(tmp_path, bridge.deck(f"position = {place}"), head="")
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) < float(row["exact_low"]) * (1.0 - 1e-5)
+    assert float(row["critical_high"]) == pytest.approx(float(row["exact_low"]), rel=1e-9)
+
+
+def test_other_steps_find_values_within_the_bracket_of_a_jump(tmp_path: Path) -> None:
+    """A path that aims at its limits by chords jumps once more and finds 2.8288; shorter steps find 2.8509."""
+    bridge, place = crushing_bridge(985077)
+    (row,) = rows(tmp_path, bridge.deck(f"position = {place}"), head="")
+    assert float(row["critical_low"]) < 2.8134 < 2.8509 < float(row["critical_high"]) < float(row["exact_low"])
