@@ -23,8 +23,8 @@ submodule (dda_loading_path) dda_path_steps
 
    !> Factor of progress within which jumps increase the nudge
    real(wp), parameter :: slow_factor = 10.0_wp
-   !> Largest nudge
-   real(wp), parameter :: largest_nudge = 1.0e-3_wp
+   !> Largest nudge, over the weight of a block: by so much a value reached by such jumps may err
+   real(wp), parameter :: largest_nudge = 1.0e-2_wp
    !> Unbalanced share of the load at rest without damping
    real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
    !> Distance to an event below which it makes no progress
