@@ -4,7 +4,8 @@
 !> from nothing: blocks that nothing presses fall between their neighbours, and where friction is
 !> high the way to rest turns back. Elastic blocks that move in steps under the associated rule come
 !> to rest: if nothing slides in that rest it is one under Coulomb friction, too; if joints slide
-!> they hold only because sliding opens them, and the fall of the path counts.
+!> they hold only because sliding opens them, and the fall of the path counts. Joints do not
+!> crush in the steps: where they do on the path its fall counts, too.
 module dda_dead_rest
    use dda_contacts, only : contacts_t
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
@@ -69,7 +70,7 @@ contains
       type(scene_t), intent(in) :: scene
       !> Where nothing slides, with the load that its forces balance
       type(coulomb_state_t), allocatable, intent(out) :: start
-      logical, intent(out) :: slides  !! True if there is a rest and joints slide in it
+      logical, intent(out) :: slides  !! True if joints slide in the rest, or crush
       integer, intent(out) :: n       !! Factorisations
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20
@@ -78,7 +79,8 @@ contains
       type(outcome_t) :: outcome
 
       n = 0
-      slides = .false.
+      slides = any(scene%contacts%law%strength < huge(1.0_wp))
+      if (slides) return
       if (size(history_times(scene%settings)) > 0 .or. leads_at_once(scene%settings)) return
       dead = scene
       associate (settings => dead%settings)

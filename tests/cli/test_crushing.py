@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 
 import pytest
+from crushing_bridges import check as check_bridge
 from crushing_bridges import crushing_bridge
 from dda_command import rows_of
 from test_live_loads import SEARCH, rows
 
+DDA = os.environ["DDA"]
 ASSOCIATED = "&analysis flow = 'associated' /\n"
 BLOCK = "block fixed\n-1 -1\n2 -1\n2 0\n-1 0\nblock\n0 0\n1 0\n1 2\n0 2\n"
 BRIDGE = (
@@ -267,3 +270,10 @@ def test_other_steps_find_values_within_the_bracket_of_a_jump(tmp_path: Path) ->
     bridge, place = crushing_bridge(985077)
     (row,) = rows(tmp_path, bridge.deck(f"position = {place}"), head="")
     assert float(row["critical_low"]) < 2.8134 < 2.8509 < float(row["critical_high"]) < float(row["exact_low"])
+
+
+@pytest.mark.parametrize("seed", [985039, 985085, 985101, 986512, 986619])
+def test_bridges_lie_between_their_bounds_and_are_like_their_mirror_images(tmp_path: Path, seed: int) -> None:
+    """One ring to four that slide and crush; `python3 crushing_bridges.py` checks any number of them."""
+    verdict, _, faults = check_bridge(DDA, tmp_path, seed)
+    assert faults == [] and verdict in ("found", "collapsed")
